@@ -1,0 +1,24 @@
+// One CAN frame, classic or FD, as every bus of limber carries it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace limber {
+
+struct CanFrame {
+  std::uint32_t id = 0;       ///< 11 or 29 bits, without flags
+  bool extended = false;      ///< 29-bit identifier
+  bool remote = false;        ///< RTR
+  bool error = false;         ///< error frame; id holds the error class bits (SocketCAN)
+  bool fd = false;
+  bool bitrate_switch = false;
+  std::uint8_t length = 0;    ///< data bytes: 0..8, or an FD length up to 64
+  std::array<std::uint8_t, 64> data{};
+  std::int64_t timestamp_ns = 0;  ///< receive time, CLOCK_MONOTONIC; simulated time on lock-step buses; 0 unknown
+};
+
+/// Rounds a payload length up to one an FD frame can have (0..8, 12, 16, 20, 24, 32, 48, 64). -1 above 64.
+int fd_length(int bytes);
+
+}  // namespace limber

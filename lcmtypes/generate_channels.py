@@ -1,0 +1,17 @@
+"""Writes channels.h from channels.yaml: generate_channels.py channels.yaml OUT.h"""
+import sys
+
+import yaml
+
+table = yaml.safe_load(open(sys.argv[1], encoding="utf-8"))
+out = ["// Generated from lcmtypes/channels.yaml. Do not edit.", "#pragma once", "", "namespace limber::channels {", ""]
+for plane, url in table["planes"].items():
+    out.append(f'inline constexpr const char* k{plane.capitalize()}PlaneUrl = "{url}";')
+out.append("")
+for key, row in table["channels"].items():
+    if "name" in row:
+        continue  # the user-plane copy has the same name
+    const = "k" + "".join(part.capitalize() for part in key.split("_"))
+    out.append(f'inline constexpr const char* {const} = "{key}";  // {row["type"]}, from {row["from"]}, {row["rate"]}')
+out += ["", "}  // namespace limber::channels", ""]
+open(sys.argv[2], "w", encoding="utf-8").write("\n".join(out))

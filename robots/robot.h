@@ -1,0 +1,108 @@
+// What robot.yaml and robot.urdf say of one arm, checked, in SI. Plain data: no Eigen, no KDL, so that the driver and its
+// gate stay small. The kinematic chain itself is in robots/load_robot.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace limber {
+
+/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME" or "socketcan:IFACE".
+struct BusConfig {
+  std::string name;
+  std::string can;
+  bool fd = false;
+  int bitrate_bps = 1'000'000;
+  int data_bitrate_bps = 5'000'000;  ///< FD data phase
+};
+
+/// The ranges both sides of an MIT link must agree on (protocols: MIT family).
+struct MitRange {
+  double position_rad = 12.5;
+  double velocity_rad_per_s = 30.0;
+  double torque_Nm = 10.0;
+  double kp_Nm_per_rad = 500.0;
+  double kd_Nms_per_rad = 5.0;
+};
+
+enum class NodeWatchdogReaction : std::uint8_t {
+  kOff,   ///< power stage off: the joint is free but for friction
+  kDamp,  ///< motor phases shorted: the joint is a passive damper
+};
+
+/// One motor with its drive. Torque, speed and inertia are given at the joint (behind the gear).
+struct DriveConfig {
+  std::string motor;  ///< model name, for messages only
+  int bus = 0;        ///< index into Robot::buses
+  std::uint32_t command_id = 0;
+  std::uint32_t reply_id = 0;
+  double sign = 1.0;        ///< +1 or -1: joint angle = sign * (drive angle - offset)
+  double offset_rad = 0.0;  ///< drive angle at joint zero
+  MitRange range;
+  double gear_ratio = 1.0;
+  double rotor_inertia_kgm2 = 0.0;          ///< reflected: rotor inertia times gear ratio squared (B)
+  double torque_constant_Nm_per_A = 1.0;    ///< at the joint
+  double peak_torque_Nm = 0.0;              ///< current limit of the drive, as torque at the joint
+  double short_circuit_damping_Nms = 0.0;   ///< joint damping with shorted phases (kDamp)
+  double watchdog_s = 0.02;                 ///< written to the drive at start and read back
+  NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
+  int encoder_bits = 14;                    ///< per joint revolution
+  double hold_kp_Nm_per_rad = 0.0;          ///< driver's own holding when the controller is lost
+  double hold_kd_Nms_per_rad = 0.0;
+};
+
+/// LuGre friction of a joint, motor side (control theory: bristle model). Zero: none.
+struct FrictionConfig {
+  double coulomb_Nm = 0.0;
+  double static_Nm = 0.0;  ///< breakaway, at least coulomb_Nm
+  double stribeck_rad_per_s = 0.05;
+  double viscous_Nms_per_rad = 0.0;
+  double bristle_rad = 1e-4;  ///< presliding deflection at coulomb_Nm
+};
+
+enum class JointType : std::uint8_t { kRevolute, kContinuous, kPrismatic };
+
+/// One moving joint between base and tip, in order. Limits are the tighter of URDF and YAML.
+/// Units in names hold for rotary joints; for prismatic joints read m, m/s, N.
+struct JointConfig {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  double position_min = 0.0;  ///< -inf for continuous joints
+  double position_max = 0.0;
+  double velocity_limit = 0.0;     ///< rad/s
+  double torque_limit_Nm = 0.0;
+  double torque_rate_limit_Nm_per_s = 0.0;  ///< what the gate lets pass from cycle to cycle, times the rate
+  double home = 0.0;
+  DriveConfig drive;
+  FrictionConfig friction;
+};
+
+/// Gains a robot starts with.
+struct DefaultGains {
+  std::vector<double> K_q;            ///< N m/rad, joint impedance and HOLD
+  double joint_damping_ratio = 0.7;
+  double K_x_translation_N_per_m = 500.0;
+  double K_x_rotation_Nm_per_rad = 20.0;
+  double damping_ratio = 0.7;
+  std::vector<double> K_null;         ///< N m/rad
+  std::vector<double> D_null;         ///< N m s/rad
+};
+
+struct Robot {
+  std::string name;
+  std::string folder;     ///< where robot.yaml lies; empty for a bare URDF
+  std::string urdf_path;
+  std::string base;
+  std::string tip;
+  double gravity[3] = {0.0, 0.0, -9.81};  ///< m/s^2 in axes of the base link
+  double rate_hz = 1000.0;
+  std::vector<BusConfig> buses;
+  std::vector<JointConfig> joints;
+  DefaultGains gains;
+  bool has_drives = false;  ///< false for a bare URDF: fit for `check` and `eval`, not for running
+
+  int size() const { return static_cast<int>(joints.size()); }
+};
+
+}  // namespace limber

@@ -1,0 +1,49 @@
+#include "tests/support/allocation_counter.h"
+
+#include <cstddef>
+
+// glibc's own entry points, under the names it exports for replacements of malloc. operator new ends in malloc.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* pointer, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+}
+
+namespace {
+thread_local std::int64_t count = 0;
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+extern "C" {
+void* malloc(std::size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  ++count;
+  return __libc_calloc(number, size);
+}
+void* realloc(void* pointer, std::size_t size) {
+  ++count;
+  return __libc_realloc(pointer, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** pointer, std::size_t alignment, std::size_t size) {
+  ++count;
+  *pointer = __libc_memalign(alignment, size);
+  return *pointer == nullptr ? 12 : 0;
+}
+}
+#endif
+
+namespace limber::testing {
+std::int64_t allocations() noexcept { return count; }
+}  // namespace limber::testing
