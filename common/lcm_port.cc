@@ -13,20 +13,6 @@
 namespace limber {
 namespace {
 
-std::string with_receive_buffer(std::string url) {
-  url += url.find('?') == std::string::npos ? '?' : '&';
-  return url + "recv_buf_size=2097152";
-}
-
-void check_ttl(const std::string& url) {
-  const auto at = url.find("ttl=");
-  const char* allow = std::getenv("LIMBER_ALLOW_REMOTE");
-  if (at == std::string::npos || url.compare(at, 5, "ttl=0") == 0) return;
-  if (allow != nullptr && std::strcmp(allow, "1") == 0) return;
-  throw ConfigError(url + ": messages would leave this machine, where anybody could move the arm; use ttl=0, or set " +
-                    "LIMBER_ALLOW_REMOTE=1 if that is what you want");
-}
-
 std::string from_environment(const char* variable, const char* otherwise) {
   const char* value = std::getenv(variable);
   return value != nullptr && *value != '\0' ? value : otherwise;
@@ -34,18 +20,33 @@ std::string from_environment(const char* variable, const char* otherwise) {
 
 }  // namespace
 
-LcmPort::LcmPort(const std::string& url) {
-  check_ttl(url);
-  lcm_ = std::make_unique<lcm::LCM>(with_receive_buffer(url));
-  if (!lcm_->good()) {
-    throw ConfigError(url + ": LCM could not start. Without a network it needs a multicast route on this machine:\n"
-                      "  sudo ip link set lo multicast on\n  sudo ip route add 224.0.0.0/4 dev lo");
+std::string checked_lcm_url(const std::string& url) {
+  const auto ttl = url.find("ttl=");
+  const char* allow = std::getenv("LIMBER_ALLOW_REMOTE");
+  const bool stays = ttl == std::string::npos || url.compare(ttl, 5, "ttl=0") == 0;
+  if (!stays && (allow == nullptr || std::strcmp(allow, "1") != 0)) {
+    throw ConfigError(
+        url +
+        ": messages would leave this machine, where anybody could move the arm; use ttl=0, or set "
+        "LIMBER_ALLOW_REMOTE=1 if that is what you want");
   }
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=2097152";
+}
+
+std::string no_multicast_route(const std::string& url) {
+  return url +
+         ": LCM could not start. Without a network it needs a multicast route on this machine:\n"
+         "  sudo ip link set lo multicast on\n  sudo ip route add 224.0.0.0/4 dev lo";
+}
+
+LcmPort::LcmPort(const std::string& url) : lcm_(std::make_unique<lcm::LCM>(checked_lcm_url(url))) {
+  if (!lcm_->good()) throw ConfigError(no_multicast_route(url));
   descriptor_ = lcm_->getFileno();
 }
 
 bool LcmPort::publish_bytes(const char* channel, int size) noexcept {
-  return lcm_publish(lcm_->getUnderlyingLCM(), channel, buffer_.data(), static_cast<unsigned>(size)) == 0;
+  return lcm_publish(lcm_->getUnderlyingLCM(), channel, buffer_.data(),
+                     static_cast<unsigned>(size)) == 0;
 }
 
 void LcmPort::subscribe_bytes(const char* channel, int queue, BytesHandler handler) {
@@ -68,12 +69,15 @@ bool wait_readable(std::span<const int> descriptors, std::int64_t deadline_ns) n
   for (const int descriptor : descriptors) {
     if (descriptor >= 0 && count < polled.size()) polled[count++] = {descriptor, POLLIN, 0};
   }
-  const std::int64_t left = deadline_ns <= 0 ? 0 : std::max<std::int64_t>(deadline_ns - monotonic_ns(), 0);
+  const std::int64_t left =
+      deadline_ns <= 0 ? 0 : std::max<std::int64_t>(deadline_ns - monotonic_ns(), 0);
   const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
   return ppoll(polled.data(), count, &timeout, nullptr) > 0;
 }
 
 std::string arm_plane_url() { return from_environment("LIMBER_ARM_URL", channels::kArmPlaneUrl); }
-std::string user_plane_url() { return from_environment("LCM_DEFAULT_URL", channels::kUserPlaneUrl); }
+std::string user_plane_url() {
+  return from_environment("LCM_DEFAULT_URL", channels::kUserPlaneUrl);
+}
 
 }  // namespace limber

@@ -1,11 +1,11 @@
-// One LCM plane for one process: checked start, allocation-free publishing, waiting with nanosecond deadlines.
+// One LCM plane for one process: checked start, allocation-free publishing, waiting with nanosecond
+// deadlines.
 #pragma once
-
-#include <lcm/lcm-cpp.hpp>
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,19 +18,20 @@ inline constexpr int kMaxMessageBytes = 1400;
 
 class LcmPort {
  public:
-  /// Opens `url` with a 2 MiB receive buffer. Refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1 is set. Throws
-  /// ConfigError with the two commands that help when there is no multicast route.
+  /// Opens `url` with a 2 MiB receive buffer. Refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1 is
+  /// set. Throws ConfigError with the two commands that help when there is no multicast route.
   explicit LcmPort(const std::string& url);
 
-  /// Encodes into a buffer of its own and sends. False if the message is too long or LCM could not send it.
+  /// Encodes into a buffer of its own and sends. False if the message is too long or LCM could not
+  /// send it.
   template <typename Message>
   bool publish(const char* channel, const Message& message) noexcept {
     const int size = message.encode(buffer_.data(), 0, kMaxMessageBytes);
     return size >= 0 && publish_bytes(channel, size);
   }
 
-  /// Calls `handler(message)` for each message on the channel that decodes whole and is not too long; others are counted.
-  /// `queue` messages are kept while the process is busy.
+  /// Calls `handler(message)` for each message on the channel that decodes whole and is not too
+  /// long; others are counted. `queue` messages are kept while the process is busy.
   template <typename Message, typename Handler>
   void subscribe(const char* channel, int queue, Handler handler);
 
@@ -45,18 +46,26 @@ class LcmPort {
   bool publish_bytes(const char* channel, int size) noexcept;
   void subscribe_bytes(const char* channel, int queue, BytesHandler handler);
 
-  std::vector<std::unique_ptr<BytesHandler>> handlers_;  // outlive lcm_, which holds pointers to them
+  std::vector<std::unique_ptr<BytesHandler>>
+      handlers_;  // outlive lcm_, which holds pointers to them
   std::unique_ptr<lcm::LCM> lcm_;
   int descriptor_ = -1;
   std::int64_t undecodable_ = 0;
   std::array<std::uint8_t, kMaxMessageBytes> buffer_{};
 };
 
-/// Waits until a descriptor (-1 entries are ignored) is readable or the absolute CLOCK_MONOTONIC time has come (ns; <= 0:
-/// return at once). False on time-out. Allowed inside the cycle.
+/// Waits until a descriptor (-1 entries are ignored) is readable or the absolute CLOCK_MONOTONIC
+/// time has come (ns; <= 0: return at once). False on time-out. Allowed inside the cycle.
 bool wait_readable(std::span<const int> descriptors, std::int64_t deadline_ns) noexcept;
 
-/// $LIMBER_ARM_URL or the arm plane's address of the channel table; $LCM_DEFAULT_URL or the user plane's.
+/// `url` with a 2 MiB receive buffer; refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1. Throws
+/// ConfigError. Set-up only.
+std::string checked_lcm_url(const std::string& url);
+/// What to tell a user whose machine has no multicast route.
+std::string no_multicast_route(const std::string& url);
+
+/// $LIMBER_ARM_URL or the arm plane's address of the channel table; $LCM_DEFAULT_URL or the user
+/// plane's.
 std::string arm_plane_url();
 std::string user_plane_url();
 

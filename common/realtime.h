@@ -12,18 +12,21 @@ struct RealtimeGrant {
   std::string reason;  ///< why not, empty if all was granted
 };
 
-/// SCHED_FIFO at `priority` (1..99) and locked memory, where permitted; timer slack 1 ns in any case. Set-up only.
+/// SCHED_FIFO at `priority` (1..99) and locked memory, where permitted; timer slack 1 ns in any
+/// case. Set-up only.
 RealtimeGrant ask_for_realtime(int priority);
 
-/// Absolute deadlines on CLOCK_MONOTONIC at a fixed period. Sleeps until `spin_ns` before each deadline and spins the rest.
+/// Absolute deadlines on CLOCK_MONOTONIC at a fixed period. Sleeps until `spin_ns` before each
+/// deadline and spins the rest.
 class PeriodicLoop {
  public:
-  PeriodicLoop(std::int64_t period_ns, std::int64_t spin_ns) : period_ns_(period_ns), spin_ns_(spin_ns) {}
+  PeriodicLoop(std::int64_t period_ns, std::int64_t spin_ns)
+      : period_ns_(period_ns), spin_ns_(spin_ns) {}
 
   /// First deadline: one period from now.
   void start() noexcept;
-  /// Waits for the deadline; returns how late it is, ns. Deadlines that have passed altogether are skipped, not
-  /// caught up: a hiccup must not cause a burst of commands.
+  /// Waits for the deadline; returns how late it is, ns. Deadlines that have passed altogether are
+  /// skipped, not caught up: a hiccup must not cause a burst of commands.
   std::int64_t wait() noexcept;
   /// The next deadline.
   std::int64_t deadline_ns() const noexcept { return deadline_ns_; }

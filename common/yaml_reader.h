@@ -1,5 +1,5 @@
-// Strict reading of YAML: every access says type and allowed range, every complaint names file, line, key and value,
-// and a key nobody asked for is an error.
+// Strict reading of YAML: every access says type and allowed range, every complaint names file,
+// line, key and value, and a key nobody asked for is an error.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -17,10 +17,12 @@ struct Range {
 };
 
 /// One mapping of a YAML file. Reading a key marks it as known; finish() refuses whatever is left.
-/// All members throw ConfigError (file:line: path.key: what was found; what is allowed). Set-up only.
+/// All members throw ConfigError (file:line: path.key: what was found; what is allowed). Set-up
+/// only.
 class YamlMap {
  public:
-  /// Reads a whole file. Refuses: unreadable, larger than 1 MiB, not a mapping, duplicate keys, aliases and anchors.
+  /// Reads a whole file. Refuses: unreadable, larger than 1 MiB, not a mapping, duplicate keys,
+  /// aliases and anchors.
   static YamlMap from_file(const std::string& path);
   /// The same from text; `name` stands for the file in messages.
   static YamlMap from_text(const std::string& text, const std::string& name);
@@ -39,7 +41,8 @@ class YamlMap {
   std::string word(const std::string& key, const std::vector<std::string>& allowed);
   std::string word_or(const std::string& key, const std::vector<std::string>& allowed,
                       const std::string& otherwise);
-  /// A sequence of numbers. `size` -1: any length. A single number is repeated `size` times where `broadcast` is set.
+  /// A sequence of numbers. `size` -1: any length. A single number is repeated `size` times where
+  /// `broadcast` is set.
   std::vector<double> numbers(const std::string& key, int size, Range allowed,
                               bool broadcast = false);
   std::vector<std::string> texts(const std::string& key);

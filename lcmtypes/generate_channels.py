@@ -13,5 +13,10 @@ for key, row in table["channels"].items():
         continue  # the user-plane copy has the same name
     const = "k" + "".join(part.capitalize() for part in key.split("_"))
     out.append(f'inline constexpr const char* {const} = "{key}";  // {row["type"]}, from {row["from"]}, {row["rate"]}')
+out.append("")
+for key, row in table["channels"].items():
+    if row["rate"].startswith("cycle/"):
+        const = "k" + "".join(part.capitalize() for part in key.split("_")) + "Every"
+        out.append(f"inline constexpr int {const} = {int(row['rate'].removeprefix('cycle/'))};  // cycles")
 out += ["", "}  // namespace limber::channels", ""]
 open(sys.argv[2], "w", encoding="utf-8").write("\n".join(out))

@@ -1,0 +1,218 @@
+// JOINT_STATE published -> JOINT_TORQUE received, through the real controller process, beside a bare UDP multicast ping-pong
+// of the same sizes between two processes, in alternating batches of the same run. Prints one JSON line; the figure that
+// travels between machines is the ratio.
+//
+//   limber-bench-loop --controller build/release/bin/limber-controller [--rounds 20000]
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstring>
+#include <limber/controller_status_t.hpp>
+#include <limber/joint_state_t.hpp>
+#include <limber/joint_torque_t.hpp>
+#include <limber/mode_request_t.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "common/clock.h"
+#include "common/latency_histogram.h"
+#include "common/lcm_port.h"
+#include "common/realtime.h"
+#include "lcmtypes/channels.h"
+#include "robots/load_robot.h"
+
+namespace {
+
+using namespace limber;
+
+constexpr int kPriority = 40;
+
+/// Starts a child that dies with this process.
+template <typename Body>
+pid_t spawn(Body body) {
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    body();
+    _exit(3);
+  }
+  return child;
+}
+
+/// A multicast socket that hears `port` and can send to any port of the group, on this machine only.
+int multicast_socket(int port) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
+  const int on = 1;
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = inet_addr("239.255.76.69");
+  ip_mreq group{address.sin_addr, {}};
+  const unsigned char ttl = 0;
+  setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
+  if (bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+      setsockopt(descriptor, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) {
+    throw std::runtime_error("no multicast on this machine; see `limber doctor`");
+  }
+  return descriptor;
+}
+
+void send_to(int descriptor, int port, const void* data, std::size_t size) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = inet_addr("239.255.76.69");
+  sendto(descriptor, data, size, 0, reinterpret_cast<sockaddr*>(&address), sizeof address);
+}
+
+constexpr int kPingPort = 7701;
+constexpr int kPongPort = 7702;
+
+[[noreturn]] void echo(std::size_t reply_bytes) {
+  ask_for_realtime(kPriority);
+  const int descriptor = multicast_socket(kPingPort);
+  std::vector<char> buffer(2048);
+  while (true) {
+    if (recv(descriptor, buffer.data(), buffer.size(), 0) > 0) {
+      send_to(descriptor, kPongPort, buffer.data(), reply_bytes);
+    }
+  }
+}
+
+/// Plays the driver for one controller: answers every request at once, the arm never moves.
+class FakeDriver {
+ public:
+  explicit FakeDriver(const LoadedRobot& robot) : arm_(arm_plane_url()), user_(user_plane_url()) {
+    state_.session = 1;
+    state_.period_ns = 1'000'000;
+    state_.num_joints = static_cast<std::int8_t>(robot.robot.size());
+    state_.drive_state = joint_state_t::DRIVE_OFF;
+    for (int i = 0; i < robot.robot.size(); ++i) {
+      state_.q[i] = state_.theta[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
+      state_.joint_flags[i] = joint_state_t::JOINT_FRESH | joint_state_t::JOINT_ENABLED;
+    }
+    arm_.subscribe<joint_torque_t>(channels::kJointTorque, 10, [this](const joint_torque_t& torque) {
+      if (torque.state_seq == state_.seq) answer_ = torque, answered_ = true;
+    });
+    user_.subscribe<controller_status_t>(channels::kControllerStatus, 10,
+                                         [this](const controller_status_t& status) { mode_ = status.mode; });
+  }
+
+  /// One cycle; returns the round trip in ns, or -1 if no answer came within a second.
+  std::int64_t round() {
+    answered_ = false;
+    const std::int64_t start = monotonic_ns();
+    arm_.publish(channels::kJointState, state_);
+    const int descriptor = arm_.descriptor();
+    while (!answered_ && wait_readable(std::span(&descriptor, 1), start + 1'000'000'000)) arm_.handle_waiting();
+    const std::int64_t taken = monotonic_ns() - start;
+    if (!answered_) return -1;
+    ++state_.seq;
+    state_.time_ns += state_.period_ns;
+    if (answer_.request == joint_torque_t::REQUEST_ON) state_.drive_state = joint_state_t::DRIVE_ON;
+    std::copy(answer_.tau, answer_.tau + 16, state_.tau_applied);
+    return taken;
+  }
+
+  void activate() {
+    for (int i = 0; i < 20'000 && mode_ != controller_status_t::MODE_ACTIVE; ++i) {
+      round();
+      user_.handle_waiting();
+      if (i % 200 == 199) {
+        mode_request_t request{};
+        request.seq = i;
+        request.client = 1;
+        request.request = mode_ < controller_status_t::MODE_HOLD ? mode_request_t::REQUEST_HOLD
+                                                                 : mode_request_t::REQUEST_ACTIVE;
+        user_.publish(channels::kModeRequest, request);
+      }
+    }
+    if (mode_ != controller_status_t::MODE_ACTIVE) throw std::runtime_error("the controller did not become ACTIVE");
+  }
+
+  const joint_state_t& state() const { return state_; }
+
+ private:
+  LcmPort arm_;
+  LcmPort user_;
+  joint_state_t state_{};
+  joint_torque_t answer_{};
+  bool answered_ = false;
+  int mode_ = -1;
+};
+
+std::int64_t ping(int descriptor, const std::vector<char>& message, std::vector<char>& buffer) {
+  const std::int64_t start = monotonic_ns();
+  send_to(descriptor, kPingPort, message.data(), message.size());
+  recv(descriptor, buffer.data(), buffer.size(), 0);
+  return monotonic_ns() - start;
+}
+
+void run(const std::string& controller, int rounds) {
+  const LoadedRobot robot = load_robot("openarm");
+  const pid_t child = spawn([&] {
+    execl(controller.c_str(), controller.c_str(), "--robot", "openarm", static_cast<char*>(nullptr));
+  });
+  const std::size_t state_bytes = static_cast<std::size_t>(joint_state_t().getEncodedSize());
+  const std::size_t torque_bytes = static_cast<std::size_t>(joint_torque_t().getEncodedSize());
+  const pid_t peer = spawn([&] { echo(torque_bytes); });
+  const int descriptor = multicast_socket(kPongPort);
+  const RealtimeGrant grant = ask_for_realtime(kPriority);
+  std::vector<char> message(state_bytes);
+  std::vector<char> buffer(2048);
+
+  FakeDriver driver(robot);
+  while (driver.round() < 0) {
+  }
+  driver.activate();
+  LatencyHistogram limber_time;
+  LatencyHistogram udp_time;
+  constexpr int kBatch = 200;
+  for (int done = 0; done < rounds; done += kBatch) {
+    for (int i = 0; i < kBatch; ++i) limber_time.add(driver.round());
+    for (int i = 0; i < kBatch; ++i) udp_time.add(ping(descriptor, message, buffer));
+  }
+  kill(child, SIGKILL);
+  kill(peer, SIGKILL);
+  while (wait(nullptr) > 0) {
+  }
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  fmt::print(
+      "{{\"rounds\": {}, \"fifo\": {}, \"state_bytes\": {}, \"torque_bytes\": {},\n"
+      " \"limber_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
+      " \"udp_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
+      " \"ratio_p50\": {:.2f}, \"ratio_p99\": {:.2f}}}\n",
+      rounds, grant.fifo, state_bytes, torque_bytes, us(limber_time.quantile(0.5)), us(limber_time.quantile(0.99)),
+      us(limber_time.quantile(0.999)), us(udp_time.quantile(0.5)), us(udp_time.quantile(0.99)),
+      us(udp_time.quantile(0.999)),
+      static_cast<double>(limber_time.quantile(0.5)) / static_cast<double>(udp_time.quantile(0.5)),
+      static_cast<double>(limber_time.quantile(0.99)) / static_cast<double>(udp_time.quantile(0.99)));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP multicast ping-pong."};
+  std::string controller;
+  int rounds = 20'000;
+  app.add_option("--controller", controller, "limber-controller to measure")->required()->check(CLI::ExistingFile);
+  app.add_option("--rounds", rounds)->check(CLI::Range(200, 10'000'000));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(controller, rounds);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "limber-bench-loop: {}\n", error.what());
+    return 3;
+  }
+  return 0;
+}

@@ -1,0 +1,48 @@
+#include "lab/lab.h"
+
+#include <cmath>
+
+#include "lcmtypes/channels.h"
+
+namespace limber {
+
+Lab::Lab(const LoadedRobot& robot, const Scenario& scenario)
+    : period_ns_(std::llround(1e9 / robot.robot.rate_hz)) {
+  std::vector<CanBus*> driver_ends;
+  std::vector<CanBus*> arm_ends;
+  for (std::size_t i = 0; i < robot.robot.buses.size(); ++i) {
+    buses_.push_back(std::make_unique<MemoryBus>());
+    for (auto* side : {&driver_ends, &arm_ends}) {
+      ends_.push_back(buses_.back()->attach());
+      side->push_back(ends_.back().get());
+    }
+  }
+  simulator_ = std::make_unique<Simulator>(robot, arm_ends, simulator_options(scenario));
+  simulator_->set_timeline(&scenario.timeline);
+  driver_ = std::make_unique<ArmDriver>(robot.robot, driver_ends,
+                                        ArmDriverOptions{kLockstepSession, true});
+  ArmControllerOptions options;
+  options.controller = kLockstepController;
+  options.measure_time = false;
+  controller_ = std::make_unique<ArmController>(robot, options);
+  controller_->set_timeline(&scenario.timeline);
+}
+
+void Lab::step() noexcept {
+  driver_->transmit(time_ns());
+  simulator_->poll();
+  driver_->poll();
+  state_ = &driver_->finish_cycle();
+  torque_ = &controller_->step(*state_);
+  verdict_ = driver_->accept(*torque_);
+  ++cycle_;
+}
+
+const driver_status_t& Lab::driver_status() noexcept {
+  driver_->fill_status(&driver_status_);
+  driver_status_.seq = cycle_ / channels::kDriverStatusEvery;
+  driver_status_.lockstep = 1;
+  return driver_status_;
+}
+
+}  // namespace limber

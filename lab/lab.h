@@ -1,0 +1,63 @@
+// The whole stack in one process: driver, controller and simulator on an in-memory CAN bus, in lock
+// step, as fast as the processor allows. Nothing here does what the three processes do; it only
+// calls the same members in the same order.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "controller/arm_controller.h"
+#include "drivers/arm_driver.h"
+#include "drivers/can/memory_bus.h"
+#include "scenarios/scenario.h"
+#include "sim/simulator.h"
+
+namespace limber {
+
+/// Session and controller number of every lock-step run, so that its payloads do not depend on
+/// chance.
+inline constexpr std::int64_t kLockstepSession = 1;
+inline constexpr std::int64_t kLockstepController = 1;
+
+class Lab {
+ public:
+  /// The scenario and robot outlive the lab. Throws ConfigError.
+  Lab(const LoadedRobot& robot, const Scenario& scenario);
+
+  /// One control cycle:
+  ///   commands -> nodes answer, arm advances one period -> replies -> JOINT_STATE -> law ->
+  ///   JOINT_TORQUE -> gate.
+  /// Free of allocation, locks, logs and exceptions.
+  void step() noexcept;
+
+  std::int64_t cycles() const noexcept { return cycle_; }
+  std::int64_t time_ns() const noexcept { return cycle_ * period_ns_; }
+
+  /// What the last step() exchanged.
+  const joint_state_t& state() const noexcept { return *state_; }
+  const joint_torque_t& torque() const noexcept { return *torque_; }
+  const sim_truth_t& truth() noexcept { return simulator_->truth(); }
+  const controller_status_t& controller_status() const noexcept { return controller_->status(); }
+  const driver_status_t& driver_status() noexcept;
+  int verdict() const noexcept { return verdict_; }
+
+  ArmController& controller() noexcept { return *controller_; }
+  Simulator& simulator() noexcept { return *simulator_; }
+  ArmDriver& driver() noexcept { return *driver_; }
+
+ private:
+  std::vector<std::unique_ptr<MemoryBus>> buses_;
+  std::vector<std::unique_ptr<CanBus>> ends_;
+  std::unique_ptr<Simulator> simulator_;
+  std::unique_ptr<ArmDriver> driver_;
+  std::unique_ptr<ArmController> controller_;
+  std::int64_t period_ns_;
+  std::int64_t cycle_ = 0;
+  const joint_state_t* state_ = nullptr;
+  const joint_torque_t* torque_ = nullptr;
+  int verdict_ = 0;
+  driver_status_t driver_status_{};
+};
+
+}  // namespace limber

@@ -1,0 +1,179 @@
+"""Starts the real processes and listens to what they say. Every test gets a private network (see conftest.py)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import threading
+import time
+from collections import defaultdict
+from pathlib import Path
+
+import lcm
+
+from limber.lcmtypes.controller_status_t import controller_status_t
+from limber.lcmtypes.driver_status_t import driver_status_t
+from limber.lcmtypes.joint_state_t import joint_state_t
+from limber.lcmtypes.joint_torque_t import joint_torque_t
+from limber.lcmtypes.mode_request_t import mode_request_t
+from limber.lcmtypes.sim_truth_t import sim_truth_t
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(os.environ.get("LIMBER_BIN", ROOT / "build" / "dev" / "bin"))
+USER_URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152"
+ARM_URL = "udpm://239.255.76.68:7668?ttl=0&recv_buf_size=2097152"
+TYPES = {
+    "JOINT_STATE": joint_state_t,
+    "JOINT_TORQUE": joint_torque_t,
+    "CONTROLLER_STATUS": controller_status_t,
+    "DRIVER_STATUS": driver_status_t,
+    "SIM_TRUTH": sim_truth_t,
+}
+CLIENT = 77
+
+
+class Listener:
+    """Keeps the newest message and all raw messages of each channel of a plane."""
+
+    def __init__(self, url: str) -> None:
+        self.lcm = lcm.LCM(url)
+        self.raw: dict[str, list[bytes]] = defaultdict(list)
+        self._lock = threading.Lock()
+        self._stop = False
+        self.lcm.subscribe(".*", self._on_message).set_queue_capacity(0)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _on_message(self, channel: str, data: bytes) -> None:
+        with self._lock:
+            self.raw[channel].append(data)
+
+    def _run(self) -> None:
+        while not self._stop:
+            self.lcm.handle_timeout(50)
+
+    def close(self) -> None:
+        self._stop = True
+        self._thread.join()
+
+    def count(self, channel: str) -> int:
+        with self._lock:
+            return len(self.raw[channel])
+
+    def latest(self, channel: str):
+        with self._lock:
+            data = self.raw[channel][-1] if self.raw[channel] else None
+        return None if data is None else TYPES[channel].decode(data)
+
+    def since(self, channel: str, index: int) -> list:
+        with self._lock:
+            data = self.raw[channel][index:]
+        return [TYPES[channel].decode(item) for item in data]
+
+
+class Stack:
+    """The three processes of one arm, realtime, on a virtual bus."""
+
+    def __init__(self, directory: Path, robot: str = "openarm") -> None:
+        self.directory = directory
+        self.robot = robot
+        self.processes: dict[str, subprocess.Popen] = {}
+        self.starts: dict[str, int] = defaultdict(int)
+        self.user = Listener(USER_URL)
+        self._requests = 0
+
+    def start(self, name: str, *arguments: str, tag: str | None = None) -> subprocess.Popen:
+        tag = tag or name
+        self.starts[tag] += 1
+        log = open(self.directory / f"{tag}-{self.starts[tag]}.log", "w", encoding="utf-8")
+        command = [str(BIN / f"limber-{name}"), "--robot", self.robot, *arguments]
+        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        self.processes[tag] = process
+        return process
+
+    def start_all(self, *sim_arguments: str) -> None:
+        self.start("sim", *sim_arguments)
+        self.start("controller")
+        time.sleep(0.3)
+        self.start("driver")
+
+    def kill(self, tag: str) -> None:
+        self.processes[tag].send_signal(signal.SIGKILL)
+        self.processes[tag].wait()
+
+    def request(self, what: int, client: int = CLIENT) -> None:
+        message = mode_request_t()
+        self._requests += 1
+        message.seq = self._requests
+        message.client = client
+        message.request = what
+        self.user.lcm.publish("MODE_REQUEST", message.encode())
+
+    @property
+    def mode(self) -> int | None:
+        status = self.user.latest("CONTROLLER_STATUS")
+        return None if status is None else status.mode
+
+    @property
+    def state(self) -> joint_state_t:
+        return self.user.latest("JOINT_STATE")
+
+    @property
+    def truth(self) -> sim_truth_t:
+        return self.user.latest("SIM_TRUTH")
+
+    @property
+    def driver_status(self) -> driver_status_t:
+        return self.user.latest("DRIVER_STATUS")
+
+    def until(self, condition, seconds: float, what: str) -> None:
+        """Waits for a condition; a generous bound, since tests never judge wall-clock speed."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            for tag, process in self.processes.items():
+                if process.poll() not in (None, -signal.SIGKILL):
+                    raise AssertionError(f"{tag} ended by itself with {process.returncode}:\n{self.log(tag)}")
+            if condition():
+                return
+            time.sleep(0.01)
+        raise AssertionError(f"waited {seconds} s in vain for: {what}\n" + self.describe())
+
+    def log(self, tag: str) -> str:
+        text = (self.directory / f"{tag}-{self.starts[tag]}.log").read_text(encoding="utf-8")
+        return text[-2000:]
+
+    def describe(self) -> str:
+        status = self.user.latest("CONTROLLER_STATUS")
+        state = self.user.latest("JOINT_STATE")
+        lines = []
+        if status is not None:
+            lines.append(f"controller: mode {status.mode} reason {status.reason}")
+        if state is not None:
+            lines.append(f"driver: state {state.drive_state} fault {state.fault} joint {state.fault_joint}")
+        return "\n".join(lines + [f"--- {tag}\n{self.log(tag)}" for tag in self.processes])
+
+    def bring_to(self, mode: int) -> None:
+        """Asks again and again, as an operator would, until the controller is in HOLD or ACTIVE."""
+        ask = {
+            controller_status_t.MODE_HOLD: mode_request_t.REQUEST_HOLD,
+            controller_status_t.MODE_ACTIVE: mode_request_t.REQUEST_ACTIVE,
+        }
+        end = time.monotonic() + 20
+        while self.mode != mode and time.monotonic() < end:
+            below_hold = self.mode is None or self.mode < controller_status_t.MODE_HOLD
+            self.request(mode_request_t.REQUEST_HOLD if below_hold else ask[mode])
+            time.sleep(0.1)
+        assert self.mode == mode, f"mode {mode} not reached\n{self.describe()}"
+
+    def close(self) -> None:
+        for process in self.processes.values():
+            if process.poll() is None:
+                process.terminate()
+        for process in self.processes.values():
+            try:
+                process.wait(timeout=5)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        self.user.close()
