@@ -1,6 +1,6 @@
-// JOINT_STATE published -> JOINT_TORQUE received, through the real controller process, beside a bare UDP multicast ping-pong
-// of the same sizes between two processes, in alternating batches of the same run. Prints one JSON line; the figure that
-// travels between machines is the ratio.
+// JOINT_STATE published -> JOINT_TORQUE received, through the real controller process, beside a
+// bare UDP multicast ping-pong of the same sizes between two processes, in alternating batches of
+// the same run. Prints one JSON line; the figure that travels between machines is the ratio.
 //
 //   limber-bench-loop --controller build/release/bin/limber-controller [--rounds 20000]
 #include <arpa/inet.h>
@@ -48,7 +48,8 @@ pid_t spawn(Body body) {
   return child;
 }
 
-/// A multicast socket that hears `port` and can send to any port of the group, on this machine only.
+/// A multicast socket that hears `port` and can send to any port of the group, on this machine
+/// only.
 int multicast_socket(int port) {
   const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
   const int on = 1;
@@ -101,11 +102,14 @@ class FakeDriver {
       state_.q[i] = state_.theta[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
       state_.joint_flags[i] = joint_state_t::JOINT_FRESH | joint_state_t::JOINT_ENABLED;
     }
-    arm_.subscribe<joint_torque_t>(channels::kJointTorque, 10, [this](const joint_torque_t& torque) {
-      if (torque.state_seq == state_.seq) answer_ = torque, answered_ = true;
-    });
-    user_.subscribe<controller_status_t>(channels::kControllerStatus, 10,
-                                         [this](const controller_status_t& status) { mode_ = status.mode; });
+    arm_.subscribe<joint_torque_t>(channels::kJointTorque, 10,
+                                   [this](const joint_torque_t& torque) {
+                                     if (torque.state_seq == state_.seq)
+                                       answer_ = torque, answered_ = true;
+                                   });
+    user_.subscribe<controller_status_t>(
+        channels::kControllerStatus, 10,
+        [this](const controller_status_t& status) { mode_ = status.mode; });
   }
 
   /// One cycle; returns the round trip in ns, or -1 if no answer came within a second.
@@ -114,7 +118,8 @@ class FakeDriver {
     const std::int64_t start = monotonic_ns();
     arm_.publish(channels::kJointState, state_);
     const int descriptor = arm_.descriptor();
-    while (!answered_ && wait_readable(std::span(&descriptor, 1), start + 1'000'000'000)) arm_.handle_waiting();
+    while (!answered_ && wait_readable(std::span(&descriptor, 1), start + 1'000'000'000))
+      arm_.handle_waiting();
     const std::int64_t taken = monotonic_ns() - start;
     if (!answered_) return -1;
     ++state_.seq;
@@ -137,7 +142,8 @@ class FakeDriver {
         user_.publish(channels::kModeRequest, request);
       }
     }
-    if (mode_ != controller_status_t::MODE_ACTIVE) throw std::runtime_error("the controller did not become ACTIVE");
+    if (mode_ != controller_status_t::MODE_ACTIVE)
+      throw std::runtime_error("the controller did not become ACTIVE");
   }
 
   const joint_state_t& state() const { return state_; }
@@ -161,7 +167,8 @@ std::int64_t ping(int descriptor, const std::vector<char>& message, std::vector<
 void run(const std::string& controller, int rounds) {
   const LoadedRobot robot = load_robot("openarm");
   const pid_t child = spawn([&] {
-    execl(controller.c_str(), controller.c_str(), "--robot", "openarm", static_cast<char*>(nullptr));
+    execl(controller.c_str(), controller.c_str(), "--robot", "openarm",
+          static_cast<char*>(nullptr));
   });
   const std::size_t state_bytes = static_cast<std::size_t>(joint_state_t().getEncodedSize());
   const std::size_t torque_bytes = static_cast<std::size_t>(joint_torque_t().getEncodedSize());
@@ -192,11 +199,12 @@ void run(const std::string& controller, int rounds) {
       " \"limber_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
       " \"udp_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
       " \"ratio_p50\": {:.2f}, \"ratio_p99\": {:.2f}}}\n",
-      rounds, grant.fifo, state_bytes, torque_bytes, us(limber_time.quantile(0.5)), us(limber_time.quantile(0.99)),
-      us(limber_time.quantile(0.999)), us(udp_time.quantile(0.5)), us(udp_time.quantile(0.99)),
-      us(udp_time.quantile(0.999)),
+      rounds, grant.fifo, state_bytes, torque_bytes, us(limber_time.quantile(0.5)),
+      us(limber_time.quantile(0.99)), us(limber_time.quantile(0.999)), us(udp_time.quantile(0.5)),
+      us(udp_time.quantile(0.99)), us(udp_time.quantile(0.999)),
       static_cast<double>(limber_time.quantile(0.5)) / static_cast<double>(udp_time.quantile(0.5)),
-      static_cast<double>(limber_time.quantile(0.99)) / static_cast<double>(udp_time.quantile(0.99)));
+      static_cast<double>(limber_time.quantile(0.99)) /
+          static_cast<double>(udp_time.quantile(0.99)));
 }
 
 }  // namespace
@@ -205,7 +213,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP multicast ping-pong."};
   std::string controller;
   int rounds = 20'000;
-  app.add_option("--controller", controller, "limber-controller to measure")->required()->check(CLI::ExistingFile);
+  app.add_option("--controller", controller, "limber-controller to measure")
+      ->required()
+      ->check(CLI::ExistingFile);
   app.add_option("--rounds", rounds)->check(CLI::Range(200, 10'000'000));
   CLI11_PARSE(app, argc, argv);
   try {

@@ -4,7 +4,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,49 +20,64 @@ struct Range {
 /// only.
 class YamlMap {
  public:
-  /// Reads a whole file. Refuses: unreadable, larger than 1 MiB, not a mapping, duplicate keys,
-  /// aliases and anchors.
+  /// Reads a whole file. Refuses: unreadable, larger than 1 MiB, not one mapping, duplicate keys,
+  /// aliases, anchors, tags, nesting deeper than 12.
   static YamlMap from_file(const std::string& path);
   /// The same from text; `name` stands for the file in messages.
   static YamlMap from_text(const std::string& text, const std::string& name);
 
+  /// Whether the key is there; marks it as known.
   bool has(const std::string& key) const;
+  /// Whether the key's value is a list (or a mapping); marks it as known.
+  bool is_list(const std::string& key) const;
+  bool is_map(const std::string& key) const;
 
   /// A finite number within the range. "1,5", "nan", "inf", "12kg" and quoted text are refused.
-  double number(const std::string& key, Range allowed);
-  double number_or(const std::string& key, Range allowed, double otherwise);
-  long integer(const std::string& key, long low, long high);
-  long integer_or(const std::string& key, long low, long high, long otherwise);
-  bool boolean_or(const std::string& key, bool otherwise);
-  std::string text(const std::string& key);
-  std::string text_or(const std::string& key, const std::string& otherwise);
+  double number(const std::string& key, Range allowed) const;
+  double number_or(const std::string& key, Range allowed, double otherwise) const;
+  long integer(const std::string& key, long low, long high) const;
+  long integer_or(const std::string& key, long low, long high, long otherwise) const;
+  bool boolean_or(const std::string& key, bool otherwise) const;
+  /// Text that is not empty.
+  std::string text(const std::string& key) const;
+  std::string text_or(const std::string& key, const std::string& otherwise) const;
   /// One of the words; the message lists them.
-  std::string word(const std::string& key, const std::vector<std::string>& allowed);
+  std::string word(const std::string& key, const std::vector<std::string>& allowed) const;
   std::string word_or(const std::string& key, const std::vector<std::string>& allowed,
-                      const std::string& otherwise);
+                      const std::string& otherwise) const;
   /// A sequence of numbers. `size` -1: any length. A single number is repeated `size` times where
   /// `broadcast` is set.
   std::vector<double> numbers(const std::string& key, int size, Range allowed,
-                              bool broadcast = false);
-  std::vector<std::string> texts(const std::string& key);
+                              bool broadcast = false) const;
+  /// A sequence of `rows` sequences of `columns` numbers, row by row.
+  std::vector<double> matrix(const std::string& key, int rows, int columns, Range allowed) const;
 
-  YamlMap map(const std::string& key);
+  YamlMap map(const std::string& key) const;
   /// A sequence of mappings.
-  std::vector<YamlMap> maps(const std::string& key);
+  std::vector<YamlMap> maps(const std::string& key) const;
   /// The keys of this mapping in file order (for maps from names to things); marks them as known.
-  std::vector<std::string> keys();
+  std::vector<std::string> keys() const;
 
   /// Refuses keys that were never asked for: "unknown key 'x'; allowed here: ...".
   void finish() const;
 
   /// A complaint about this mapping's key, for checks that need more than a range.
   [[noreturn]] void refuse(const std::string& key, const std::string& problem) const;
+  /// A complaint about this mapping as a whole.
+  [[noreturn]] void refuse(const std::string& problem) const;
+  /// Line of the key, or of this mapping if the key is not there.
   int line_of(const std::string& key) const;
-  const std::string& file() const;
+  int line() const;
+  const std::string& file() const { return *file_; }
 
  private:
-  struct Shared;
   YamlMap(YAML::Node node, std::string path, std::shared_ptr<const std::string> file);
+  YAML::Node find(const std::string& key) const;
+  YAML::Node need(const std::string& key, const std::string& what) const;
+  std::string path_to(const std::string& key) const;
+  double to_number(const std::string& key, const YAML::Node& node, Range allowed) const;
+  [[noreturn]] void complain(const YAML::Node& node, const std::string& key,
+                             const std::string& problem) const;
 
   YAML::Node node_;
   std::string path_;

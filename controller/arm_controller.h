@@ -1,5 +1,5 @@
-// The controller without its sockets: one JOINT_STATE in, one JOINT_TORQUE out. The process (controller/main.cc) and the lab
-// call the same members, from one thread.
+// The controller without its sockets: one JOINT_STATE in, one JOINT_TORQUE out. The process
+// (controller/main.cc) and the lab call the same members, from one thread.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,10 @@
 namespace limber {
 
 struct ArmControllerOptions {
-  std::int64_t controller = 1;  ///< names this run; random in realtime, from the seed in lock step; never 0
+  std::int64_t controller =
+      1;  ///< names this run; random in realtime, from the seed in lock step; never 0
   std::string law = "cartesian_impedance";  ///< the law ACTIVE starts with
-  bool measure_time = true;     ///< false in lock step: no clock is read
+  bool measure_time = true;                 ///< false in lock step: no clock is read
 };
 
 class ArmController {
@@ -30,21 +31,23 @@ class ArmController {
   ArmController(const LoadedRobot& robot, const ArmControllerOptions& options);
   ~ArmController();
 
-  /// The cycle: state in, terms, law, null space, gravity, limits, torque out. Any state is answered: one that is stale,
-  /// repeated (same seq: the same answer again, nothing advances), from another session or not finite is handled as the
-  /// supervisor's table says. No allocation, lock, log or exception.
+  /// The cycle: state in, terms, law, null space, gravity, limits, torque out. Any state is
+  /// answered: one that is stale, repeated (same seq: the same answer again, nothing advances),
+  /// from another session or not finite is handled as the supervisor's table says. No allocation,
+  /// lock, log or exception.
   const joint_torque_t& step(const joint_state_t& state) noexcept;
 
   /// Messages of the timeline that are due are applied at the start of step(), before the law runs.
   void set_timeline(const std::vector<TimedMessage>* timeline) noexcept;
 
-  // Requests from outside, between cycles. A refused one changes nothing and is counted; the return says why
-  // (nullptr: accepted). Goals and gains act from the next step(), without a torque jump.
+  // Requests from outside, between cycles. A refused one changes nothing and is counted; the return
+  // says why (nullptr: accepted). Goals and gains act from the next step(), without a torque jump.
   const char* on_mode(const mode_request_t& request) noexcept;
   const char* on_goal(const compliance_goal_t& goal) noexcept;
   const char* on_gains(const compliance_gains_t& gains) noexcept;
 
-  /// Realtime only: no JOINT_STATE for this long. The supervisor enters FAULT; the next answer says so.
+  /// Realtime only: no JOINT_STATE for this long. The supervisor enters FAULT; the next answer says
+  /// so.
   void on_silence() noexcept;
 
   const controller_status_t& status() const noexcept;

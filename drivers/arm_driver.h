@@ -7,6 +7,7 @@
 #include <limber/joint_state_t.hpp>
 #include <limber/joint_torque_t.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "drivers/can/can_bus.h"
@@ -44,6 +45,15 @@ class ArmDriver {
 
   /// Asks for the arm to be held by the drives themselves, whatever the controller says (operator, overrun).
   void request_hold(int fault) noexcept;
+
+  /// Ends the session for good: drives that are enabled brake for 0.3 s, then are disabled; the controller is not heard
+  /// any more. Keep cycling until shut_down() (true when every drive that answers reports disabled).
+  void request_shut_down() noexcept;
+  bool shut_down() const noexcept;
+
+  /// The drive whose start-up dialogue failed, in words ("joint3: TMAX is 10, robot.yaml says 28"); empty if none did.
+  /// Allocates: for messages, outside the cycle.
+  std::string configuration_problem() const;
 
   /// Counters and states; timing fields are left for the process to fill.
   void fill_status(driver_status_t* status) const noexcept;

@@ -1,4 +1,5 @@
-// Reads a robot folder (robot.urdf + robot.yaml) or a bare URDF, checks all of it, builds the kinematic chain.
+// Reads a robot folder (robot.urdf + robot.yaml) or a bare URDF, checks all of it, builds the
+// kinematic chain.
 #pragma once
 
 #include <kdl/chain.hpp>
@@ -10,8 +11,9 @@
 namespace limber {
 
 /// A checked arm: plain data and the KDL chain from base to tip.
-/// The chain's inertias carry every side branch and everything behind the tip as load (branch joints frozen at zero);
-/// fixed and massless links stay as segments. KDL joint inertia is left zero: rotors are in DriveConfig.
+/// The chain's inertias carry every side branch and everything behind the tip as load (branch
+/// joints frozen at zero); fixed and massless links stay as segments. KDL joint inertia is left
+/// zero: rotors are in DriveConfig.
 struct LoadedRobot {
   Robot robot;
   KDL::Chain chain;
@@ -21,11 +23,13 @@ struct LoadedRobot {
   std::vector<std::string> notes;
 };
 
-/// Loads `name_or_path`: a folder with robot.yaml, or the name of a shipped robot (looked up below `robots_root()`).
-/// Throws ConfigError naming file, line, key, value and what is allowed. Set-up only.
+/// Loads `name_or_path`: a folder with robot.yaml, or the name of a shipped robot (looked up below
+/// `robots_root()`). Throws ConfigError naming file, line, key, value and what is allowed. Set-up
+/// only.
 LoadedRobot load_robot(const std::string& name_or_path);
 
-/// Loads a bare URDF; limits come from the URDF, there are no drives. gravity in axes of the URDF's root link.
+/// Loads a bare URDF; limits come from the URDF, there are no drives. gravity in axes of the URDF's
+/// root link.
 LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, const std::string& tip,
                       const double gravity[3]);
 

@@ -1,5 +1,5 @@
-// What robot.yaml and robot.urdf say of one arm, checked, in SI. Plain data: no Eigen, no KDL, so that the driver and its
-// gate stay small. The kinematic chain itself is in robots/load_robot.h.
+// What robot.yaml and robot.urdf say of one arm, checked, in SI. Plain data: no Eigen, no KDL, so
+// that the driver and its gate stay small. The kinematic chain itself is in robots/load_robot.h.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace limber {
 
-/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME" or "socketcan:IFACE".
+/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME"
+/// or "socketcan:IFACE".
 struct BusConfig {
   std::string name;
   std::string can;
@@ -41,14 +42,14 @@ struct DriveConfig {
   double offset_rad = 0.0;  ///< drive angle at joint zero
   MitRange range;
   double gear_ratio = 1.0;
-  double rotor_inertia_kgm2 = 0.0;          ///< reflected: rotor inertia times gear ratio squared (B)
-  double torque_constant_Nm_per_A = 1.0;    ///< at the joint
-  double peak_torque_Nm = 0.0;              ///< current limit of the drive, as torque at the joint
-  double short_circuit_damping_Nms = 0.0;   ///< joint damping with shorted phases (kDamp)
-  double watchdog_s = 0.02;                 ///< written to the drive at start and read back
+  double rotor_inertia_kgm2 = 0.0;        ///< reflected: rotor inertia times gear ratio squared (B)
+  double torque_constant_Nm_per_A = 1.0;  ///< at the joint
+  double peak_torque_Nm = 0.0;            ///< current limit of the drive, as torque at the joint
+  double short_circuit_damping_Nms = 0.0;  ///< joint damping with shorted phases (kDamp)
+  double watchdog_s = 0.02;                ///< written to the drive at start and read back
   NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
-  int encoder_bits = 14;                    ///< per joint revolution
-  double hold_kp_Nm_per_rad = 0.0;          ///< driver's own holding when the controller is lost
+  int encoder_bits = 14;            ///< per joint revolution
+  double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;
 };
 
@@ -70,9 +71,10 @@ struct JointConfig {
   JointType type = JointType::kRevolute;
   double position_min = 0.0;  ///< -inf for continuous joints
   double position_max = 0.0;
-  double velocity_limit = 0.0;     ///< rad/s
+  double velocity_limit = 0.0;  ///< rad/s
   double torque_limit_Nm = 0.0;
-  double torque_rate_limit_Nm_per_s = 0.0;  ///< what the gate lets pass from cycle to cycle, times the rate
+  double torque_rate_limit_Nm_per_s =
+      0.0;  ///< what the gate lets pass from cycle to cycle, times the rate
   double home = 0.0;
   DriveConfig drive;
   FrictionConfig friction;
@@ -80,18 +82,18 @@ struct JointConfig {
 
 /// Gains a robot starts with.
 struct DefaultGains {
-  std::vector<double> K_q;            ///< N m/rad, joint impedance and HOLD
+  std::vector<double> K_q;  ///< N m/rad, joint impedance and HOLD
   double joint_damping_ratio = 0.7;
   double K_x_translation_N_per_m = 500.0;
   double K_x_rotation_Nm_per_rad = 20.0;
   double damping_ratio = 0.7;
-  std::vector<double> K_null;         ///< N m/rad
-  std::vector<double> D_null;         ///< N m s/rad
+  std::vector<double> K_null;  ///< N m/rad
+  std::vector<double> D_null;  ///< N m s/rad
 };
 
 struct Robot {
   std::string name;
-  std::string folder;     ///< where robot.yaml lies; empty for a bare URDF
+  std::string folder;  ///< where robot.yaml lies; empty for a bare URDF
   std::string urdf_path;
   std::string base;
   std::string tip;

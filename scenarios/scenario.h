@@ -1,6 +1,6 @@
-// A scenario file: which arm, which world, what happens when. The same file drives `limber run` (three processes) and
-// `limber lab` (one process); each process takes its own part of the timeline, by arm time, so that nothing depends on
-// when a message happens to arrive.
+// A scenario file: which arm, which world, what happens when. The same file drives `limber run`
+// (three processes) and `limber lab` (one process); each process takes its own part of the
+// timeline, by arm time, so that nothing depends on when a message happens to arrive.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,12 @@
 
 namespace limber {
 
-using ScenarioMessage = std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, push_t, scenario_event_t>;
+using ScenarioMessage =
+    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, push_t, scenario_event_t>;
 
 struct TimedMessage {
-  std::int64_t time_ns = 0;  ///< arm time at which it acts: the first cycle whose time is not before it
+  std::int64_t time_ns =
+      0;  ///< arm time at which it acts: the first cycle whose time is not before it
   ScenarioMessage message;
 };
 
@@ -29,27 +31,30 @@ enum class Integrator : std::uint8_t { kOde, kReference };
 struct Scenario {
   std::string name;
   std::string path;
-  std::string robot;       ///< name or folder, as written
-  bool lockstep = true;    ///< the file's wish; the command line may say otherwise
+  std::string robot;     ///< name or folder, as written
+  bool lockstep = true;  ///< the file's wish; the command line may say otherwise
   double duration_s = 10.0;
   std::uint64_t seed = 1;
   Integrator integrator = Integrator::kOde;
   double step_s = 250e-6;  ///< integration step; a whole number of them makes a control period
   bool friction = true;
-  std::vector<double> start_q;  ///< pose of the simulated arm at time zero; defaults to home
+  std::vector<double> start_q;         ///< pose of the simulated arm at time zero; defaults to home
   std::vector<TimedMessage> timeline;  ///< sorted by time, file order within the same time
 };
 
 /// The lease every scenario's requests use.
 inline constexpr std::int64_t kScenarioClient = 0x5343454E;
 
-/// Reads and checks a scenario against its robot. Throws ConfigError (file, line, key, value, what is allowed).
+/// Reads and checks a scenario against its robot. Throws ConfigError (file, line, key, value, what
+/// is allowed).
 Scenario load_scenario(const std::string& path, const LoadedRobot& robot);
 
-/// Only the robot's name or folder (relative paths are taken from the scenario's folder), to load it first.
+/// Only the robot's name or folder (relative paths are taken from the scenario's folder), to load
+/// it first.
 std::string scenario_robot(const std::string& path);
 
-/// Walks the timeline. due() returns the next message whose time has come, or nullptr; no allocation.
+/// Walks the timeline. due() returns the next message whose time has come, or nullptr; no
+/// allocation.
 class Timeline {
  public:
   explicit Timeline(const std::vector<TimedMessage>* messages) : messages_(messages) {}

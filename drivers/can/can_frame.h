@@ -6,6 +6,9 @@
 
 namespace limber {
 
+inline constexpr std::uint32_t kStandardIdMax = 0x7FF;
+inline constexpr std::uint32_t kExtendedIdMax = 0x1FFFFFFF;
+
 struct CanFrame {
   std::uint32_t id = 0;       ///< 11 or 29 bits, without flags
   bool extended = false;      ///< 29-bit identifier
@@ -20,5 +23,9 @@ struct CanFrame {
 
 /// Rounds a payload length up to one an FD frame can have (0..8, 12, 16, 20, 24, 32, 48, 64). -1 above 64.
 int fd_length(int bytes);
+
+/// Whether a bus could carry this frame: id within 11 or 29 bits, a length the format has, no remote FD frame.
+/// Every bus refuses to send what is not possible, and counts it as malformed when received. Allowed inside the cycle.
+bool is_possible(const CanFrame& frame) noexcept;
 
 }  // namespace limber

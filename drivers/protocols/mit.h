@@ -47,11 +47,13 @@ enum class Register : std::uint8_t {
 inline constexpr std::uint32_t kRegisterId = 0x7FF;
 inline constexpr double kTimeoutCount_s = 50e-6;
 
-/// The half count that a truncating sender's values lie below the truth on average: add it to a decoded field.
+/// The half count that a truncating sender's values lie below the truth on average: add it to a decoded field that spans
+/// -range to +range. A truncated zero then decodes to exactly 0.
 double half_count(double range, int bits) noexcept;
 
-// Master to drive. Values outside the ranges saturate; a non-finite value gives false and no frame. The one command that
-// would read as a special frame (all fields saturated at the top) is moved down by one torque count.
+// Master to drive. Values outside the ranges saturate; a non-finite value (or range) gives false and leaves the frame alone.
+// A command that would read as a special frame (torque within four counts of the top, all other fields at the top) is
+// moved down to the first torque count that does not.
 [[nodiscard]] bool encode_command(const Command& command, const MitRange& range, std::uint32_t id, bool fd,
                                   Quantiser quantiser, CanFrame* frame) noexcept;
 CanFrame encode_special(Special special, std::uint32_t id, bool fd) noexcept;
@@ -77,6 +79,7 @@ struct RegisterRequest {
   std::uint32_t raw_value = 0;
 };
 [[nodiscard]] bool decode_register_request(const CanFrame& frame, RegisterRequest* request) noexcept;
+/// Values outside the ranges saturate; NaN, which no physical state holds, becomes the lowest count.
 CanFrame encode_reply(const Reply& reply, const MitRange& range, std::uint32_t reply_id, bool fd,
                       Quantiser quantiser) noexcept;
 CanFrame encode_register_answer(const RegisterRequest& request, std::uint32_t raw_value,

@@ -1,0 +1,148 @@
+// What a control cycle costs: arm terms beside bare KDL calls, each law through the whole
+// controller, the whole lab. Figures that travel are ratios within one run.
+#include <benchmark/benchmark.h>
+
+#include <kdl/chaindynparam.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
+#include <string>
+
+#include "controller/arm_controller.h"
+#include "controller/arm_terms.h"
+#include "lab/lab.h"
+
+namespace {
+
+using namespace limber;
+
+const LoadedRobot& openarm() {
+  static const LoadedRobot robot = load_robot("openarm");
+  return robot;
+}
+
+VectorJ home() {
+  VectorJ q(openarm().robot.size());
+  for (int i = 0; i < q.size(); ++i)
+    q[i] = openarm().robot.joints[static_cast<std::size_t>(i)].home;
+  return q;
+}
+
+/// The peer of BM_ArmTerms: what a user of KDL would call for pose, J, M, C v and g.
+void BM_BareKdl(benchmark::State& run) {
+  const KDL::Chain& chain = openarm().chain;
+  KDL::ChainFkSolverPos_recursive position(chain);
+  KDL::ChainJntToJacSolver jacobian(chain);
+  const double* g = openarm().robot.gravity;
+  KDL::ChainDynParam dynamics(chain, KDL::Vector(g[0], g[1], g[2]));
+  const unsigned n = chain.getNrOfJoints();
+  KDL::JntArray q(n), v(n), c(n), gravity(n);
+  q.data = home();
+  KDL::Frame tip;
+  KDL::Jacobian J(n);
+  KDL::JntSpaceInertiaMatrix M(n);
+  for (auto _ : run) {
+    position.JntToCart(q, tip);
+    jacobian.JntToJac(q, J);
+    dynamics.JntToMass(q, M);
+    dynamics.JntToCoriolis(q, v, c);
+    dynamics.JntToGravity(q, gravity);
+    benchmark::DoNotOptimize(M.data.data());
+  }
+}
+BENCHMARK(BM_BareKdl);
+
+void BM_ArmTerms(benchmark::State& run) {
+  controller::ArmModel model(openarm());
+  controller::ArmTerms terms(model.size());
+  const VectorJ q = home();
+  const VectorJ v = VectorJ::Constant(model.size(), 0.1);
+  for (auto _ : run) {
+    model.evaluate(q, v, &terms);
+    benchmark::DoNotOptimize(terms.M.data());
+  }
+}
+BENCHMARK(BM_ArmTerms);
+
+/// A controller that has been led to ACTIVE by a driver that answers at once.
+class ActiveController {
+ public:
+  explicit ActiveController(const std::string& law) : controller_(openarm(), options(law)) {
+    state_.session = 1;
+    state_.period_ns = 1'000'000;
+    state_.num_joints = static_cast<std::int8_t>(openarm().robot.size());
+    state_.drive_state = joint_state_t::DRIVE_OFF;
+    const VectorJ q = home();
+    for (int i = 0; i < q.size(); ++i) {
+      state_.q[i] = state_.theta[i] = q[i];
+      state_.joint_flags[i] = joint_state_t::JOINT_FRESH | joint_state_t::JOINT_ENABLED;
+    }
+    ask_at(200, mode_request_t::REQUEST_HOLD);
+    ask_at(1500, mode_request_t::REQUEST_ACTIVE);
+    while (state_.seq < 3000) step();
+  }
+
+  bool active() const { return controller_.status().mode == controller_status_t::MODE_ACTIVE; }
+
+  const joint_torque_t& step() {
+    const joint_torque_t& torque = controller_.step(state_);
+    if (torque.request == joint_torque_t::REQUEST_ON) state_.drive_state = joint_state_t::DRIVE_ON;
+    std::copy(torque.tau, torque.tau + kMaxJoints, state_.tau_applied);
+    ++state_.seq;
+    state_.time_ns += state_.period_ns;
+    return torque;
+  }
+
+ private:
+  static ArmControllerOptions options(const std::string& law) {
+    ArmControllerOptions options;
+    options.law = law;
+    options.measure_time = false;
+    return options;
+  }
+  void ask_at(std::int64_t seq, std::int8_t what) {
+    while (state_.seq < seq) step();
+    mode_request_t request{};
+    request.seq = seq;
+    request.client = 1;
+    request.request = what;
+    controller_.on_mode(request);
+  }
+
+  ArmController controller_;
+  joint_state_t state_{};
+};
+
+void BM_ControllerCycle(benchmark::State& run, const std::string& law) {
+  ActiveController controller(law);
+  if (!controller.active()) run.SkipWithError("the controller did not become ACTIVE");
+  for (auto _ : run) benchmark::DoNotOptimize(controller.step().tau[0]);
+}
+
+/// Driver, bus, seven nodes, ODE arm at its default step, controller: one period.
+void BM_LabCycle(benchmark::State& run, Integrator integrator) {
+  Scenario scenario;
+  scenario.integrator = integrator;
+  mode_request_t hold{};
+  hold.client = kScenarioClient;
+  hold.request = mode_request_t::REQUEST_HOLD;
+  scenario.timeline.push_back({300'000'000, hold});
+  Lab lab(openarm(), scenario);
+  while (lab.cycles() < 1500) lab.step();
+  for (auto _ : run) lab.step();
+  run.counters["x_real_time"] = benchmark::Counter(
+      static_cast<double>(run.iterations()) / openarm().robot.rate_hz, benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(BM_LabCycle, ode, Integrator::kOde);
+BENCHMARK_CAPTURE(BM_LabCycle, reference, Integrator::kReference);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const std::string& law : law_names()) {
+    benchmark::RegisterBenchmark(("BM_ControllerCycle/" + law).c_str(), BM_ControllerCycle, law);
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -1,0 +1,16 @@
+// "Did you mean": the known word nearest to a misspelt one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace limber {
+
+/// The word that takes the fewest single-letter edits, if they are few enough to be a slip; else
+/// empty.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+/// "a, b, c".
+std::string joined(const std::vector<std::string>& words);
+
+}  // namespace limber

@@ -1,0 +1,44 @@
+// What the joints report in one cycle, as vectors.
+#pragma once
+
+#include <cstdint>
+#include <limber/joint_state_t.hpp>
+
+#include "common/types.h"
+
+namespace limber::controller {
+
+/// Joint order of robot.yaml; rad, rad/s, N m (m, m/s, N for prismatic joints).
+struct ArmState {
+  explicit ArmState(int joints)
+      : q(VectorJ::Zero(joints)),
+        v(VectorJ::Zero(joints)),
+        theta(VectorJ::Zero(joints)),
+        theta_dot(VectorJ::Zero(joints)),
+        tau_measured(VectorJ::Zero(joints)),
+        tau_applied(VectorJ::Zero(joints)) {}
+
+  VectorJ q;             ///< link side
+  VectorJ v;             ///< link side
+  VectorJ theta;         ///< motor side, behind the gear
+  VectorJ theta_dot;     ///< motor side, behind the gear
+  VectorJ tau_measured;  ///< as the drive reports it
+  VectorJ tau_applied;   ///< what the drive was sent in this cycle
+  std::int64_t time_ns = 0;
+  double period_s = 0.0;
+};
+
+/// Copies a message that has been judged usable. May be called in the cycle.
+inline void read_arm_state(const joint_state_t& message, ArmState* state) noexcept {
+  const auto n = state->q.size();
+  state->q = Eigen::Map<const Eigen::VectorXd>(message.q, n);
+  state->v = Eigen::Map<const Eigen::VectorXd>(message.v, n);
+  state->theta = Eigen::Map<const Eigen::VectorXd>(message.theta, n);
+  state->theta_dot = Eigen::Map<const Eigen::VectorXd>(message.theta_dot, n);
+  state->tau_measured = Eigen::Map<const Eigen::VectorXd>(message.tau, n);
+  state->tau_applied = Eigen::Map<const Eigen::VectorXd>(message.tau_applied, n);
+  state->time_ns = message.time_ns;
+  state->period_s = static_cast<double>(message.period_ns) * 1e-9;
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,47 @@
+// The controller with its sockets: waits for states, answers them, hears users.
+#pragma once
+
+#include <cstdint>
+#include <limber/joint_state_t.hpp>
+
+#include "common/lcm_port.h"
+#include "controller/arm_controller.h"
+
+namespace limber {
+
+struct ControllerProcessOptions {
+  bool lockstep = false;    ///< every state is answered in order; no clock decides anything
+  double duration_s = 0.0;  ///< ends by itself after this long; 0: never
+};
+
+class ControllerProcess {
+ public:
+  /// Opens both planes. The controller outlives the process. Throws ConfigError.
+  ControllerProcess(ArmController* controller, const ControllerProcessOptions& options);
+
+  /// Runs until the duration is over or `stop` becomes true.
+  void run(const volatile bool& stop) noexcept;
+
+ private:
+  /// Without a state for this long the arm counts as out of reach.
+  static constexpr std::int64_t kSilence_ns = 100'000'000;
+
+  void on_state(const joint_state_t& state) noexcept;
+  void answer(const joint_state_t& state) noexcept;
+  void handle_waiting() noexcept;
+  void watch_silence() noexcept;
+  void complain(const char* what, const char* reason) noexcept;
+
+  ArmController* controller_;
+  ControllerProcessOptions options_;
+  LcmPort arm_;
+  LcmPort user_;
+  joint_state_t newest_{};
+  bool waiting_ = false;
+  std::int64_t answered_session_ = 0;
+  std::int64_t answered_seq_ = -1;
+  std::int64_t heard_ns_ = 0;
+  std::int64_t complained_ns_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,51 @@
+// The part of controller_status_t that TorqueCycle answers for.
+#include "controller/pose_error.h"
+#include "controller/torque_cycle.h"
+
+namespace limber::controller {
+namespace {
+
+void write(const VectorJ& tau, float (&field)[kMaxJoints]) noexcept {
+  for (Eigen::Index i = 0; i < tau.size(); ++i) field[i] = static_cast<float>(tau[i]);
+}
+
+void write(const Vector6& vector, double (&field)[6]) noexcept {
+  Vector6::Map(field) = vector;
+}
+
+void write(const Pose& pose, double (&p)[3], double (&quat)[4]) noexcept {
+  Eigen::Vector3d::Map(p) = pose.p;
+  const double sign = pose.Q.w() < 0.0 ? -1.0 : 1.0;
+  quat[0] = sign * pose.Q.w();
+  for (int i = 0; i < 3; ++i) quat[i + 1] = sign * pose.Q.vec()[i];
+}
+
+}  // namespace
+
+void TorqueCycle::describe(controller_status_t* status) noexcept {
+  status->law = static_cast<std::int8_t>(selected_);
+  status->num_joints = static_cast<std::int8_t>(model_.size());
+  status->limits = limits_active_;
+  // A law that follows joints has its goal at the tip too.
+  const Pose X_BD = entry().follows == Follows::kJointGoal ? model_.tip_pose(goals_.goal().q_d)
+                                                           : goals_.goal().X_BD;
+  write(terms_.X_BT, status->p_BT, status->quat_BT);
+  write(terms_.V_BT, status->V_BT);
+  write(X_BD, status->p_BD, status->quat_BD);
+  write(pose_error(terms_.X_BT, X_BD, gains_.now().orientation).e, status->e);
+  write(law_.F, status->F_law);
+  status->kinetic_energy_J = terms_.kinetic_energy(state_.v);
+  status->spring_energy_J = law_.spring_energy_J;
+  describe_parts(status);
+}
+
+void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
+  write(law_.tau_stiffness + law_.tau_feedforward, status->tau_stiffness);
+  write(law_.tau_damping, status->tau_damping);
+  write(tau_null_, status->tau_null);
+  write(tau_gravity_, status->tau_gravity);
+  write(tau_coriolis_, status->tau_coriolis);
+  write(limits_.previous(), status->tau_sent);
+}
+
+}  // namespace limber::controller

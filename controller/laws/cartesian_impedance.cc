@@ -1,0 +1,68 @@
+// A spring and a damper between tip and goal, without shaping the inertia (Hogan 1985).
+//   F   = -h A^T K_x e - D_x (V - V_d) + F_ff,   tau = J^T F + g + C v + null space
+//   tip:  Lambda (dV/dt - Jdot v) + D_x (V - V_d) + h A^T K_x e = F_ext + F_ff
+// A is the error-rate matrix, without which a spring with unequal rotational stiffness would feed
+// energy in. D_x: double diagonalisation of (Lambda with rotors, K_x) every cycle, so that every
+// mode within reach has the damping ratio at this pose, plus a floor where K_x is zero.
+// h <= 1 limits the spring's force, see spring_limit.h. Rows of K_x may be zero: the tip is then
+// free in that direction, and the null space gains it.
+#include <limber/controller_status_t.hpp>
+
+#include "controller/damping_design.h"
+#include "controller/laws/law.h"
+#include "controller/pose_error.h"
+#include "controller/spring_limit.h"
+
+namespace limber::controller {
+namespace {
+
+class CartesianImpedance : public Law {
+ public:
+  void start(const LawInputs& in) noexcept override { read_stiffness(in.gains.K_x); }
+
+  void compute(const LawInputs& in, LawOutput* out) noexcept override {
+    if (in.gains.K_x != K_x_) read_stiffness(in.gains.K_x);
+    const auto JT = in.terms.J.transpose();
+    const PoseError error = pose_error(in.terms.X_BT, in.goal.X_BD, in.gains.orientation);
+
+    const Vector6 Ke = K_x_ * error.e;
+    const LimitedSpring spring = limit_.apply(0.5 * error.e.dot(Ke));
+    const Vector6 F_spring = -spring.scale * (error.A.transpose() * Ke);
+    const Matrix6 D_x = floor_ + tip_damping(tip_mobility(in.terms.J, in.terms.Minv_JT), K_x_,
+                                             in.gains.damping_ratio);
+    const Vector6 F_damping = -D_x * (in.terms.V_BT - in.goal.V_BD);
+
+    out->F = F_spring + F_damping + in.goal.F_ff;
+    out->tau_stiffness = JT * F_spring;
+    out->tau_damping = JT * F_damping;
+    out->tau_feedforward = JT * in.goal.F_ff;
+    out->spring_energy_J = spring.energy_J;
+    if (spring.scale < 1.0) out->limits |= controller_status_t::LIMIT_ERROR;
+  }
+
+ private:
+  void read_stiffness(const Matrix6& K_x) noexcept {
+    K_x_ = K_x;
+    floor_ = tip_damping_floor(K_x);
+    limit_ = SpringLimit(K_x);
+  }
+
+  Matrix6 K_x_ = Matrix6::Zero();
+  Matrix6 floor_ = Matrix6::Zero();
+  SpringLimit limit_{Matrix6::Zero()};
+};
+
+}  // namespace
+
+LawEntry cartesian_impedance_law() {
+  return {.name = "cartesian_impedance",
+          .summary = "spring and damper between the tip and its goal",
+          .needs = sensors::kLinkEncoder,
+          .follows = Follows::kPoseGoal,
+          .composition = {.gravity = true, .coriolis = true, .null_space = true},
+          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
+            return std::make_unique<CartesianImpedance>();
+          }};
+}
+
+}  // namespace limber::controller

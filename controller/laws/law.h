@@ -1,0 +1,93 @@
+// What every control law is. A law is one file in this folder and one line in registry.cc.
+//
+// The file defines `LawEntry NAME_law()` (see the end of this header) and a class derived from Law
+// that nobody else sees. The cycle composes the torque:
+//
+//   tau = law + [null space] + [gravity] + [Coriolis]            (what the entry asks for)
+//
+// and then blends, limits and sends it; a law does none of that.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "common/types.h"
+#include "controller/arm_state.h"
+#include "controller/arm_terms.h"
+#include "controller/gains.h"
+#include "controller/goal.h"
+#include "robots/load_robot.h"
+
+namespace limber::controller {
+
+/// What a law may ask of an arm, to be combined with |.
+namespace sensors {
+inline constexpr unsigned kLinkEncoder = 1;   ///< q, v: on a rigid joint the motor's encoder does
+inline constexpr unsigned kMotorEncoder = 2;  ///< theta, theta_dot
+inline constexpr unsigned kTorqueSensor = 4;  ///< tau_measured from a sensor, not from the current
+inline constexpr unsigned kTipForceSensor = 8;
+}  // namespace sensors
+
+enum class Follows : std::uint8_t { kNothing, kJointGoal, kPoseGoal };
+
+/// What the cycle adds to the law's torque.
+struct Composition {
+  bool gravity = true;      ///< + g
+  bool coriolis = false;    ///< + C v
+  bool null_space = false;  ///< + N (-K_null (q - q_null) - D_null v)
+};
+
+/// Everything a law may look at, of the same instant. The references outlive the call only.
+struct LawInputs {
+  const ArmState& state;
+  const ArmTerms& terms;
+  const Goal& goal;    ///< after interpolation
+  const Gains& gains;  ///< after ramps
+};
+
+/// The law's torque by parts, N m, n each; their sum is what counts.
+struct LawOutput {
+  explicit LawOutput(int joints)
+      : tau_stiffness(VectorJ::Zero(joints)),
+        tau_damping(VectorJ::Zero(joints)),
+        tau_feedforward(VectorJ::Zero(joints)) {}
+
+  void reset() noexcept {
+    tau_stiffness.setZero();
+    tau_damping.setZero();
+    tau_feedforward.setZero();
+    F.setZero();
+    spring_energy_J = 0.0;
+    limits = 0;
+  }
+  VectorJ tau() const noexcept { return tau_stiffness + tau_damping + tau_feedforward; }
+
+  VectorJ tau_stiffness;
+  VectorJ tau_damping;
+  VectorJ tau_feedforward;
+  Vector6 F = Vector6::Zero();   ///< wrench on the arm at the tip, base axes; zero if it has none
+  double spring_energy_J = 0.0;  ///< potential whose gradient tau_stiffness is, if it is one
+  std::int32_t limits = 0;       ///< controller_status_t LIMIT_* bits
+};
+
+class Law {
+ public:
+  virtual ~Law() = default;
+  /// The law becomes the active one: forget the past. In the cycle.
+  virtual void start(const LawInputs& inputs) noexcept { static_cast<void>(inputs); }
+  /// One cycle; `output` has been reset. No allocation, lock, log or exception.
+  virtual void compute(const LawInputs& inputs, LawOutput* output) noexcept = 0;
+};
+
+/// One line of the registry.
+struct LawEntry {
+  const char* name;
+  const char* summary;  ///< one line for --list-laws
+  unsigned needs;       ///< sensors::*
+  Follows follows;
+  Composition composition;
+  /// Makes the law for an arm that has what it needs. May throw ConfigError.
+  std::unique_ptr<Law> (*make)(const LoadedRobot& robot);
+};
+
+}  // namespace limber::controller

@@ -1,0 +1,45 @@
+#include "controller/laws/registry.h"
+
+#include <array>
+
+// One line a law. The order is the numbering of controller_status_t.law: append, do not insert.
+#define LIMBER_LAWS(LAW)    \
+  LAW(gravity_compensation) \
+  LAW(joint_impedance)      \
+  LAW(cartesian_impedance)
+
+namespace limber::controller {
+
+#define LIMBER_DECLARE(name) LawEntry name##_law();
+LIMBER_LAWS(LIMBER_DECLARE)
+#undef LIMBER_DECLARE
+
+std::span<const LawEntry> laws() noexcept {
+#define LIMBER_ENTRY(name) name##_law(),
+  static const std::array entries{LIMBER_LAWS(LIMBER_ENTRY)};
+#undef LIMBER_ENTRY
+  return entries;
+}
+
+int find_law(const std::string& name) noexcept {
+  const std::span<const LawEntry> all = laws();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (name == all[i].name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+unsigned sensors_of(const Robot& robot) noexcept {
+  return robot.size() > 0 ? sensors::kLinkEncoder | sensors::kMotorEncoder : 0U;
+}
+
+const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
+  const unsigned missing = law.needs & ~available;
+  if ((missing & sensors::kLinkEncoder) != 0) return "the law needs link encoders";
+  if ((missing & sensors::kMotorEncoder) != 0) return "the law needs motor encoders";
+  if ((missing & sensors::kTorqueSensor) != 0) return "the law needs joint torque sensors";
+  if ((missing & sensors::kTipForceSensor) != 0) return "the law needs a force sensor at the tip";
+  return nullptr;
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,99 @@
+#include "controller/limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limber/controller_status_t.hpp>
+
+namespace limber::controller {
+namespace {
+
+constexpr double kShareOfGateStep = 0.8;
+constexpr double kVelocityScaledFrom = 0.8;
+constexpr double kWallWidth = 0.10;  // rad or m
+constexpr double kWallShareOfRange = 0.1;
+constexpr double kWallTorqueAtLimit = 0.5;  // share of the torque limit
+constexpr double kWallDampingRatio = 0.7;
+
+template <typename Member>
+VectorJ collect(const Robot& robot, Member member) {
+  VectorJ values(robot.size());
+  for (int i = 0; i < robot.size(); ++i)
+    values[i] = robot.joints[static_cast<std::size_t>(i)].*member;
+  return values;
+}
+
+}  // namespace
+
+JointLimits::JointLimits(const Robot& robot)
+    : position_min_(collect(robot, &JointConfig::position_min)),
+      position_max_(collect(robot, &JointConfig::position_max)),
+      wall_(((position_max_ - position_min_) * kWallShareOfRange).cwiseMin(kWallWidth)),
+      velocity_(collect(robot, &JointConfig::velocity_limit)),
+      torque_(collect(robot, &JointConfig::torque_limit_Nm)),
+      torque_rate_(collect(robot, &JointConfig::torque_rate_limit_Nm_per_s)),
+      previous_(VectorJ::Zero(robot.size())) {}
+
+void JointLimits::set_previous(const VectorJ& tau) noexcept {
+  previous_ = tau.cwiseMax(-torque_).cwiseMin(torque_);
+}
+
+bool JointLimits::far_from_previous(const VectorJ& tau, double period_s) const noexcept {
+  return ((tau - previous_).cwiseAbs().array() > torque_rate_.array() * period_s).any();
+}
+
+bool JointLimits::scale_for_velocity(const ArmState& state, const VectorJ& g,
+                                     VectorJ* tau) const noexcept {
+  bool acted = false;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    const double excess = std::abs(state.v[i]) / velocity_[i] - kVelocityScaledFrom;
+    const double motion = (*tau)[i] - g[i];
+    if (excess <= 0.0 || motion * state.v[i] <= 0.0) continue;
+    (*tau)[i] = g[i] + motion * std::max(1.0 - excess / (1.0 - kVelocityScaledFrom), 0.0);
+    acted = true;
+  }
+  return acted;
+}
+
+bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* tau) const noexcept {
+  bool acted = false;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    const double below = position_min_[i] + wall_[i] - state.q[i];
+    const double above = state.q[i] - (position_max_[i] - wall_[i]);
+    const double depth = std::max(below, above);
+    if (!(depth > 0.0)) continue;
+    const double outwards = below > above ? -1.0 : 1.0;
+    const double speed = std::max(outwards * state.v[i], 0.0);
+    const double K = kWallTorqueAtLimit * torque_[i] / wall_[i];
+    // The damper comes in with the depth: at the edge of the wall nothing jumps.
+    const double D =
+        2.0 * kWallDampingRatio * std::sqrt(K * M(i, i)) * std::min(depth / wall_[i], 1.0);
+    (*tau)[i] -= outwards * (K * depth + D * speed);
+    acted = true;
+  }
+  return acted;
+}
+
+std::int32_t JointLimits::shape(const ArmState& state, const ArmTerms& terms,
+                                VectorJ* tau) const noexcept {
+  std::int32_t acted = 0;
+  if (scale_for_velocity(state, terms.g, tau)) acted |= controller_status_t::LIMIT_VELOCITY;
+  if (add_walls(state, terms.M_total, tau)) acted |= controller_status_t::LIMIT_POSITION;
+  return acted;
+}
+
+std::int32_t JointLimits::clamp(double period_s, VectorJ* tau) noexcept {
+  std::int32_t acted = 0;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    const double wanted = (*tau)[i];
+    const double clamped = std::clamp(wanted, -torque_[i], torque_[i]);
+    const double step = kShareOfGateStep * torque_rate_[i] * period_s;
+    const double limited = std::clamp(clamped, previous_[i] - step, previous_[i] + step);
+    if (clamped != wanted) acted |= controller_status_t::LIMIT_TORQUE;
+    if (limited != clamped) acted |= controller_status_t::LIMIT_RATE;
+    (*tau)[i] = limited;
+  }
+  previous_ = *tau;
+  return acted;
+}
+
+}  // namespace limber::controller

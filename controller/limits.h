@@ -1,0 +1,55 @@
+// The last hand on the torque before it leaves: what the gate would trip on never gets there.
+#pragma once
+
+#include <cstdint>
+
+#include "common/types.h"
+#include "controller/arm_state.h"
+#include "controller/arm_terms.h"
+#include "robots/robot.h"
+
+namespace limber::controller {
+
+/// Limits of every joint, in the order they act. The gate in the driver trips; these shape:
+///   velocity  above 80 % of the limit, torque that accelerates further is scaled down, to zero at
+///   the
+///             limit (the part that carries the weight is not);
+///   position  from 0.10 rad (0.10 m) inside the limits on, at most a tenth of the range, a spring
+///   that
+///             reaches half the joint's torque at the limit, and a damper against motion into the
+///             wall;
+///   torque    clamped to the limit;
+///   rate      the step from the torque sent before is clamped to 80 % of what the gate lets pass.
+class JointLimits {
+ public:
+  explicit JointLimits(const Robot& robot);
+
+  /// The torque the next step is counted from. May be called in the cycle.
+  void set_previous(const VectorJ& tau) noexcept;
+  /// True if any joint is further from the previous torque than the gate lets pass in a cycle: then
+  /// the driver has not followed. May be called in the cycle.
+  bool far_from_previous(const VectorJ& tau, double period_s) const noexcept;
+
+  /// Velocity and position: changes `tau`, returns the LIMIT_* bits that acted. In the cycle.
+  std::int32_t shape(const ArmState& state, const ArmTerms& terms, VectorJ* tau) const noexcept;
+  /// Torque and rate: clamps a finite `tau`, makes it the previous torque, returns the LIMIT_* bits
+  /// that acted. In the cycle.
+  std::int32_t clamp(double period_s, VectorJ* tau) noexcept;
+
+  const VectorJ& torque_limit() const noexcept { return torque_; }
+  const VectorJ& previous() const noexcept { return previous_; }
+
+ private:
+  bool scale_for_velocity(const ArmState& state, const VectorJ& g, VectorJ* tau) const noexcept;
+  bool add_walls(const ArmState& state, const MatrixJ& M, VectorJ* tau) const noexcept;
+
+  VectorJ position_min_;
+  VectorJ position_max_;
+  VectorJ wall_;  // width of the soft wall, rad or m
+  VectorJ velocity_;
+  VectorJ torque_;
+  VectorJ torque_rate_;
+  VectorJ previous_;
+};
+
+}  // namespace limber::controller

@@ -1,0 +1,35 @@
+// Which directions the tip can move in, and how heavy it is there.
+#pragma once
+
+#include "common/types.h"
+
+namespace limber::controller {
+
+/// Rotational rows count as the translation of a point this far from the tip, so that directions of
+/// both kinds can be compared, m.
+inline constexpr double kRotationLength_m = 0.3;
+
+/// Eigenvalues of the tip's inverse inertia G = J M^-1 J^T, in rows scaled by kRotationLength_m:
+///   diag(S) G diag(S) = U diag(s) U^T,  S = (1, 1, 1, l, l, l),  s ascending, 1/kg.
+/// s is zero in directions the arm cannot move in: always for arms with fewer than six joints, at
+/// singular poses for the others. There the inertia 1/s does not exist; functions of it are formed
+/// from s alone and fade to zero instead.
+struct TipMobility {
+  Matrix6 U;
+  Vector6 s;
+  Vector6 S;
+
+  /// Below this share of the largest eigenvalue a direction counts as lost.
+  double threshold(double share) const noexcept { return share * s[5]; }
+};
+
+/// J (6 x n), M^-1 J^T (n x 6). Rows of J that are zero count as directions out of reach. May be
+/// called in the cycle.
+TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
+
+/// Damped pseudo-inverse of G: the tip inertia Lambda within reach, kg and kg m^2. Exact for
+/// eigenvalues above the threshold; below, 1/s is faded out with 3 x^2 - 2 x^3, x = s / threshold,
+/// so that it stays finite and continuous through a singularity. May be called in the cycle.
+Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexcept;
+
+}  // namespace limber::controller

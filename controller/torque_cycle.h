@@ -1,0 +1,91 @@
+// From measured state to torque: the terms, the law that runs, and everything around it.
+#pragma once
+
+#include <limber/compliance_gains_t.hpp>
+#include <limber/compliance_goal_t.hpp>
+#include <limber/controller_status_t.hpp>
+#include <limber/joint_state_t.hpp>
+#include <memory>
+#include <vector>
+
+#include "controller/arm_state.h"
+#include "controller/arm_terms.h"
+#include "controller/gains.h"
+#include "controller/goal_generator.h"
+#include "controller/laws/registry.h"
+#include "controller/limits.h"
+#include "controller/nullspace.h"
+#include "controller/torque_blend.h"
+
+namespace limber::controller {
+
+/// Does as it is told and knows no modes. After construction no member allocates, locks, logs or
+/// throws; all may be called in the cycle.
+class TorqueCycle {
+ public:
+  /// Makes all laws this arm can run. Throws ConfigError.
+  TorqueCycle(const LoadedRobot& robot, const std::string& law);
+
+  /// The state of this cycle, judged usable, and the terms that follow from it.
+  void measure(const joint_state_t& message) noexcept;
+
+  /// Runs joint_impedance, or the selected law, around the place where the arm is. The torque
+  /// continues from the last one and fades over to the law (TorqueBlend).
+  void hold() noexcept { run(hold_, true); }
+  void activate() noexcept { run(selected_, true); }
+  /// The goal comes to rest.
+  void stop_goal(double duration_s) noexcept { goals_.stop(duration_s); }
+
+  /// nullptr: accepted, else why not. `active`: the selected law is the one that runs.
+  const char* set_goal(const compliance_goal_t& message) noexcept;
+  const char* set_gains(const compliance_gains_t& message, bool active) noexcept;
+
+  /// One cycle of the running law, `dt_s` after the last. False if the result is not finite; the
+  /// torque is then the one before.
+  bool control(double dt_s) noexcept;
+  /// One cycle without a law: straight to `target`, or in steps the gate lets pass if `in_steps`.
+  void rest(const VectorJ& target, bool in_steps) noexcept;
+
+  const VectorJ& torque() const noexcept { return limits_.previous(); }
+  const VectorJ& tau_applied() const noexcept { return state_.tau_applied; }
+  /// The model's gravity torque, within the joints' limits; the last finite one.
+  const VectorJ& gravity() const noexcept { return gravity_; }
+
+  /// Everything in the status that follows from state, law and torque.
+  void describe(controller_status_t* status) noexcept;
+
+ private:
+  void run(int law, bool from_here) noexcept;
+  VectorJ law_torque() noexcept;
+  VectorJ null_space() noexcept;
+  void describe_parts(controller_status_t* status) const noexcept;
+  LawInputs inputs() const noexcept { return {state_, terms_, goals_.goal(), gains_.now()}; }
+  const LawEntry& entry() const noexcept { return laws()[static_cast<std::size_t>(running_)]; }
+
+  ArmModel model_;
+  ArmState state_;
+  ArmTerms terms_;
+  unsigned sensors_;
+  std::vector<std::unique_ptr<Law>> laws_;  // by registry index; empty where the arm lacks a sensor
+  int hold_;
+  int selected_;
+  int running_;
+
+  GoalGenerator goals_;
+  GainRamp gains_;
+  Gains asked_;  // where a gains message is read into
+  TaskRows rows_;
+  TorqueBlend blend_;
+  bool switched_ = false;
+  JointLimits limits_;
+  VectorJ null_limit_;
+
+  LawOutput law_;
+  VectorJ tau_null_;
+  VectorJ tau_gravity_;
+  VectorJ tau_coriolis_;
+  VectorJ gravity_;
+  std::int32_t limits_active_ = 0;
+};
+
+}  // namespace limber::controller

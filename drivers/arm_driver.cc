@@ -1,0 +1,221 @@
+#include "drivers/arm_driver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/arm_driver_impl.h"
+#include "drivers/driver_setup.h"
+
+namespace limber {
+namespace {
+
+constexpr int kBridgedCycles = 2;    // without an answer of the controller
+constexpr double kSettling_s = 0.1;  // HOLD: damping before the position is held
+constexpr double kShutDownBraking_s = 0.3;
+constexpr int kFramesPerPoll = 16;  // batches: a flooded bus must not keep the cycle
+
+}  // namespace
+
+ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
+                      const ArmDriverOptions& options)
+    : rate_hz(robot.rate_hz),
+      lockstep(options.lockstep),
+      session(options.session),
+      gate(gate_limits(robot, options.session)) {
+  for (std::size_t b = 0; b < can.size(); ++b) {
+    buses.emplace_back(can[b], robot.buses[b]);
+    load_predicted.push_back(checked_bus_load(robot, static_cast<int>(b)));
+  }
+  for (const JointConfig& joint : robot.joints) {
+    drives.emplace_back(joint, buses.at(static_cast<std::size_t>(joint.drive.bus)).fd(), rate_hz);
+  }
+  published.session = session;
+  published.period_ns = std::llround(1e9 / rate_hz);
+  published.num_joints = static_cast<std::int8_t>(drives.size());
+}
+
+ArmDriver::ArmDriver(const Robot& robot, std::vector<CanBus*> buses,
+                     const ArmDriverOptions& options) {
+  check_robot(robot, buses.size(), options.session);
+  impl_ = std::make_unique<Impl>(robot, buses, options);
+}
+
+ArmDriver::~ArmDriver() = default;
+
+void ArmDriver::Impl::apply(DriveEvent event, int joint) noexcept {
+  const DriveState from = state();
+  if (!machine.apply(event, joint)) return;
+  cycles_in_state = 0;
+  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].enter(state(), from, tau_gravity[i]);
+  if (in(DriveState::kOn) && from == DriveState::kEnabling) {
+    tau.fill(0.0);
+    tau_present.fill(0.0);
+  }
+}
+
+// --- 1. transmit ---------------------------------------------------------------------------------
+
+void ArmDriver::transmit(std::int64_t time_ns) noexcept {
+  impl_->take_frames(/*late=*/true);
+  ++impl_->cycle;
+  impl_->time_ns = time_ns;
+  impl_->gate.next_cycle();
+  impl_->watch_controller();
+  impl_->watch_shut_down();
+  impl_->send_commands();
+}
+
+void ArmDriver::Impl::watch_controller() noexcept {
+  unheard_cycles = heard ? 0 : unheard_cycles + 1;
+  if (!heard && gate.memory().controller != 0) ++missing;
+  heard = false;
+  if (unheard_cycles > kBridgedCycles) apply(DriveEvent::kControllerLost);
+}
+
+void ArmDriver::Impl::watch_shut_down() noexcept {
+  if (!shutting_down) return;
+  apply(DriveEvent::kShutDown);
+  if (cycles_in_state >= cycles_of(kShutDownBraking_s, rate_hz)) apply(DriveEvent::kRequestOff);
+}
+
+void ArmDriver::Impl::send_commands() noexcept {
+  const bool settling = cycles_in_state < cycles_of(kSettling_s, rate_hz);
+  for (BusEnd& bus : buses) bus.clear();
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    Drive& drive = drives[i];
+    buses[static_cast<std::size_t>(drive.bus())].add(drive.next_frame(state(), tau[i], settling));
+    drive.begin_cycle();
+  }
+  ++cycles_in_state;
+  if (in(DriveState::kOn)) tau_present = tau;
+  for (BusEnd& bus : buses) {
+    bus.send();
+    bus.expect_tock(cycle);
+    if (lockstep) bus.send_tick();
+  }
+}
+
+void ArmDriver::repeat_tick() noexcept {
+  for (BusEnd& bus : impl_->buses) {
+    if (!bus.tocked()) bus.send_tick();
+  }
+}
+
+// --- 2. poll -------------------------------------------------------------------------------------
+
+void ArmDriver::poll() noexcept { impl_->take_frames(/*late=*/false); }
+
+void ArmDriver::Impl::take_frames(bool late) noexcept {
+  for (std::size_t b = 0; b < buses.size(); ++b) {
+    for (int batch = 0; batch < kFramesPerPoll; ++batch) {
+      const std::span<const CanFrame> frames = buses[b].receive();
+      for (const CanFrame& frame : frames) take_frame(static_cast<int>(b), frame, late);
+      if (frames.empty()) break;
+    }
+  }
+}
+
+void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noexcept {
+  BusEnd& end = buses[static_cast<std::size_t>(bus)];
+  if (frame.error || end.take_lockstep(frame)) return;
+  const auto drive = std::find_if(drives.begin(), drives.end(), [&](const Drive& candidate) {
+    return candidate.bus() == bus && candidate.reply_id() == frame.id && !frame.extended;
+  });
+  if (drive == drives.end()) {
+    end.count_foreign();
+  } else if (late) {
+    drive->count_late();
+  } else {
+    drive->receive(state(), frame);
+  }
+}
+
+bool ArmDriver::complete() const noexcept {
+  if (impl_->lockstep) {
+    return std::all_of(impl_->buses.begin(), impl_->buses.end(),
+                       [](const BusEnd& bus) { return bus.tocked(); });
+  }
+  return impl_->all_drives(&Drive::answered);
+}
+
+// --- 3. finish_cycle -----------------------------------------------------------------------------
+
+const joint_state_t& ArmDriver::finish_cycle() noexcept {
+  impl_->supervise();
+  impl_->describe_state();
+  return impl_->published;
+}
+
+// --- 4. accept -----------------------------------------------------------------------------------
+
+int ArmDriver::accept(const joint_torque_t& command) noexcept {
+  Impl& driver = *impl_;
+  const GateSituation situation = driver.situation();
+  const int verdict = driver.gate.judge(command, situation);
+  ++driver.verdicts[static_cast<std::size_t>(verdict)];
+  if (verdict == driver_status_t::VERDICT_ACCEPTED) {
+    driver.obey(command, situation.followed);
+  } else if (driver.gate.refused_too_often()) {
+    driver.apply(DriveEvent::kCommandRefused);
+  }
+  return verdict;
+}
+
+GateSituation ArmDriver::Impl::situation() const noexcept {
+  const bool held = in(DriveState::kHold) || in(DriveState::kDamp);
+  GateSituation now;
+  now.state_seq = cycle;
+  now.powered = machine.powered();
+  now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
+  now.torque_present = tau_present;
+  return now;
+}
+
+void ArmDriver::Impl::obey(const joint_torque_t& command, bool followed) noexcept {
+  heard = true;
+  std::copy_n(command.tau_gravity, kMaxJoints, tau_gravity.begin());
+  if (shutting_down) return;
+  switch (command.request) {
+    case joint_torque_t::REQUEST_OFF:
+      apply(DriveEvent::kRequestOff);
+      break;
+    case joint_torque_t::REQUEST_HOLD:
+      apply(DriveEvent::kRequestHold);
+      break;
+    case joint_torque_t::REQUEST_ON:
+    case joint_torque_t::REQUEST_ACKNOWLEDGE:
+      if (followed && all_drives(&Drive::healthy)) {
+        apply(DriveEvent::kTakenOver);
+      } else if (command.request == joint_torque_t::REQUEST_ACKNOWLEDGE) {
+        acknowledge();
+      } else if (all_drives(&Drive::ready_to_enable)) {
+        apply(DriveEvent::kRequestOn);
+      }
+      break;
+    default:
+      break;
+  }
+  if (in(DriveState::kOn)) std::copy_n(command.tau, kMaxJoints, tau.begin());
+}
+
+void ArmDriver::Impl::acknowledge() noexcept {
+  const bool held = in(DriveState::kHold) || in(DriveState::kDamp);
+  if (held && !all_drives(&Drive::healthy)) return;
+  for (Drive& drive : drives) drive.acknowledge();
+  apply(DriveEvent::kAcknowledge);
+}
+
+// --- requests from outside -----------------------------------------------------------------------
+
+void ArmDriver::request_hold(int fault) noexcept {
+  impl_->apply(fault == joint_state_t::FAULT_OVERRUN ? DriveEvent::kOverrun
+                                                     : DriveEvent::kHoldAsked);
+}
+
+void ArmDriver::request_shut_down() noexcept { impl_->shutting_down = true; }
+
+bool ArmDriver::shut_down() const noexcept {
+  return impl_->shutting_down && !impl_->machine.powered() && impl_->all_drives(&Drive::disabled);
+}
+
+}  // namespace limber

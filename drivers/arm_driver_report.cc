@@ -1,0 +1,82 @@
+// What the driver tells others: JOINT_STATE, DRIVER_STATUS, and why a drive was refused.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "drivers/arm_driver_impl.h"
+
+namespace limber {
+
+void ArmDriver::Impl::describe_state() noexcept {
+  published.seq = cycle;
+  published.time_ns = time_ns;
+  published.drive_state = static_cast<std::int8_t>(state());
+  published.fault = machine.fault();
+  published.fault_joint = machine.fault_joint();
+  for (std::size_t i = 0; i < drives.size(); ++i) describe_joint(i);
+  // The step to the first torque after HOLD or DAMP counts from what the drive itself exerts.
+  if (!in(DriveState::kOn)) std::copy_n(published.tau_applied, kMaxJoints, tau_present.begin());
+}
+
+void ArmDriver::Impl::describe_joint(std::size_t i) noexcept {
+  const JointLink& link = drives[i].link();
+  published.q[i] = published.theta[i] = link.q();  // rigid drives: the encoder is at the output
+  published.v[i] = published.theta_dot[i] = link.v();
+  published.tau[i] = link.tau();
+  published.tau_applied[i] = link.tau_applied();
+  published.current_A[i] = static_cast<float>(link.current_A());
+  published.temperature_degC[i] = static_cast<float>(link.temperature_degC());
+  published.age_cycles[i] = link.age_cycles();
+  published.joint_flags[i] = (link.fresh() ? joint_state_t::JOINT_FRESH : 0) |
+                             (link.enabled() ? joint_state_t::JOINT_ENABLED : 0) |
+                             (link.drive_error() ? joint_state_t::JOINT_DRIVE_ERROR : 0) |
+                             (link.out_of_range() ? joint_state_t::JOINT_OUT_OF_RANGE : 0);
+}
+
+void ArmDriver::fill_status(driver_status_t* status) const noexcept {
+  const Impl& driver = *impl_;
+  status->time_ns = driver.time_ns;
+  status->session = driver.session;
+  status->drive_state = static_cast<std::int8_t>(driver.state());
+  status->fault = driver.machine.fault();
+  status->fault_joint = driver.machine.fault_joint();
+  status->num_joints = static_cast<std::int8_t>(driver.drives.size());
+  status->num_buses = static_cast<std::int8_t>(driver.buses.size());
+  status->lockstep = driver.lockstep ? 1 : 0;
+  status->cycles = driver.cycle + 1;
+  status->commands_accepted = driver.verdicts[driver_status_t::VERDICT_ACCEPTED];
+  std::copy(driver.verdicts.begin(), driver.verdicts.end(), status->commands_refused);
+  status->commands_refused[driver_status_t::VERDICT_ACCEPTED] = 0;
+  status->commands_missing = driver.missing;
+  for (std::size_t i = 0; i < driver.drives.size(); ++i) {
+    status->replies_late[i] = driver.drives[i].replies_late();
+    status->replies_lost[i] = driver.drives[i].replies_lost();
+    status->replies_invalid[i] = driver.drives[i].replies_invalid();
+  }
+  for (std::size_t b = 0; b < driver.buses.size(); ++b) {
+    const BusEnd& bus = driver.buses[b];
+    status->bus_load_predicted[b] = static_cast<float>(driver.load_predicted[b]);
+    status->bus_load_counted[b] = static_cast<float>(bus.load_counted());
+    status->frames_sent[b] = bus.statistics().sent;
+    status->frames_received[b] = bus.statistics().received;
+    status->frames_foreign[b] = bus.foreign();
+    status->send_refused[b] = bus.statistics().send_refused;
+    status->error_frames[b] = bus.statistics().error_frames;
+  }
+}
+
+std::string ArmDriver::configuration_problem() const {
+  for (const Drive& drive : impl_->drives) {
+    if (!drive.configuration_wrong()) continue;
+    const ConfigureDialogue::Failure& failure = drive.configuration().failure();
+    const JointConfig& joint = drive.link().joint();
+    const std::string who = fmt::format("{} (id 0x{:X})", joint.name, joint.drive.command_id);
+    if (failure.reg == 0) return who + ": could not be disabled, or does not answer";
+    if (!failure.answered) return fmt::format("{}: register {} not answered", who, failure.reg);
+    return fmt::format("{}: register {} is {:g}, robot.yaml says {:g}", who, failure.reg,
+                       failure.found, failure.expected);
+  }
+  return "";
+}
+
+}  // namespace limber

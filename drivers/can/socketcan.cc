@@ -1,0 +1,225 @@
+#include "drivers/can/socketcan.h"
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "common/config_error.h"
+#include "drivers/can/datagram_batch.h"
+#include "drivers/can/file_descriptor.h"
+
+namespace limber {
+namespace {
+
+[[noreturn]] void refuse(const std::string& interface, const std::string& problem) {
+  throw ConfigError("socketcan:" + interface + ": " + problem);
+}
+
+std::string bring_up(const std::string& interface, bool fd) {
+  return "sudo ip link set " + interface + " type can bitrate 1000000" +
+         (fd ? " dbitrate 5000000 fd on" : "") + " && sudo ip link set " + interface +
+         " txqueuelen 64 up";
+}
+
+FileDescriptor open_socket(const std::string& interface) {
+  FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+  if (socket.get() >= 0) return socket;
+  if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
+    refuse(interface,
+           "this kernel has no CAN sockets. Load them (sudo modprobe can_raw) or use a bus that "
+           "needs none: virtual:NAME");
+  }
+  refuse(interface, std::string("cannot open a CAN socket: ") + std::strerror(errno));
+}
+
+/// Asks the kernel about an interface; the answer is in `request`.
+void ask(int socket, unsigned long what, const std::string& interface, ifreq* request) {
+  if (ioctl(socket, what, request) == 0) return;
+  if (errno != ENODEV)
+    refuse(interface, std::string("cannot be asked about: ") + std::strerror(errno));
+  refuse(interface,
+         "there is no such interface. `ip -br link show type can` lists the adapters; a virtual "
+         "one is made with: "
+         "sudo ip link add dev " +
+             interface + " type vcan && sudo ip link set " + interface + " mtu 72 up");
+}
+
+/// The interface's index, once it is known to be fit for use.
+int checked_interface(int socket, const std::string& interface, bool fd) {
+  ifreq request{};
+  if (interface.empty() || interface.size() >= sizeof(request.ifr_name)) {
+    refuse(interface, "an interface name has 1 to 15 characters");
+  }
+  std::memcpy(request.ifr_name, interface.data(), interface.size());
+  ask(socket, SIOCGIFHWADDR, interface, &request);
+  if (request.ifr_hwaddr.sa_family != ARPHRD_CAN) refuse(interface, "is not a CAN interface");
+  ask(socket, SIOCGIFFLAGS, interface, &request);
+  if ((request.ifr_flags & IFF_UP) == 0) {
+    refuse(interface, "the interface is down. An adapter: " + bring_up(interface, fd) +
+                          "; a virtual interface: sudo ip link set " + interface + " up");
+  }
+  ask(socket, SIOCGIFMTU, interface, &request);
+  if (fd && request.ifr_mtu < static_cast<int>(CANFD_MTU)) {
+    refuse(interface,
+           "the interface carries no CAN-FD, which the robot asks for. First sudo ip link set " +
+               interface + " down, then an adapter: " + bring_up(interface, fd) +
+               "; a virtual interface: sudo ip link set " + interface + " mtu 72 up");
+  }
+  ask(socket, SIOCGIFINDEX, interface, &request);
+  return request.ifr_ifindex;
+}
+
+FileDescriptor open_bound(const std::string& interface, bool fd) {
+  FileDescriptor socket = open_socket(interface);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = checked_interface(socket.get(), interface, fd);
+  const int on = 1;
+  if (fd && setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof(on)) != 0) {
+    refuse(interface, "this kernel has no CAN-FD");
+  }
+  const can_err_mask_t errors = CAN_ERR_MASK;
+  setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors));
+  prepare_receive(socket.get());
+  if (bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    refuse(interface, std::string("cannot bind: ") + std::strerror(errno));
+  }
+  return socket;
+}
+
+/// Writes the kernel's form of a frame; returns its size, which is also what tells classic from FD.
+std::size_t to_kernel(const CanFrame& frame, std::span<std::uint8_t> out) noexcept {
+  canfd_frame raw{};
+  raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) |
+               (frame.remote ? CAN_RTR_FLAG : 0U) | (frame.error ? CAN_ERR_FLAG : 0U);
+  raw.len = frame.length;
+  raw.flags = frame.bitrate_switch ? CANFD_BRS : 0;
+  std::memcpy(raw.data, frame.data.data(), frame.length);
+  const std::size_t size = frame.fd ? CANFD_MTU : CAN_MTU;
+  std::memcpy(out.data(), &raw, size);
+  return size;
+}
+
+bool from_kernel(std::span<const std::uint8_t> bytes, CanFrame* frame) noexcept {
+  if (bytes.size() != CAN_MTU && bytes.size() != CANFD_MTU) return false;
+  canfd_frame raw{};
+  std::memcpy(&raw, bytes.data(), bytes.size());
+  *frame = CanFrame{};
+  frame->fd = bytes.size() == CANFD_MTU;
+  frame->extended = (raw.can_id & CAN_EFF_FLAG) != 0;
+  frame->remote = (raw.can_id & CAN_RTR_FLAG) != 0;
+  frame->error = (raw.can_id & CAN_ERR_FLAG) != 0;
+  frame->id = raw.can_id & CAN_EFF_MASK;
+  frame->bitrate_switch = frame->fd && (raw.flags & CANFD_BRS) != 0;
+  frame->length = raw.len;
+  if (!is_possible(*frame)) return false;
+  if (!frame->remote) std::memcpy(frame->data.data(), raw.data, raw.len);
+  return true;
+}
+
+bool is_link_error(int error) noexcept {
+  return error == ENETDOWN || error == ENODEV || error == ENXIO;
+}
+
+class SocketCanBus final : public CanBus {
+ public:
+  using CanBus::send;
+
+  SocketCanBus(const std::string& interface, bool fd)
+      : fd_(fd), socket_(open_bound(interface, fd)) {}
+
+  int send(std::span<const CanFrame> frames) noexcept override {
+    int accepted = 0;
+    for (const CanFrame& frame : frames) {
+      if (!is_possible(frame) || (frame.fd && !fd_)) continue;
+      outgoing_.add(to_kernel(frame, outgoing_.next()));
+      if (outgoing_.full()) accepted += flush();
+    }
+    accepted += flush();
+    statistics_.sent += accepted;
+    statistics_.send_refused += static_cast<std::int64_t>(frames.size()) - accepted;
+    return accepted;
+  }
+
+  int receive(std::span<CanFrame> frames) noexcept override {
+    std::size_t taken = 0;
+    bool link_error = false;
+    while (taken < frames.size()) {
+      const int count = incoming_.receive(socket_.get(), static_cast<int>(frames.size() - taken));
+      if (count == 0) break;
+      if (count < 0) {
+        // The kernel reports a lost link once, perhaps late, before the frames that wait behind the
+        // report.
+        if (!note_error() || link_error) break;
+        link_error = true;
+        continue;
+      }
+      for (int i = 0; i < count; ++i) taken += accept(i, &frames[taken]) ? 1U : 0U;
+    }
+    statistics_.received += static_cast<std::int64_t>(taken);
+    statistics_.overflow = incoming_.lost();
+    return static_cast<int>(taken);
+  }
+
+  int descriptor() const noexcept override { return socket_.get(); }
+  const CanStatistics& statistics() const noexcept override { return statistics_; }
+
+ private:
+  int flush() noexcept {
+    const int wanted = outgoing_.size();
+    if (wanted == 0) return 0;
+    const int sent = outgoing_.flush(socket_.get());
+    if (sent < wanted) note_error();
+    if (sent == wanted) statistics_.link_down = false;
+    return sent;
+  }
+
+  /// Keeps errno; true if it tells of the link.
+  bool note_error() noexcept {
+    statistics_.last_errno = errno;
+    if (!is_link_error(errno)) return false;
+    statistics_.link_down = true;
+    statistics_.bus_off = false;  // a controller that was stopped starts afresh
+    return true;
+  }
+
+  bool accept(int i, CanFrame* frame) noexcept {
+    if (!from_kernel(incoming_.datagram(i), frame)) {
+      ++statistics_.malformed;
+      return false;
+    }
+    frame->timestamp_ns = incoming_.timestamp_ns(i);
+    statistics_.link_down = false;
+    if (frame->error) note_error_frame(*frame);
+    return true;
+  }
+
+  void note_error_frame(const CanFrame& frame) noexcept {
+    ++statistics_.error_frames;
+    const bool active_again =
+        (frame.id & CAN_ERR_CRTL) != 0 && (frame.data[1] & CAN_ERR_CRTL_ACTIVE) != 0;
+    if ((frame.id & CAN_ERR_RESTARTED) != 0 || active_again) statistics_.bus_off = false;
+    if ((frame.id & CAN_ERR_BUSOFF) != 0) statistics_.bus_off = true;
+  }
+
+  bool fd_;
+  FileDescriptor socket_;
+  SendBatch outgoing_{CANFD_MTU};
+  ReceiveBatch incoming_{CANFD_MTU};
+  CanStatistics statistics_;
+};
+
+}  // namespace
+
+std::unique_ptr<CanBus> open_socketcan(const std::string& interface, bool fd) {
+  return std::make_unique<SocketCanBus>(interface, fd);
+}
+
+}  // namespace limber

@@ -1,0 +1,104 @@
+#include "drivers/drive.h"
+
+#include <cmath>
+
+namespace limber {
+
+Drive::Drive(const JointConfig& joint, bool fd, double rate_hz)
+    : link_(joint, fd, 1.0 / rate_hz),
+      configure_(joint.drive, fd),
+      watch_(static_cast<int>(std::ceil(rate_hz))) {}
+
+void Drive::enter(DriveState state, DriveState from, double gravity) noexcept {
+  switch (state) {
+    case DriveState::kConfiguring:
+      configure_.start();
+      link_.forget_angle();
+      break;
+    case DriveState::kOff:
+      if (from == DriveState::kConfiguring) link_.forget_angle();
+      watch_.reset();
+      break;
+    case DriveState::kEnabling:
+      enable_.start(link_);
+      break;
+    case DriveState::kHold:
+      hold_.start(gravity);
+      break;
+    case DriveState::kOn:
+    case DriveState::kDamp:
+    case DriveState::kFault:
+      break;
+  }
+}
+
+CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept {
+  switch (state) {
+    case DriveState::kConfiguring:
+      return configure_.next_frame();
+    case DriveState::kOff:
+      return poll();
+    case DriveState::kEnabling:
+      return enable_.next_frame(&link_);
+    case DriveState::kOn:
+      return link_.torque(tau);
+    case DriveState::kHold:
+      // A drive that left the enabled state by itself is not spoken to as if it had not.
+      if (!link_.enabled()) return link_.state_request();
+      return link_.command(hold_.command(link_, settling, !watch_.lost()));
+    case DriveState::kDamp:
+      if (!link_.enabled()) return link_.state_request();
+      return link_.command(damp(link_));
+    case DriveState::kFault:
+      break;
+  }
+  return link_.special(mit::Special::kDisable);  // until it is confirmed and after: it may be lost
+}
+
+CanFrame Drive::poll() noexcept {
+  return link_.enabled() ? link_.special(mit::Special::kDisable) : link_.state_request();
+}
+
+void Drive::begin_cycle() noexcept {
+  answered_ = false;
+  link_.begin_cycle();
+}
+
+void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
+  if (state == DriveState::kConfiguring && !configure_.expects_state()) {
+    if (configure_.receive(frame)) {
+      answered_ = true;
+    } else {
+      ++invalid_;
+    }
+    return;
+  }
+  if (!link_.receive(frame)) {
+    ++invalid_;
+    return;
+  }
+  answered_ = true;
+  if (state == DriveState::kConfiguring) configure_.receive_state(link_.enabled());
+}
+
+void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
+  if (!answered_) ++missing_;
+  if (link_.fresh()) {
+    const double limit = 1.1 * link_.joint().velocity_limit;
+    fast_cycles_ = std::abs(link_.v()) <= limit ? 0 : fast_cycles_ + 1;
+  }
+  if (state == DriveState::kConfiguring) {
+    configure_.close_cycle();
+    return;
+  }
+  if (state == DriveState::kEnabling) enable_.close_cycle(link_);
+  watch_.close_cycle(link_.fresh(), cycle);
+}
+
+bool Drive::ready_to_enable() const noexcept {
+  return link_.fresh() && !link_.out_of_range() && fast_cycles_ == 0;
+}
+
+bool Drive::healthy() const noexcept { return ready_to_enable() && link_.enabled(); }
+
+}  // namespace limber

@@ -1,0 +1,65 @@
+#include "drivers/driver_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config_error.h"
+#include "drivers/can/bus_load.h"
+
+namespace limber {
+namespace {
+
+constexpr double kGreatestLoad = 0.9;
+constexpr double kLease_s = 0.25;
+constexpr double kRefusals_s = 0.1;
+constexpr double kRoundingSlack = 1e-9;  // a step of exactly the limit may differ in its last bits
+
+}  // namespace
+
+int cycles_of(double seconds, double rate_hz) noexcept {
+  return std::max(1, static_cast<int>(std::ceil(seconds * rate_hz - 1e-6)));
+}
+
+void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t session) {
+  const auto refuse = [&](const std::string& key, const std::string& problem) {
+    throw ConfigError::at(robot.name, 0, key, problem);
+  };
+  if (!robot.has_drives) refuse("drives", "none are described; a bare URDF cannot be driven");
+  if (robot.joints.empty() || robot.size() > kMaxJoints)
+    refuse("joints", fmt::format("{} found, 1 to {} allowed", robot.size(), kMaxJoints));
+  if (robot.buses.empty() || robot.buses.size() > kMaxBuses || robot.buses.size() != open_buses)
+    refuse("buses", fmt::format("{} described, {} open, 1 to {} allowed", robot.buses.size(),
+                                open_buses, kMaxBuses));
+  if (!(robot.rate_hz > 0.0)) refuse("rate_hz", "must be positive");
+  if (session == 0) refuse("session", "0 names no session");
+}
+
+double checked_bus_load(const Robot& robot, int bus) {
+  const double load = predicted_bus_load(robot, bus);
+  if (load <= kGreatestLoad) return load;
+  throw ConfigError::at(
+      robot.name, 0, "buses." + robot.buses[static_cast<std::size_t>(bus)].name,
+      fmt::format("{:.0f} Hz would take {:.0f} % of the wire, at most {:.0f} % are allowed; the "
+                  "highest rate is {:.0f} Hz (or use CAN-FD, or spread the joints over more buses)",
+                  robot.rate_hz, 100.0 * load, 100.0 * kGreatestLoad,
+                  std::floor(robot.rate_hz * kGreatestLoad / load)));
+}
+
+GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
+  GateLimits limits;
+  limits.n = robot.size();
+  limits.session = session;
+  limits.lease_cycles = cycles_of(kLease_s, robot.rate_hz);
+  limits.refusal_cycles = cycles_of(kRefusals_s, robot.rate_hz);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointConfig& joint = robot.joints[i];
+    limits.torque_Nm[i] = std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm);
+    limits.torque_step_Nm[i] =
+        joint.torque_rate_limit_Nm_per_s / robot.rate_hz * (1.0 + kRoundingSlack);
+  }
+  return limits;
+}
+
+}  // namespace limber

@@ -1,0 +1,90 @@
+// The last check before the bus: whose torque command is obeyed, and whether this one may be.
+//
+// Deny by default. A command passes all checks or changes nothing: it is never clamped into what is
+// allowed, and it leaves no trace in what the next one is compared with. Every comparison is
+// written so that a NaN fails it. No heap, no Eigen, no URDF, no log; all of it is allowed inside
+// the cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limber/joint_torque_t.hpp>
+
+#include "common/joints.h"
+#include "drivers/gate/event_window.h"
+
+namespace limber {
+
+/// What the gate lets pass. Fixed for a session.
+struct GateLimits {
+  int n = 0;                 ///< joints of this arm
+  std::int64_t session = 0;  ///< this run of the driver
+  int lease_cycles = 250;    ///< a controller that was not obeyed for so long has lost the arm
+  int refusal_cycles = 100;  ///< three refusals within so many cycles are too many
+  std::array<double, kMaxJoints> torque_Nm{};       ///< greatest |tau| and |tau_gravity|
+  std::array<double, kMaxJoints> torque_step_Nm{};  ///< greatest |tau - torque present|
+};
+
+/// What the driver knows at the moment a command comes in.
+struct GateSituation {
+  std::int64_t state_seq = 0;  ///< seq of the JOINT_STATE last published
+  bool powered = false;        ///< some drive may be enabled: there is something to hold
+  /// The torque would reach the drives. Otherwise it is judged for being finite and within the
+  /// absolute limits, but not against the torque present, and goes nowhere.
+  bool followed = false;
+  std::array<double, kMaxJoints> torque_present{};  ///< what left for the drives last, N m
+};
+
+/// What the gate remembers of the commands it accepted.
+struct GateMemory {
+  std::int64_t controller = 0;  ///< who holds the lease; 0: nobody
+  std::int64_t silent_cycles = 0;
+  std::int64_t state_seq = -1;  ///< the state answered by the command accepted last
+};
+
+/// An answer may refer to a state this many cycles old.
+inline constexpr std::int64_t kOldestAnswer = 5;
+
+/// The judgement alone, without effect: VERDICT_* of driver_status_t. The checks are made in this
+/// order and the first that fails names the verdict:
+///   SIZE        num_joints is this arm's
+///   SESSION     the session is this run of the driver
+///   CONTROLLER  not 0, and the holder of the lease if there is one
+///   REPLAYED    answers a newer state than the command accepted last
+///   STALE       answers a state that was published, at most kOldestAnswer cycles ago
+///   NOT_FINITE  all of tau and tau_gravity
+///   REQUEST     one of REQUEST_*
+///   NOT_ON      no REQUEST_HOLD to drives that are off: what does not stand cannot be held
+///   TORQUE      |tau| and |tau_gravity| within the limit
+///   RATE        |tau - torque present| within the step, where the torque is followed
+int check_command(const GateLimits& limits, const GateMemory& memory,
+                  const GateSituation& situation, const joint_torque_t& command) noexcept;
+
+/// The judgement with memory: lease, sequence, refusals.
+class TorqueGate {
+ public:
+  explicit TorqueGate(const GateLimits& limits) : limits_(limits) {}
+
+  /// Once a cycle: the lease ages and is free after lease_cycles without an accepted command.
+  void next_cycle() noexcept;
+
+  /// Returns VERDICT_*. An accepted command takes or renews the lease.
+  int judge(const joint_torque_t& command, const GateSituation& situation) noexcept;
+
+  /// True if the command judged last was the third of the lease holder's to be refused within
+  /// refusal_cycles. Repetitions of what was obeyed already (REPLAYED) do not count: networks
+  /// duplicate.
+  bool refused_too_often() const noexcept { return too_often_; }
+
+  const GateLimits& limits() const noexcept { return limits_; }
+  const GateMemory& memory() const noexcept { return memory_; }
+
+ private:
+  GateLimits limits_;
+  GateMemory memory_;
+  EventWindow<3> refusals_;
+  std::int64_t cycle_ = 0;
+  bool too_often_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,99 @@
+#include "drivers/roll_call.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/clock.h"
+#include "drivers/protocols/mit.h"
+
+namespace limber {
+namespace {
+
+constexpr std::int64_t kAskAgain_ns = 100'000'000;
+constexpr std::int64_t kStragglers_ns = 20'000'000;
+
+class Roll {
+ public:
+  Roll(const Robot& robot, std::span<CanBus* const> buses)
+      : robot_(robot), buses_(buses), here_(robot.joints.size(), false) {}
+
+  bool complete() const {
+    return std::all_of(here_.begin(), here_.end(), [](bool here) { return here; });
+  }
+
+  void ask() {
+    for (std::size_t i = 0; i < here_.size(); ++i) {
+      if (here_[i]) continue;
+      const DriveConfig& drive = robot_.joints[i].drive;
+      const auto bus = static_cast<std::size_t>(drive.bus);
+      buses_[bus]->send(mit::encode_register_read(static_cast<std::uint16_t>(drive.command_id),
+                                                  mit::Register::kControlMode,
+                                                  robot_.buses[bus].fd));
+    }
+  }
+
+  void listen_until(std::int64_t deadline_ns) {
+    do {
+      for (std::size_t b = 0; b < buses_.size(); ++b) {
+        CanFrame frame;
+        while (buses_[b]->receive(std::span(&frame, 1)) == 1) note(static_cast<int>(b), frame);
+      }
+    } while (!complete() && wait_readable(buses_, deadline_ns));
+  }
+
+  /// Answers to questions that were asked twice must not be taken for something else later.
+  void drop_stragglers() {
+    const std::int64_t end_ns = monotonic_ns() + kStragglers_ns;
+    CanFrame frame;
+    while (wait_readable(buses_, end_ns)) {
+      for (CanBus* bus : buses_) {
+        while (bus->receive(std::span(&frame, 1)) == 1) {
+        }
+      }
+    }
+  }
+
+  std::string missing() const {
+    std::string names;
+    for (std::size_t i = 0; i < here_.size(); ++i) {
+      if (here_[i]) continue;
+      const JointConfig& joint = robot_.joints[i];
+      const BusConfig& bus = robot_.buses[static_cast<std::size_t>(joint.drive.bus)];
+      names += fmt::format("{}{} (id 0x{:X} on {})", names.empty() ? "" : ", ", joint.name,
+                           joint.drive.command_id, bus.can);
+    }
+    return names;
+  }
+
+ private:
+  void note(int bus, const CanFrame& frame) {
+    for (std::size_t i = 0; i < here_.size(); ++i) {
+      const DriveConfig& drive = robot_.joints[i].drive;
+      if (drive.bus == bus && drive.reply_id == frame.id && !frame.extended && !frame.error)
+        here_[i] = true;
+    }
+  }
+
+  const Robot& robot_;
+  std::span<CanBus* const> buses_;
+  std::vector<bool> here_;
+};
+
+}  // namespace
+
+std::string call_roll(const Robot& robot, std::span<CanBus* const> buses, double patience_s,
+                      const volatile std::sig_atomic_t& stop) {
+  Roll roll(robot, buses);
+  const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+  while (!roll.complete() && stop == 0 && monotonic_ns() < end_ns) {
+    roll.ask();
+    roll.listen_until(monotonic_ns() + kAskAgain_ns);
+  }
+  roll.drop_stragglers();
+  return roll.missing();
+}
+
+}  // namespace limber

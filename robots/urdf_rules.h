@@ -1,0 +1,30 @@
+// Which attributes of a URDF hold numbers, and what numbers they may be.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <string>
+#include <vector>
+
+#include "common/complaints.h"
+
+namespace limber {
+
+/// Numbers of an attribute, separated by blanks; empty if any of them is not one. No complaint.
+std::vector<double> attribute_numbers(const tinyxml2::XMLElement& element, const char* attribute);
+/// The first of them, or `otherwise`.
+double attribute_number(const tinyxml2::XMLElement& element, const char* attribute,
+                        double otherwise);
+
+/// Checks every number below a <link> or <joint>: finite, fully consumed, as many as there must be,
+/// angles in radians; no attribute and no repeated element that the URDF library would ignore
+/// silently. `where` names the link or joint, as in "link 'a'".
+void check_urdf_numbers(const tinyxml2::XMLElement& top, const std::string& where,
+                        Complaints* complaints);
+
+/// <inertial>: one mass in (0, 1000] kg; one inertia, positive definite, no principal moment larger
+/// than the sum of the other two.
+void check_urdf_inertial(const tinyxml2::XMLElement& inertial, const std::string& where,
+                         Complaints* complaints);
+
+}  // namespace limber

@@ -1,0 +1,25 @@
+// One entry of a scenario's timeline: `at_s` and exactly one thing that happens then.
+#pragma once
+
+#include <limber/compliance_gains_t.hpp>
+
+#include "common/yaml_reader.h"
+#include "scenarios/scenario.h"
+
+namespace limber {
+
+/// What an entry is read against.
+struct EntryContext {
+  const LoadedRobot& robot;
+  double duration_s;
+  compliance_gains_t gains;  ///< after the gains entries so far
+};
+
+/// Reads and checks one entry; messages are without seq, which is given when the timeline is
+/// sorted. Set-up only.
+TimedMessage read_entry(const YamlMap& yaml, EntryContext* context);
+
+/// A request on behalf of the scenario.
+TimedMessage mode_at(double time_s, std::int8_t request);
+
+}  // namespace limber

@@ -1,0 +1,64 @@
+// The arm as something that moves: one interface, two integrators.
+//
+//   reference  reduced coordinates, articulated-body algorithm, Runge-Kutta 4: exact enough to compare formulas with
+//   ode        maximal coordinates, one ODE body a link, dWorldStep: first order, as the physics engines users know
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "scenarios/scenario.h"
+#include "sim/articulated_body.h"
+#include "sim/force_model.h"
+
+namespace limber::sim {
+
+/// After construction every member is free of allocation, locks, logs and exceptions.
+class ArmPlant {
+ public:
+  virtual ~ArmPlant() = default;
+  ArmPlant(const ArmPlant&) = delete;
+  ArmPlant& operator=(const ArmPlant&) = delete;
+
+  void set_state(const VectorJ& q, const VectorJ& v) noexcept;
+  /// Advances by h seconds from simulated time t. A step that would end in a state that is not finite or faster than
+  /// kMaxSpeed is not taken: the arm stops where it was, and diverged() counts.
+  void step(ForceModel* forces, double h, std::int64_t t_ns) noexcept;
+  /// A point mass at the tip, kg, at p_TL in tip axes, m; 0 removes it. Velocities stay, momentum does not.
+  void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
+
+  /// Joint torque of wall and pushes at the present state and simulated time t.
+  VectorJ external_torque(const Environment& environment, std::int64_t t_ns) noexcept;
+
+  const VectorJ& q() const noexcept { return q_; }
+  const VectorJ& v() const noexcept { return v_; }
+  /// Kinematics and energies at (q, v).
+  const ArticulatedBody& arm() const noexcept { return arm_; }
+  /// Since construction.
+  const Work& work() const noexcept { return work_; }
+  std::int64_t diverged() const noexcept { return diverged_; }
+
+  static constexpr double kMaxSpeed = 1e3;  ///< rad/s or m/s
+
+ protected:
+  explicit ArmPlant(const ArmModel& model);
+
+  /// Moves q_, v_, work_ and arm_ on by one step; forces->begin_step() has been done and arm_ is at (q_, v_).
+  virtual void integrate(ForceModel* forces, double h) noexcept = 0;
+  /// Takes over q_ and v_ after they have been set from outside.
+  virtual void state_was_set() noexcept {}
+  /// Takes over the tip body's new mass properties; arm_ is at (q_, v_).
+  virtual void payload_was_set() noexcept {}
+
+  ArticulatedBody arm_;
+  VectorJ q_, v_;
+  Work work_;
+
+ private:
+  std::int64_t diverged_ = 0;
+};
+
+/// Throws ConfigError when the integrator cannot take this arm (massless links in ODE; a joint that moves no mass at all).
+std::unique_ptr<ArmPlant> make_arm_plant(Integrator integrator, const ArmModel& model);
+
+}  // namespace limber::sim

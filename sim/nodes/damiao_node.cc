@@ -1,0 +1,181 @@
+#include "sim/nodes/damiao_node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limber/scenario_event_t.hpp>
+#include <numbers>
+
+namespace limber::sim {
+namespace {
+
+constexpr std::uint8_t kRead = 0x33;
+constexpr std::uint8_t kWrite = 0x55;
+constexpr std::uint8_t kStateRequest = 0xCC;
+constexpr std::uint8_t kMotorPosition = 80;
+constexpr std::uint8_t kOutputPosition = 81;
+constexpr int kTemperature_degC = 30;
+/// Some clients send special frames to the id of another mode: id + 0x100, 0x200, 0x300.
+constexpr std::uint32_t kModeStep = 0x100;
+constexpr std::uint32_t kLastModeOffset = 0x300;
+
+}  // namespace
+
+DamiaoNode::DamiaoNode(const JointConfig& joint, bool fd)
+    : drive_(joint.drive), registers_(joint.drive, fd) {}
+
+DamiaoNode::Sensed DamiaoNode::sense(const JointReading& joint) const noexcept {
+  const double torque = drive_.sign * joint.motor_torque;
+  if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_position_, 0.0, torque};
+  const double step = 2.0 * std::numbers::pi / std::ldexp(1.0, drive_.encoder_bits);
+  const double angle = drive_.sign * joint.q + drive_.offset_rad;
+  return {std::floor(angle / step) * step + zero_, drive_.sign * joint.v, torque};
+}
+
+CanFrame DamiaoNode::state_frame(const CanFrame& request,
+                                 const JointReading& joint) const noexcept {
+  const Sensed sensed = sense(joint);
+  mit::Reply reply;
+  reply.id_nibble = static_cast<std::uint8_t>(drive_.command_id & 0xF);
+  reply.error = state_;
+  reply.position_rad = sensed.position;
+  reply.velocity_rad_per_s = sensed.velocity;
+  reply.torque_Nm = sensed.torque;
+  reply.mos_temperature_degC = kTemperature_degC;
+  reply.rotor_temperature_degC = kTemperature_degC;
+  CanFrame frame = mit::encode_reply(reply, registers_.range(), drive_.reply_id, request.fd,
+                                     mit::Quantiser::kTruncate);
+  frame.bitrate_switch = request.bitrate_switch;
+  return frame;
+}
+
+bool DamiaoNode::receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
+                         CanFrame* reply) noexcept {
+  now_ns_ = now_ns;
+  if (frame.extended || frame.remote || frame.error) return false;
+  const bool deaf = has(scenario_event_t::FAULT_DROP_COMMANDS);
+
+  mit::RegisterRequest request;
+  if (frame.id == mit::kRegisterId) {
+    if (!mit::decode_register_request(frame, &request) || request.id != drive_.command_id) {
+      return false;
+    }
+    if (!deaf) last_frame_ns_ = now_ns;
+    return on_register(frame, request, joint, reply) && !has(scenario_event_t::FAULT_SILENT);
+  }
+
+  const std::uint32_t offset = frame.id - drive_.command_id;
+  mit::Special special{};
+  const bool is_special = mit::decode_special(frame, &special);
+  const bool other_mode = offset % kModeStep == 0 && offset <= kLastModeOffset && is_special;
+  if ((offset != 0 && !other_mode) || frame.length != 8) return false;
+  *reply = state_frame(frame, joint);
+  if (!deaf) {
+    last_frame_ns_ = now_ns;
+    if (is_special) {
+      on_special(special, joint);
+    } else {
+      on_command(frame);
+    }
+  }
+  return !has(scenario_event_t::FAULT_SILENT);
+}
+
+bool DamiaoNode::on_register(const CanFrame& frame, const mit::RegisterRequest& request,
+                             const JointReading& joint, CanFrame* reply) noexcept {
+  if (request.operation == kStateRequest) {
+    *reply = state_frame(frame, joint);
+    return true;
+  }
+  std::uint32_t value = request.raw_value;
+  if (request.operation == kWrite && !has(scenario_event_t::FAULT_DROP_COMMANDS)) {
+    registers_.write(request.reg, request.raw_value);
+    if (!registers_.mit_mode()) command_ = {};
+  }
+  if (request.operation == kRead || request.operation == kWrite) {
+    const auto position = static_cast<float>(sense(joint).position);
+    value = request.reg == kOutputPosition ? mit::float_bits(position)
+            : request.reg == kMotorPosition
+                ? mit::float_bits(position * static_cast<float>(drive_.gear_ratio))
+                : registers_.read(request.reg);
+  }
+  *reply = mit::encode_register_answer(request, value, drive_.reply_id, frame.fd);
+  reply->bitrate_switch = frame.bitrate_switch;
+  return true;
+}
+
+void DamiaoNode::on_special(mit::Special special, const JointReading& joint) noexcept {
+  const bool enabled = state_ == mit::DriveError::kEnabled;
+  const bool failed = !enabled && state_ != mit::DriveError::kDisabled;
+  switch (special) {
+    case mit::Special::kEnable:
+      if (!failed) state_ = mit::DriveError::kEnabled;
+      break;
+    case mit::Special::kDisable:
+      if (enabled) leave(mit::DriveError::kDisabled);
+      break;
+    case mit::Special::kClearError:
+      if (failed && !has(scenario_event_t::FAULT_DRIVE_ERROR)) leave(mit::DriveError::kDisabled);
+      break;
+    case mit::Special::kSetZero:
+      // Obeyed at rest only: a zero that moves under a working position loop is a jump.
+      if (!enabled) zero_ -= sense(joint).position;
+      break;
+  }
+}
+
+void DamiaoNode::on_command(const CanFrame& frame) noexcept {
+  mit::Command command;
+  if (state_ != mit::DriveError::kEnabled || !registers_.mit_mode() ||
+      !mit::decode_command(frame, registers_.range(), &command)) {
+    return;
+  }
+  command_ = command;
+}
+
+void DamiaoNode::leave(mit::DriveError state) noexcept {
+  state_ = state;
+  command_ = {};
+  shorted_ = state == mit::DriveError::kCommunicationLost &&
+             drive_.watchdog_reaction == NodeWatchdogReaction::kDamp;
+}
+
+void DamiaoNode::update(std::int64_t now_ns) noexcept {
+  now_ns_ = now_ns;
+  const std::int64_t timeout = registers_.timeout_ns();
+  if (state_ == mit::DriveError::kEnabled && timeout > 0 && now_ns - last_frame_ns_ > timeout) {
+    leave(mit::DriveError::kCommunicationLost);
+  }
+}
+
+DriveLaw DamiaoNode::law() const noexcept {
+  DriveLaw law;
+  law.passive_damping = shorted_ ? drive_.short_circuit_damping_Nms : 0.0;
+  if (state_ != mit::DriveError::kEnabled) return law;
+  const double peak = drive_.peak_torque_Nm;
+  law.limit = peak > 0.0 ? std::min(peak, registers_.range().torque_Nm)
+                         : registers_.range().torque_Nm;
+  law.tau_ff = drive_.sign * command_.torque_Nm;
+  if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
+    // The loop runs on what the encoder says, which no longer depends on the joint.
+    law.tau_ff +=
+        drive_.sign * (command_.kp_Nm_per_rad * (command_.position_rad - frozen_position_) +
+                       command_.kd_Nms_per_rad * command_.velocity_rad_per_s);
+    return law;
+  }
+  law.kp = command_.kp_Nm_per_rad;
+  law.kd = command_.kd_Nms_per_rad;
+  law.q_des = drive_.sign * (command_.position_rad - zero_ - drive_.offset_rad);
+  law.v_des = drive_.sign * command_.velocity_rad_per_s;
+  return law;
+}
+
+void DamiaoNode::inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
+  if (fault < 0 || fault >= kFaults) return;
+  if (fault == scenario_event_t::FAULT_FROZEN_ENCODER) frozen_position_ = sense(joint).position;
+  if (fault == scenario_event_t::FAULT_DRIVE_ERROR) leave(mit::DriveError::kOverCurrent);
+  fault_until_ns_[fault] = until_ns;
+}
+
+void DamiaoNode::clear_faults() noexcept { fault_until_ns_.fill(0); }
+
+}  // namespace limber::sim

@@ -1,0 +1,83 @@
+// An emulated Damiao motor drive: what a real one does with each frame, and when it switches itself off.
+//
+// Every frame for the node is answered with the state before the frame takes effect, on the reply id, in the format (classic or
+// FD) of the request. The node speaks the drive's own angle (sign and offset of the robot's description, then set-zero).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "drivers/can/can_frame.h"
+#include "drivers/protocols/mit.h"
+#include "robots/robot.h"
+#include "sim/joints/drive_law.h"
+#include "sim/nodes/damiao_registers.h"
+
+namespace limber::sim {
+
+/// The joint as it is, in joint coordinates. rad, rad/s, N m.
+struct JointReading {
+  double q = 0.0;
+  double v = 0.0;
+  double motor_torque = 0.0;
+};
+
+/// States are those of the status nibble: disabled (phases open: rotor and friction are all the joint feels), enabled, or a
+/// latched error, which leaves enabled mode until it is cleared (FB) and the drive enabled again (FC).
+/// After construction every member is allowed in the cycle.
+class DamiaoNode {
+ public:
+  DamiaoNode(const JointConfig& joint, bool fd);
+
+  /// Handles a frame at simulated time `now`. True if `reply` is to be sent; frames for others, of the wrong length, extended,
+  /// remote or error frames are no concern of the node.
+  bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
+               CanFrame* reply) noexcept;
+
+  /// Lets simulated time pass: the drive's own watchdog, the end of faults. Call before every integration step.
+  void update(std::int64_t now_ns) noexcept;
+
+  /// The torque law at work, in joint coordinates: kp, kd and t of the last command, limited to the smaller of the torque
+  /// range and the drive's peak.
+  DriveLaw law() const noexcept;
+
+  /// scenario_event_t FAULT_* until a simulated time:
+  ///   SILENT          obeys, but its replies never reach the bus
+  ///   FROZEN_ENCODER  position stays what it was, speed reads 0, for the bus and for the drive's own law
+  ///   DRIVE_ERROR     over-current: leaves enabled mode; cannot be cleared while it lasts
+  ///   DROP_COMMANDS   answers, but takes nothing in: the watchdog is not fed
+  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept;
+  void clear_faults() noexcept;
+
+  mit::DriveError state() const noexcept { return state_; }
+  const DamiaoRegisters& registers() const noexcept { return registers_; }
+
+ private:
+  static constexpr int kFaults = 4;
+  /// The drive's own view of its joint.
+  struct Sensed {
+    double position, velocity, torque;
+  };
+
+  Sensed sense(const JointReading& joint) const noexcept;
+  CanFrame state_frame(const CanFrame& request, const JointReading& joint) const noexcept;
+  void on_special(mit::Special special, const JointReading& joint) noexcept;
+  void on_command(const CanFrame& frame) noexcept;
+  bool on_register(const CanFrame& frame, const mit::RegisterRequest& request,
+                   const JointReading& joint, CanFrame* reply) noexcept;
+  void leave(mit::DriveError state) noexcept;
+  bool has(int fault) const noexcept { return now_ns_ < fault_until_ns_[fault]; }
+
+  DriveConfig drive_;
+  DamiaoRegisters registers_;
+  mit::DriveError state_ = mit::DriveError::kDisabled;
+  mit::Command command_;
+  bool shorted_ = false;
+  double zero_ = 0.0;  // set-zero: added to the drive angle
+  std::int64_t now_ns_ = 0;
+  std::int64_t last_frame_ns_ = 0;
+  std::array<std::int64_t, kFaults> fault_until_ns_{};
+  double frozen_position_ = 0.0;
+};
+
+}  // namespace limber::sim

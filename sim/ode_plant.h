@@ -1,0 +1,40 @@
+// Maximal coordinates: one ODE body a link, one ODE hinge or slider a joint, dWorldStep.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <array>
+
+#include "sim/arm_plant.h"
+
+namespace limber::sim {
+
+/// First order in the step. Rotor inertia has no place in ODE's bodies; each joint gets tau - B qdd instead of tau, with qdd
+/// from the articulated-body algorithm under the very same forces, so that the links feel M + B.
+class OdePlant final : public ArmPlant {
+ public:
+  /// ODE wants every body to have mass and a positive definite inertia: throws ConfigError where a moving link has not
+  /// (the reference integrator takes such arms).
+  explicit OdePlant(const ArmModel& model);
+  ~OdePlant() override;
+
+ private:
+  void integrate(ForceModel* forces, double h) noexcept override;
+  void state_was_set() noexcept override;
+  void payload_was_set() noexcept override;
+
+  void create(int i);
+  /// Bodies to the zero posture, masses and joint anchors as the model says, then back to (q_, v_).
+  void assemble() noexcept;
+  void place_bodies(const ArticulatedBody& arm) noexcept;
+  void apply(const VectorJ& tau) noexcept;
+  void read_joints() noexcept;
+
+  dWorldID world_;
+  dJointGroupID joints_;
+  std::array<dBodyID, kMaxJoints> body_{};
+  std::array<dJointID, kMaxJoints> joint_{};
+  VectorJ tau_, qdd_, no_extra_inertia_;
+};
+
+}  // namespace limber::sim

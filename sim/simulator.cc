@@ -1,0 +1,304 @@
+#include "sim/simulator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/config_error.h"
+#include "drivers/can/lockstep_frame.h"
+#include "sim/arm_plant.h"
+#include "sim/force_model.h"
+#include "sim/inbox.h"
+#include "sim/nodes/damiao_node.h"
+#include "sim/tick_count.h"
+#include "sim/truth.h"
+#include "sim/world_event.h"
+
+namespace limber {
+namespace {
+
+/// Frames handled in one call of poll(), so that a flood cannot hold up time.
+constexpr int kMostFrames = 4096;
+/// Arm times beyond a year are nobody's TICK.
+constexpr std::int64_t kLongest_ns = 366LL * 86400 * 1'000'000'000;
+
+template <typename... Args>
+[[noreturn]] void refuse(const Robot& robot, fmt::format_string<Args...> text, Args&&... args) {
+  throw ConfigError(robot.name + ": " + fmt::format(text, std::forward<Args>(args)...));
+}
+
+void check(const Robot& robot, const std::vector<CanBus*>& buses, const SimulatorOptions& options) {
+  if (!robot.has_drives) refuse(robot, "has no drives (no robot.yaml), so there is nothing to simulate on a bus");
+  if (robot.size() < 1 || robot.size() > kMaxJoints) {
+    refuse(robot, "has {} joints; 1 to {} are allowed", robot.size(), kMaxJoints);
+  }
+  if (buses.size() != robot.buses.size() || buses.empty() || buses.size() > kMaxBuses) {
+    refuse(robot, "needs its {} buses, 1 to {} are allowed, {} given", robot.buses.size(),
+           kMaxBuses, buses.size());
+  }
+  if (!(options.step_s >= 1e-6 && options.step_s <= 0.01)) {
+    refuse(robot, "integration step {} s; allowed: 1e-6 to 0.01", options.step_s);
+  }
+  if (!(robot.rate_hz >= 1.0 && robot.rate_hz <= 1e5)) refuse(robot, "rate {} Hz; allowed: 1 to 1e5", robot.rate_hz);
+  for (const JointConfig& joint : robot.joints) {
+    if (joint.drive.bus < 0 || joint.drive.bus >= static_cast<int>(buses.size())) {
+      refuse(robot, "joint {} is on bus number {}, which does not exist", joint.name,
+             joint.drive.bus);
+    }
+  }
+}
+
+VectorJ start_position(const Robot& robot, const std::vector<double>& start_q) {
+  if (!start_q.empty() && static_cast<int>(start_q.size()) != robot.size()) {
+    refuse(robot, "the start has {} joints, the robot {}", start_q.size(), robot.size());
+  }
+  VectorJ q(robot.size());
+  for (int i = 0; i < robot.size(); ++i) {
+    const JointConfig& joint = robot.joints[i];
+    q[i] = start_q.empty() ? joint.home : start_q[i];
+    if (!(q[i] >= joint.position_min && q[i] <= joint.position_max) || !std::isfinite(q[i])) {
+      refuse(robot, "start of {} at {}; allowed: {} to {}", joint.name, q[i], joint.position_min,
+             joint.position_max);
+    }
+  }
+  return q;
+}
+
+}  // namespace
+
+struct Simulator::Impl {
+  Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buses,
+       const SimulatorOptions& options);
+
+  bool poll() noexcept;
+  void on_frame(int bus, const CanFrame& frame) noexcept;
+  bool on_tick(int bus, std::int64_t number) noexcept;
+  void advance_step() noexcept;
+  void apply_timeline(std::int64_t time_ns) noexcept;
+  void apply(const ScenarioMessage& message) noexcept;
+  void clear_world() noexcept;
+  bool push(const push_t& message) noexcept;
+  bool event(const scenario_event_t& message) noexcept;
+  sim::JointReading reading(int joint) const noexcept;
+  std::int64_t sim_time(std::int64_t steps) const noexcept;
+  std::int64_t arm_time_now() const noexcept;
+
+  std::unique_ptr<sim::ArmPlant> plant;
+  sim::ForceModel forces;
+  std::vector<sim::DamiaoNode> nodes;
+  std::vector<int> node_bus;
+  std::vector<sim::Inbox> inboxes;
+  sim::TickCount ticks;
+  bool lockstep;
+
+  std::int64_t period_ns;
+  std::int64_t steps_per_period;
+  double step_s;
+  std::int64_t steps = 0;
+
+  // Arm time was arm_anchor_ns when simulated time was sim_anchor_ns.
+  bool arm_time_known = false;
+  std::int64_t arm_anchor_ns = 0;
+  std::int64_t sim_anchor_ns = 0;
+
+  const std::vector<TimedMessage>* messages = nullptr;
+  Timeline timeline{nullptr};
+  std::int64_t refused = 0;
+  sim_truth_t truth{};
+};
+
+Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buses,
+                      const SimulatorOptions& options)
+    : forces(robot.robot, options.friction),
+      ticks(static_cast<int>(buses.size())),
+      lockstep(options.lockstep) {
+  const double period_s = 1.0 / robot.robot.rate_hz;
+  period_ns = std::llround(1e9 * period_s);
+  // The tolerance keeps 0.001 / 0.00025 from becoming 5 steps by rounding.
+  steps_per_period = std::max(1LL, std::llround(std::ceil(period_s / options.step_s - 1e-6)));
+  step_s = period_s / static_cast<double>(steps_per_period);
+
+  plant = sim::make_arm_plant(options.integrator, sim::build_arm_model(robot));
+  plant->set_state(start_position(robot.robot, options.start_q), VectorJ::Zero(robot.robot.size()));
+  for (CanBus* bus : buses) inboxes.emplace_back(bus);
+  for (const JointConfig& joint : robot.robot.joints) {
+    node_bus.push_back(joint.drive.bus);
+    nodes.emplace_back(joint, robot.robot.buses[joint.drive.bus].fd);
+  }
+}
+
+sim::JointReading Simulator::Impl::reading(int joint) const noexcept {
+  const double q = plant->q()[joint];
+  const double v = plant->v()[joint];
+  return {q, v, forces.drives[joint].torque(q, v)};
+}
+
+std::int64_t Simulator::Impl::sim_time(std::int64_t after_steps) const noexcept {
+  return after_steps / steps_per_period * period_ns +
+         after_steps % steps_per_period * period_ns / steps_per_period;
+}
+
+std::int64_t Simulator::Impl::arm_time_now() const noexcept {
+  return arm_anchor_ns + (sim_time(steps) - sim_anchor_ns);
+}
+
+bool Simulator::Impl::poll() noexcept {
+  int left = kMostFrames;
+  for (int bus = 0; bus < static_cast<int>(inboxes.size()); ++bus) {
+    while (const CanFrame* frame = inboxes[bus].next()) {
+      if (lockstep && lockstep::is_tick(*frame)) {
+        if (on_tick(bus, lockstep::sequence(*frame))) return true;
+      } else {
+        on_frame(bus, *frame);
+      }
+      if (--left == 0) return false;
+    }
+  }
+  return false;
+}
+
+void Simulator::Impl::on_frame(int bus, const CanFrame& frame) noexcept {
+  CanFrame reply;
+  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+    if (node_bus[i] == bus && nodes[i].receive(frame, reading(i), sim_time(steps), &reply)) {
+      inboxes[bus].bus()->send(reply);
+    }
+  }
+}
+
+bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
+  switch (ticks.tick(bus, number)) {
+    case sim::TickCount::Verdict::kWait:
+      return false;
+    case sim::TickCount::Verdict::kRepeated:
+      inboxes[bus].bus()->send(lockstep::tock(number));
+      return false;
+    case sim::TickCount::Verdict::kAdvance:
+      break;
+  }
+  if (ticks.falls()) clear_world();
+  arm_time_known = true;
+  arm_anchor_ns = std::clamp<std::int64_t>(number, 0, kLongest_ns / period_ns) * period_ns;
+  sim_anchor_ns = sim_time(steps);
+  apply_timeline(arm_anchor_ns);
+  for (std::int64_t i = 0; i < steps_per_period; ++i) advance_step();
+  for (const sim::Inbox& inbox : inboxes) inbox.bus()->send(lockstep::tock(number));
+  return true;
+}
+
+void Simulator::Impl::advance_step() noexcept {
+  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i].law();
+  const std::int64_t now = sim_time(steps);
+  const std::int64_t next = sim_time(steps + 1);
+  forces.environment.pushes.drop_finished(now);
+  // Pushes change slowly against a step: their value in its middle stands for all of it.
+  plant->step(&forces, step_s, now + (next - now) / 2);
+  ++steps;
+  for (sim::DamiaoNode& node : nodes) node.update(next);
+}
+
+void Simulator::Impl::apply_timeline(std::int64_t time_ns) noexcept {
+  while (const ScenarioMessage* message = timeline.due(time_ns)) apply(*message);
+}
+
+void Simulator::Impl::apply(const ScenarioMessage& message) noexcept {
+  bool done = true;
+  if (const auto* a_push = std::get_if<push_t>(&message)) done = push(*a_push);
+  if (const auto* an_event = std::get_if<scenario_event_t>(&message)) done = event(*an_event);
+  if (!done) ++refused;
+}
+
+void Simulator::Impl::clear_world() noexcept {
+  timeline.rewind();
+  if (messages == nullptr) return;
+  forces.environment.wall = sim::Wall();
+  forces.environment.pushes.clear();
+  plant->set_payload(0.0, Eigen::Vector3d::Zero());
+  for (sim::DamiaoNode& node : nodes) node.clear_faults();
+}
+
+bool Simulator::Impl::push(const push_t& message) noexcept {
+  sim::Push push;
+  return sim::read_push(message, plant->arm().model(), &push) &&
+         forces.environment.pushes.add(push, sim_time(steps));
+}
+
+bool Simulator::Impl::event(const scenario_event_t& message) noexcept {
+  sim::Payload payload;
+  sim::NodeFault fault;
+  switch (message.kind) {
+    case scenario_event_t::EVENT_WALL:
+      return sim::read_wall(message, &forces.environment.wall);
+    case scenario_event_t::EVENT_PAYLOAD:
+      if (!sim::read_payload(message, &payload)) return false;
+      plant->set_payload(payload.mass, payload.p_TL);
+      return true;
+    case scenario_event_t::EVENT_FAULT: {
+      if (!sim::read_fault(message, plant->arm().size(), &fault)) return false;
+      const std::int64_t now = sim_time(steps);
+      constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+      nodes[fault.joint].inject(fault.fault, reading(fault.joint),
+                                fault.duration_ns > kForEver - now ? kForEver
+                                                                   : now + fault.duration_ns);
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+Simulator::Simulator(const LoadedRobot& robot, std::vector<CanBus*> buses,
+                     const SimulatorOptions& options) {
+  check(robot.robot, buses, options);
+  impl_ = std::make_unique<Impl>(robot, buses, options);
+}
+
+Simulator::~Simulator() = default;
+
+bool Simulator::poll() noexcept { return impl_->poll(); }
+
+void Simulator::advance_to(std::int64_t sim_time_ns) noexcept {
+  while (next_step_ns() <= sim_time_ns) {
+    if (impl_->arm_time_known) impl_->apply_timeline(impl_->arm_time_now());
+    impl_->advance_step();
+  }
+}
+
+std::int64_t Simulator::sim_time_ns() const noexcept { return impl_->sim_time(impl_->steps); }
+std::int64_t Simulator::next_step_ns() const noexcept { return impl_->sim_time(impl_->steps + 1); }
+std::int64_t Simulator::periods() const noexcept { return impl_->steps / impl_->steps_per_period; }
+
+std::int64_t Simulator::arm_time_ns() const noexcept {
+  return impl_->lockstep ? impl_->arm_anchor_ns : impl_->arm_time_now();
+}
+
+void Simulator::set_arm_time_ns(std::int64_t time_ns) noexcept {
+  impl_->arm_time_known = true;
+  impl_->arm_anchor_ns = time_ns;
+  impl_->sim_anchor_ns = sim_time_ns();
+}
+
+void Simulator::set_timeline(const std::vector<TimedMessage>* timeline) noexcept {
+  impl_->messages = timeline;
+  impl_->timeline = Timeline(timeline);
+}
+
+void Simulator::restart_timeline() noexcept { impl_->clear_world(); }
+bool Simulator::push(const push_t& push) noexcept { return impl_->push(push); }
+bool Simulator::event(const scenario_event_t& event) noexcept { return impl_->event(event); }
+std::int64_t Simulator::refused() const noexcept { return impl_->refused; }
+
+const sim_truth_t& Simulator::truth() noexcept {
+  sim_truth_t& truth = impl_->truth;
+  truth.seq = periods();
+  truth.sim_time_ns = sim_time_ns();
+  truth.time_ns = impl_->arm_time_known ? impl_->arm_time_now() : 0;
+  sim::fill_truth(impl_->forces, truth.sim_time_ns, impl_->plant.get(), &truth);
+  return truth;
+}
+
+std::int64_t Simulator::diverged() const noexcept { return impl_->plant->diverged(); }
+
+}  // namespace limber

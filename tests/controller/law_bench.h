@@ -1,0 +1,34 @@
+// One law at one arm, outside the cycle: evaluate it anywhere.
+#pragma once
+
+#include <string>
+
+#include "controller/laws/registry.h"
+#include "tests/controller/arms.h"
+
+namespace limber::testing {
+
+class LawBench {
+ public:
+  LawBench(const LoadedRobot& arm, const std::string& name);
+
+  /// The law's output at (q, v); terms are left in `terms`.
+  const controller::LawOutput& at(const VectorJ& q, const VectorJ& v);
+  /// Its torque with gravity, without Coriolis and null space: a continuous-time feedback.
+  VectorJ with_gravity(const VectorJ& q, const VectorJ& v);
+  /// The goal is where the arm is at q.
+  void set_goal(const VectorJ& q);
+
+  LoadedRobot robot;
+  controller::ArmModel model;
+  controller::ArmTerms terms;
+  controller::ArmState state;
+  controller::Goal goal;
+  controller::Gains gains;
+  controller::LawOutput output;
+
+ private:
+  std::unique_ptr<controller::Law> law_;
+};
+
+}  // namespace limber::testing

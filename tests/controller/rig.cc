@@ -1,0 +1,129 @@
+#include "tests/controller/rig.h"
+
+#include <algorithm>
+
+namespace limber::testing {
+namespace {
+
+ArmControllerOptions options_for(const std::string& law) {
+  ArmControllerOptions options;
+  options.controller = 3;
+  options.law = law;
+  options.measure_time = false;
+  return options;
+}
+
+}  // namespace
+
+Rig::Rig(const LoadedRobot& given, const std::string& law)
+    : robot(given), controller(robot, options_for(law)), plant(robot) {
+  const int n = robot.robot.size();
+  plant.q.setConstant(0.4);
+  state.seq = -1;
+  state.session = 11;
+  state.period_ns = 1'000'000;
+  state.num_joints = static_cast<std::int8_t>(n);
+  state.drive_state = joint_state_t::DRIVE_OFF;
+  state.fault_joint = -1;
+  for (int i = 0; i < n; ++i) state.joint_flags[i] = joint_state_t::JOINT_FRESH;
+}
+
+const joint_torque_t& Rig::step() {
+  ++state.seq;
+  state.time_ns = state.seq * state.period_ns;
+  const int n = state.num_joints;
+  const bool on = state.drive_state == joint_state_t::DRIVE_ON;
+  const VectorJ sent =
+      on ? VectorJ(Eigen::Map<const Eigen::VectorXd>(answer.tau, n)) : VectorJ::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    state.q[i] = state.theta[i] = plant.q[i];
+    state.v[i] = state.theta_dot[i] = plant.v[i];
+    state.tau_applied[i] = state.tau[i] = sent[i];
+  }
+  if (on) {
+    plant.advance(1e-3, [&](const VectorJ&, const VectorJ&) { return sent; });
+  } else {
+    plant.v.setZero();
+  }
+  const joint_torque_t before = answer;
+  answer = controller.step(state);
+  for (int i = 0; i < n; ++i) jump_ = std::max(jump_, std::abs(answer.tau[i] - before.tau[i]));
+  limits_ |= controller.status().limits;
+  follow_request();
+  return answer;
+}
+
+void Rig::follow_request() {
+  switch (answer.request) {
+    case joint_torque_t::REQUEST_ON:
+    case joint_torque_t::REQUEST_ACKNOWLEDGE:
+      state.drive_state = joint_state_t::DRIVE_ON;
+      break;
+    case joint_torque_t::REQUEST_OFF:
+      state.drive_state = joint_state_t::DRIVE_OFF;
+      break;
+    case joint_torque_t::REQUEST_HOLD:
+      state.drive_state = joint_state_t::DRIVE_HOLD;
+      break;
+    default:
+      break;
+  }
+}
+
+void Rig::run(double seconds) {
+  for (int i = 0; i < static_cast<int>(seconds * 1e3 + 0.5); ++i) step();
+}
+
+void Rig::to_hold() {
+  run(0.12);
+  ask(mode_request_t::REQUEST_HOLD);
+  run(1.5);
+}
+
+void Rig::to_active() {
+  to_hold();
+  ask(mode_request_t::REQUEST_ACTIVE);
+  run(0.7);
+  clear_jumps();
+}
+
+const char* Rig::ask(std::int8_t request, std::int64_t client) {
+  mode_request_t message{};
+  message.client = client;
+  message.request = request;
+  return controller.on_mode(message);
+}
+
+compliance_gains_t Rig::gains() const {
+  const DefaultGains& given = robot.robot.gains;
+  compliance_gains_t message{};
+  message.client = kClient;
+  message.num_joints = state.num_joints;
+  message.damping_ratio = given.damping_ratio;
+  message.joint_damping_ratio = given.joint_damping_ratio;
+  for (int i = 0; i < 6; ++i) {
+    message.K_x[i][i] = i < 3 ? given.K_x_translation_N_per_m : given.K_x_rotation_Nm_per_rad;
+  }
+  std::copy(given.K_q.begin(), given.K_q.end(), message.K_q);
+  std::copy(given.K_null.begin(), given.K_null.end(), message.K_null);
+  std::copy(given.D_null.begin(), given.D_null.end(), message.D_null);
+  return message;
+}
+
+compliance_goal_t Rig::goal() const {
+  compliance_goal_t message{};
+  message.client = kClient;
+  message.num_joints = state.num_joints;
+  message.kind = compliance_goal_t::GOAL_OFFSET;
+  message.quat_BD[0] = 1.0;
+  return message;
+}
+
+VectorJ Rig::tau() const { return Eigen::Map<const Eigen::VectorXd>(answer.tau, state.num_joints); }
+
+void Rig::clear_jumps() {
+  jump_ = 0.0;
+  limits_ = 0;
+}
+
+}  // namespace limber::testing

@@ -1,0 +1,212 @@
+// The table of drive states against one written down independently, pair by pair.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/drive_states.h"
+
+namespace limber {
+namespace {
+
+using S = DriveState;
+using E = DriveEvent;
+
+const std::vector<S> kStates = {S::kConfiguring, S::kOff,  S::kEnabling, S::kOn,
+                                S::kHold,        S::kDamp, S::kFault};
+
+/// What safety asks for, in words: the pairs that do something. All others are ignored.
+const std::map<E, std::map<S, S>> kExpected = {
+    {E::kConfigured, {{S::kConfiguring, S::kOff}}},
+    {E::kEnabled, {{S::kEnabling, S::kOn}}},
+    {E::kTakenOver, {{S::kHold, S::kOn}, {S::kDamp, S::kOn}}},
+    {E::kRequestOn, {{S::kOff, S::kEnabling}}},
+    {E::kRequestOff,
+     {{S::kEnabling, S::kOff},
+      {S::kOn, S::kOff},
+      {S::kHold, S::kConfiguring},
+      {S::kDamp, S::kConfiguring}}},
+    {E::kRequestHold,
+     {{S::kEnabling, S::kOff}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kAcknowledge, {{S::kHold, S::kHold}, {S::kDamp, S::kDamp}, {S::kFault, S::kConfiguring}}},
+    {E::kShutDown,
+     {{S::kEnabling, S::kOff}, {S::kOn, S::kDamp}, {S::kHold, S::kDamp}, {S::kDamp, S::kDamp}}},
+    {E::kConfigurationWrong, {{S::kConfiguring, S::kFault}}},
+    {E::kEnableTimedOut, {{S::kEnabling, S::kFault}}},
+    {E::kControllerLost,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kCommandRefused, {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}}},
+    {E::kOverrun,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kHoldAsked,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kReplyLost,
+     {{S::kOff, S::kFault},
+      {S::kEnabling, S::kFault},
+      {S::kOn, S::kHold},
+      {S::kHold, S::kHold},
+      {S::kDamp, S::kDamp}}},
+    {E::kAllSilent,
+     {{S::kOff, S::kFault},
+      {S::kEnabling, S::kFault},
+      {S::kOn, S::kFault},
+      {S::kHold, S::kFault},
+      {S::kDamp, S::kFault}}},
+    {E::kBusLost,
+     {{S::kConfiguring, S::kFault},
+      {S::kOff, S::kFault},
+      {S::kEnabling, S::kFault},
+      {S::kOn, S::kHold},
+      {S::kHold, S::kHold},
+      {S::kDamp, S::kDamp}}},
+    {E::kDriveError,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kPositionTrip,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kHold}, {S::kHold, S::kHold}, {S::kDamp, S::kDamp}}},
+    {E::kVelocityTrip,
+     {{S::kEnabling, S::kFault}, {S::kOn, S::kDamp}, {S::kHold, S::kDamp}, {S::kDamp, S::kDamp}}},
+};
+
+const std::map<E, int> kFaults = {
+    {E::kRequestHold, joint_state_t::FAULT_REQUESTED},
+    {E::kShutDown, joint_state_t::FAULT_REQUESTED},
+    {E::kConfigurationWrong, joint_state_t::FAULT_CONFIGURATION},
+    {E::kEnableTimedOut, joint_state_t::FAULT_DRIVE_ERROR},
+    {E::kControllerLost, joint_state_t::FAULT_CONTROLLER_LOST},
+    {E::kCommandRefused, joint_state_t::FAULT_COMMAND_REFUSED},
+    {E::kOverrun, joint_state_t::FAULT_OVERRUN},
+    {E::kHoldAsked, joint_state_t::FAULT_REQUESTED},
+    {E::kReplyLost, joint_state_t::FAULT_REPLY_LOST},
+    {E::kAllSilent, joint_state_t::FAULT_REPLY_LOST},
+    {E::kBusLost, joint_state_t::FAULT_BUS},
+    {E::kDriveError, joint_state_t::FAULT_DRIVE_ERROR},
+    {E::kPositionTrip, joint_state_t::FAULT_POSITION},
+    {E::kVelocityTrip, joint_state_t::FAULT_VELOCITY},
+};
+
+/// Events that lead from CONFIGURING to a state.
+std::vector<E> way_to(S state) {
+  switch (state) {
+    case S::kConfiguring:
+      return {};
+    case S::kOff:
+      return {E::kConfigured};
+    case S::kEnabling:
+      return {E::kConfigured, E::kRequestOn};
+    case S::kOn:
+      return {E::kConfigured, E::kRequestOn, E::kEnabled};
+    case S::kHold:
+      return {E::kConfigured, E::kRequestOn, E::kEnabled, E::kHoldAsked};
+    case S::kDamp:
+      return {E::kConfigured, E::kRequestOn, E::kEnabled, E::kVelocityTrip};
+    case S::kFault:
+      return {E::kConfigurationWrong};
+  }
+  return {};
+}
+
+DriveStateMachine machine_in(S state) {
+  DriveStateMachine machine;
+  for (E event : way_to(state)) machine.apply(event);
+  EXPECT_EQ(machine.state(), state);
+  return machine;
+}
+
+TEST(DriveStatesTest, EveryPairOfStateAndEvent) {
+  ASSERT_EQ(kExpected.size(), static_cast<std::size_t>(kDriveEvents));
+  ASSERT_EQ(kStates.size(), static_cast<std::size_t>(kDriveStates));
+  for (const auto& [event, moves] : kExpected) {
+    for (S state : kStates) {
+      const std::string where = "state " + std::to_string(static_cast<int>(state)) + " event " +
+                                std::to_string(static_cast<int>(event));
+      const auto move = moves.find(state);
+      const DriveTransition transition = drive_transition(state, event);
+      EXPECT_EQ(transition.ignored, move == moves.end()) << where;
+      DriveStateMachine machine = machine_in(state);
+      const bool changed = machine.apply(event);
+      const S expected = move == moves.end() ? state : move->second;
+      EXPECT_EQ(machine.state(), expected) << where;
+      EXPECT_EQ(changed, expected != state) << where;
+    }
+  }
+}
+
+TEST(DriveStatesTest, EachEventHasItsFault) {
+  for (const auto& [event, moves] : kExpected) {
+    const auto fault = kFaults.find(event);
+    EXPECT_EQ(fault_of(event), fault == kFaults.end() ? 0 : fault->second);
+  }
+}
+
+TEST(DriveStatesTest, FaultsOnlyEscalate) {
+  // From following, over holding and braking, to being off.
+  const std::map<S, int> severity = {{S::kOn, 0},          {S::kHold, 1},     {S::kDamp, 2},
+                                     {S::kConfiguring, 3}, {S::kEnabling, 3}, {S::kOff, 3},
+                                     {S::kFault, 4}};
+  for (const auto& [event, fault] : kFaults) {
+    for (S state : kStates) {
+      const DriveTransition transition = drive_transition(state, event);
+      if (transition.ignored) continue;
+      EXPECT_GE(severity.at(transition.next), severity.at(state))
+          << static_cast<int>(state) << " " << static_cast<int>(event);
+    }
+  }
+}
+
+TEST(DriveStatesTest, AFaultIsLatchedInTheStatesThatNeedAnAcknowledgementOnly) {
+  for (const auto& [event, moves] : kExpected) {
+    for (S state : kStates) {
+      DriveStateMachine machine = machine_in(state);
+      machine.apply(event, 2);
+      const bool latching = machine.state() == S::kHold || machine.state() == S::kDamp ||
+                            machine.state() == S::kFault;
+      EXPECT_EQ(machine.fault() != joint_state_t::FAULT_NONE, latching && !machine.acknowledged())
+          << static_cast<int>(state) << " " << static_cast<int>(event);
+    }
+  }
+}
+
+TEST(DriveStatesTest, NothingButAnAcknowledgementLeavesFault) {
+  for (const auto& [event, moves] : kExpected) {
+    DriveStateMachine machine = machine_in(S::kFault);
+    machine.apply(event);
+    EXPECT_EQ(machine.state() == S::kFault, event != E::kAcknowledge);
+  }
+}
+
+TEST(DriveStatesTest, FirstFaultIsKeptUntilAcknowledged) {
+  DriveStateMachine machine = machine_in(S::kOn);
+  machine.apply(E::kReplyLost, 3);
+  machine.apply(E::kVelocityTrip, 1);
+  EXPECT_EQ(machine.state(), S::kDamp);
+  EXPECT_EQ(machine.fault(), joint_state_t::FAULT_REPLY_LOST + 0);
+  EXPECT_EQ(machine.fault_joint(), 3);
+  EXPECT_FALSE(machine.acknowledged());
+  machine.apply(E::kAcknowledge);
+  EXPECT_TRUE(machine.acknowledged());
+  EXPECT_EQ(machine.fault(), joint_state_t::FAULT_NONE + 0);
+  EXPECT_EQ(machine.fault_joint(), -1);
+  machine.apply(E::kPositionTrip, 2);  // in DAMP: stays, but it is a fault again
+  EXPECT_EQ(machine.state(), S::kDamp);
+  EXPECT_FALSE(machine.acknowledged());
+  EXPECT_EQ(machine.fault(), joint_state_t::FAULT_POSITION + 0);
+}
+
+TEST(DriveStatesTest, IgnoredEventsLeaveNoFault) {
+  DriveStateMachine machine = machine_in(S::kOff);
+  machine.apply(E::kControllerLost);
+  machine.apply(E::kPositionTrip, 1);
+  EXPECT_EQ(machine.fault(), joint_state_t::FAULT_NONE + 0);
+}
+
+TEST(DriveStatesTest, PoweredMeansThatADriveMayBeEnabled) {
+  for (S state : kStates) {
+    const bool powered =
+        state == S::kEnabling || state == S::kOn || state == S::kHold || state == S::kDamp;
+    EXPECT_EQ(machine_in(state).powered(), powered);
+  }
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,180 @@
+// The program limber-check as a user meets it: what it prints, and exit status 2 for everything
+// that is not right.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include "tests/support/mutation.h"
+
+namespace limber {
+namespace {
+
+const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm";
+const std::string kUrdf = kArm + "/robot.urdf";
+const std::string kScenario = LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml";
+
+struct Outcome {
+  int status = -1;  ///< exit status; 1000 + signal if it crashed
+  std::string output;
+};
+
+/// Arguments as in a shell; errors and output together, or output alone.
+Outcome check(const std::string& arguments, bool with_errors = true) {
+  const std::string command =
+      std::string(LIMBER_CHECK) + " " + arguments + (with_errors ? " 2>&1" : " 2>/dev/null");
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  Outcome outcome;
+  char part[4096];
+  for (std::size_t size; (size = std::fread(part, 1, sizeof part, pipe)) > 0;)
+    outcome.output.append(part, size);
+  const int status = ::pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  return outcome;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Check, TellsOfAShippedRobot) {
+  const Outcome outcome = check("robot openarm");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, "7 joints from world to link8, 4.375 kg moving"));
+  EXPECT_TRUE(contains(outcome.output, "dm_j8009p_2ec, arm, 1/17"));
+  // 14 FD frames of 8 bytes at 56.6 us make 792 us of each millisecond.
+  EXPECT_TRUE(contains(outcome.output, "at most 79.2 % busy at 1000 Hz; 80 % would be 1010 Hz"))
+      << outcome.output;
+}
+
+TEST(Check, FindsRobotsByFolderAndByEnvironment) {
+  EXPECT_EQ(check("robot " + kArm).status, 0);
+  EXPECT_EQ(check("robot " + kArm + "/").status, 0);
+  ::setenv("LIMBER_ROBOTS", LIMBER_SOURCE_DIR "/tests/robots/data", 1);
+  EXPECT_EQ(check("robot arm").status, 0);
+  EXPECT_TRUE(contains(check("robot openarm").output, "one of: arm"));
+  ::unsetenv("LIMBER_ROBOTS");
+}
+
+TEST(Check, WarnsWhereGravityIsTooMuch) {
+  const Outcome outcome = check("robot planar2r");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, "warning: shoulder: gravity needs up to 7.01"));
+}
+
+TEST(Check, RefusesABusThatCannotCarryTheArm) {
+  // Seven joints on a classic bus at 1 kHz: 14 frames of 135 bits are 189 % of 1 Mbit/s.
+  const testing::TemporaryFolder folder;
+  const std::string openarm = LIMBER_SOURCE_DIR "/robots/openarm/";
+  folder.write("robot.urdf", testing::read_text(openarm + "robot.urdf"));
+  folder.write("robot.yaml",
+               testing::apply(testing::read_text(openarm + "robot.yaml"),
+                              {"", "fd: true, bitrate_bps: 1000000, data_bitrate_bps: 5000000",
+                               "bitrate_bps: 1000000", ""})
+                   .text);
+  const Outcome outcome = check("robot " + folder.path());
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.output, "bus 'arm': 189 % of the wire at 1000 Hz"))
+      << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "423 Hz would be 80 %")) << outcome.output;
+}
+
+TEST(Check, TellsOfABareUrdfUnderAnyGravity) {
+  const Outcome down = check("urdf " + kUrdf + " --base world --tip hand");
+  EXPECT_EQ(down.status, 0);
+  EXPECT_TRUE(contains(down.output, "note: joint 'finger_joint': mimic is ignored"));
+  const Outcome sideways = check("urdf " + kUrdf + " --base world --tip hand --gravity -1.6,0,0");
+  EXPECT_EQ(sideways.status, 0);
+  EXPECT_TRUE(contains(sideways.output, "gravity [-1.6, 0, 0] m/s^2")) << sideways.output;
+}
+
+TEST(Check, TellsOfAScenario) {
+  const Outcome outcome = check("scenario " + kScenario);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(
+      contains(outcome.output, "good: arm, 12 s, realtime, reference integrator at 0.5 ms"));
+  EXPECT_TRUE(contains(outcome.output, "push 3 at fore: [1, 2, 3] N [0.1, 0, 0] N m for 0.5 s"));
+}
+
+TEST(Check, SpeaksJson) {
+  for (const std::string& arguments :
+       {std::string("robot openarm"), "urdf " + kUrdf + " --base world --tip hand",
+        "scenario " + kScenario}) {
+    const Outcome outcome = check(arguments + " --json");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.output.rfind("{\"ok\": true, ", 0), 0u) << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
+    EXPECT_FALSE(contains(outcome.output, "inf"));
+    EXPECT_FALSE(contains(outcome.output, "nan"));
+  }
+  const Outcome refused = check("robot nobody --json", false);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.output.rfind("{\"ok\": false, \"complaints\": [\"no robot 'nobody'", 0), 0u)
+      << refused.output;
+}
+
+TEST(Check, ReportsEachComplaintOnALineOfItsOwn) {
+  std::string text = testing::read_text(kUrdf);
+  text = testing::apply(text, {"", "value=\"2\"", "value=\"1,5\"", ""}).text;
+  text = testing::apply(text, {"", "effort=\"20\"", "effort=\"inf\"", ""}).text;
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write("robot.urdf", text);
+  const Outcome outcome = check("urdf " + file + " --base world --tip hand");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.output,
+            file + ":16: joint 'turn': <limit> effort: \"inf\" is not a finite number\n" + file +
+                ":22: link 'upper': <mass> value: \"1,5\" is not a finite number\n");
+}
+
+struct CommandLine {
+  const char* name;
+  std::string arguments;
+  std::string expect;
+};
+
+std::ostream& operator<<(std::ostream& out, const CommandLine& line) {
+  return out << line.arguments;
+}
+
+class CheckRefusal : public ::testing::TestWithParam<CommandLine> {};
+
+TEST_P(CheckRefusal, ExitsWithTwoAndSaysWhatWouldBeRight) {
+  const Outcome outcome = check(GetParam().arguments);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.output, GetParam().expect)) << outcome.output;
+}
+
+const std::string kBareUrdf = "urdf " + kUrdf + " ";
+const CommandLine kCommandLines[] = {
+    {"Nothing", "", "subcommand is required"},
+    {"UnknownSubcommand", "robots openarm", "subcommand is required"},
+    {"RobotWithoutName", "robot", "robot is required"},
+    {"RobotEmptyName", "robot ''", "no robot ''"},
+    {"RobotUnknown", "robot openarn", "did you mean 'openarm'?"},
+    {"RobotIsAFile", "robot " + kUrdf, "expected a folder with robot.yaml"},
+    {"TwoRobots", "robot openarm planar2r", "not expected"},
+    {"UnknownOption", "robot openarm --fast", "not expected: --fast"},
+    {"UrdfWithoutBase", kBareUrdf + "--tip hand", "--base is required"},
+    {"UrdfWithoutTip", kBareUrdf + "--base world", "--tip is required"},
+    {"UrdfUnknownBase", kBareUrdf + "--base wordl --tip hand", "did you mean 'world'?"},
+    {"UrdfUnknownTip", kBareUrdf + "--base world --tip foot", "there are: base, finger, fore"},
+    {"UrdfNoSuchFile", "urdf nothing.urdf --base a --tip b", "nothing.urdf: no such file"},
+    {"UrdfIsYaml", "urdf " + kScenario + " --base a --tip b", "good.yaml"},
+    {"GravityTwoNumbers", kBareUrdf + "--base world --tip hand --gravity 0,9.81", "expected three"},
+    {"GravityFourNumbers", kBareUrdf + "--base world --tip hand --gravity 0,0,0,1",
+     "expected three"},
+    {"GravityText", kBareUrdf + "--base world --tip hand --gravity down", "expected three numbers"},
+    {"GravityNan", kBareUrdf + "--base world --tip hand --gravity 0,0,nan", "expected three"},
+    {"GravityHuge", kBareUrdf + "--base world --tip hand --gravity 0,0,-981", "out of range"},
+    {"GravityTrailingComma", kBareUrdf + "--base world --tip hand --gravity 0,0,1,",
+     "expected three"},
+    {"ScenarioNoSuchFile", "scenario nothing.yaml", "nothing.yaml: no such file"},
+    {"ScenarioIsAFolder", "scenario /tmp", "/tmp: no such file"},
+    {"ScenarioIsARobot", "scenario " + kArm + "/robot.yaml", "limber-scenario/1"},
+};
+INSTANTIATE_TEST_SUITE_P(CommandLines, CheckRefusal, ::testing::ValuesIn(kCommandLines),
+                         [](const auto& line) { return line.param.name; });
+
+}  // namespace
+}  // namespace limber

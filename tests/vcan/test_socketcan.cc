@@ -1,0 +1,302 @@
+// The SocketCAN bus on interfaces of a real kernel: what it carries, what it refuses, and what it
+// does when links fail.
+#include <gtest/gtest.h>
+#include <linux/can/error.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <string>
+
+#include "common/config_error.h"
+#include "drivers/can/socketcan.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/vcan/lab.h"
+
+namespace limber {
+namespace {
+
+using testing::is_silent;
+using testing::kSecond;
+using testing::numbered;
+using testing::receive;
+using testing::run;
+
+void expect_same(const CanFrame& a, const CanFrame& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.extended, b.extended);
+  EXPECT_EQ(a.remote, b.remote);
+  EXPECT_EQ(a.fd, b.fd);
+  EXPECT_EQ(a.bitrate_switch, b.bitrate_switch);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.data, b.data);
+}
+
+std::string refusal(const std::string& interface, bool fd) {
+  try {
+    open_socketcan(interface, fd);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "opened";
+}
+
+void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text << "\n  lacks: " << part;
+}
+
+TEST(SocketCan, CarriesEveryKindOfFrame) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  std::vector<CanFrame> sent(6);
+  sent[0] = numbered(0x7FF);
+  sent[1].id = 1;  // empty
+  sent[2] = numbered(0x1FFFFFFF);
+  sent[2].extended = true;
+  sent[3].id = 0x123;
+  sent[3].remote = true;
+  sent[3].length = 5;
+  sent[4] = numbered(3);
+  sent[4].fd = sent[4].bitrate_switch = true;
+  sent[4].length = 64;
+  sent[4].data[63] = 0xEE;
+  sent[5] = numbered(4);
+  sent[5].fd = true;
+  ASSERT_EQ(a->send(sent), 6);
+  const auto got = receive(b.get(), 6);
+  ASSERT_EQ(got.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    SCOPED_TRACE("frame " + std::to_string(i));
+    expect_same(got[i], sent[i]);
+  }
+  EXPECT_EQ(a->statistics().sent, 6);
+  EXPECT_EQ(b->statistics().received, 6);
+  EXPECT_EQ(b->statistics().malformed, 0);
+}
+
+TEST(SocketCan, OwnFramesDoNotComeBack) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  a->send(numbered(1));
+  EXPECT_EQ(receive(b.get(), 1).size(), 1U);
+  EXPECT_TRUE(is_silent(a.get()));
+}
+
+TEST(SocketCan, BusesStayApart) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan1", true);
+  a->send(numbered(1));
+  EXPECT_TRUE(is_silent(b.get()));
+}
+
+TEST(SocketCan, MoreThanOneBatchKeepsItsOrder) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  std::vector<CanFrame> sent;
+  for (std::uint32_t id = 0; id < 150; ++id) sent.push_back(numbered(id));
+  ASSERT_EQ(a->send(sent), 150);
+  const auto got = receive(b.get(), 150);
+  ASSERT_EQ(got.size(), 150U);
+  for (std::uint32_t id = 0; id < 150; ++id) EXPECT_EQ(got[id].id, id);
+}
+
+TEST(SocketCan, ExtendedFramesAreNotTakenForStandardOnes) {
+  const auto a = open_can_bus("socketcan:vcan0", false);
+  const auto b = open_can_bus("socketcan:vcan0", false);
+  CanFrame foreign = numbered(0x13);
+  foreign.extended = true;
+  a->send(std::array{foreign, numbered(0x13)});
+  const auto got = receive(b.get(), 2);
+  ASSERT_EQ(got.size(), 2U);
+  EXPECT_TRUE(got[0].extended);
+  EXPECT_FALSE(got[1].extended);
+}
+
+TEST(SocketCan, StampsAreMonotonicTimeOfArrival) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  const std::int64_t before_ns = monotonic_ns();
+  a->send(numbered(1));
+  const std::int64_t sent_ns = monotonic_ns();
+  usleep(50'000);
+  const auto got = receive(b.get(), 1);
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_GE(got[0].timestamp_ns, before_ns - 1'000'000);
+  EXPECT_LE(got[0].timestamp_ns, sent_ns + 25'000'000) << "time of reading instead of arrival";
+}
+
+TEST(SocketCan, AnEndWithoutFdNeitherSendsNorHearsFd) {
+  const auto classic = open_can_bus("socketcan:vcan0", false);
+  const auto fd = open_can_bus("socketcan:vcan0", true);
+  CanFrame frame = numbered(1);
+  frame.fd = true;
+  EXPECT_EQ(classic->send(frame), 0);
+  EXPECT_EQ(classic->statistics().send_refused, 1);
+  EXPECT_EQ(fd->send(std::array{frame, numbered(2)}), 2);
+  const auto got = receive(classic.get(), 1);
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_EQ(got[0].id, 2U);
+}
+
+TEST(SocketCan, ImpossibleFramesAreRefusedAndTheOthersSent) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  EXPECT_EQ(a->send(std::array{numbered(1), numbered(0x800), numbered(2)}), 2);
+  EXPECT_EQ(a->statistics().send_refused, 1);
+  EXPECT_EQ(receive(b.get(), 2).size(), 2U);
+}
+
+// --- faults while running ---
+
+TEST(SocketCanFaults, BusOffUntilTheControllerRestarts) {
+  const auto bus = open_can_bus("socketcan:vcan0", true);
+  const auto adapter =
+      open_can_bus("socketcan:vcan0", true);  // on vcan anybody may speak for the controller
+  const auto report = [&](std::uint32_t error_class) {
+    CanFrame error;
+    error.error = true;
+    error.id = error_class;
+    error.length = 8;
+    ASSERT_EQ(adapter->send(error), 1);
+    const auto got = receive(bus.get(), 1);
+    ASSERT_EQ(got.size(), 1U);
+    EXPECT_TRUE(got[0].error);
+    EXPECT_EQ(got[0].id, error_class);
+  };
+  report(CAN_ERR_ACK);
+  EXPECT_FALSE(bus->statistics().bus_off);
+  report(CAN_ERR_BUSOFF);
+  EXPECT_TRUE(bus->statistics().bus_off);
+  adapter->send(numbered(1));
+  receive(bus.get(), 1);
+  EXPECT_TRUE(bus->statistics().bus_off) << "a frame on the bus restarts no controller";
+  report(CAN_ERR_RESTARTED);
+  EXPECT_FALSE(bus->statistics().bus_off);
+  EXPECT_EQ(bus->statistics().error_frames, 3);
+}
+
+TEST(SocketCanFaults, ALinkThatGoesDownAndComesBack) {
+  const auto a = open_can_bus("socketcan:vcan1", true);
+  const auto b = open_can_bus("socketcan:vcan1", true);
+  run("ip link set vcan1 down");
+  CanFrame frame;
+  EXPECT_EQ(a->receive(std::span(&frame, 1)), 0);
+  EXPECT_TRUE(a->statistics().link_down);
+  EXPECT_EQ(a->statistics().last_errno, ENETDOWN);
+  EXPECT_EQ(a->send(std::array{numbered(1), numbered(2)}), 0);
+  EXPECT_EQ(a->statistics().send_refused, 2);
+  EXPECT_TRUE(is_silent(a.get()));
+  EXPECT_TRUE(a->statistics().link_down);
+  run("ip link set vcan1 up");
+  EXPECT_EQ(a->send(numbered(3)), 1);
+  EXPECT_FALSE(a->statistics().link_down);
+  const auto got = receive(b.get(), 1);  // b learns late, with the frame that follows
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_EQ(got[0].id, 3U);
+  EXPECT_FALSE(b->statistics().link_down);
+}
+
+TEST(SocketCanFaults, AnInterfaceThatIsRemoved) {
+  run("ip link add dev vcan7 type vcan && ip link set vcan7 mtu 72 up");
+  const auto bus = open_can_bus("socketcan:vcan7", true);
+  run("ip link del vcan7");
+  EXPECT_TRUE(is_silent(bus.get()));
+  EXPECT_TRUE(bus->statistics().link_down);
+  run("ip link add dev vcan7 type vcan && ip link set vcan7 mtu 72 up");
+  EXPECT_EQ(bus->send(numbered(1)), 0) << "another interface, though of the same name";
+  EXPECT_TRUE(bus->statistics().link_down);
+  const auto again = open_can_bus("socketcan:vcan7", true);
+  EXPECT_EQ(again->send(numbered(1)), 1);
+  run("ip link del vcan7");
+}
+
+TEST(SocketCanFaults, AFullTransmitQueueDropsAtOnce) {
+  const auto a = open_can_bus("socketcan:vxcan0", true);
+  const auto b = open_can_bus("socketcan:vxcan1", true);
+  run("tc qdisc add dev vxcan0 root netem limit 10 delay 200ms");
+  std::vector<CanFrame> sent;
+  for (std::uint32_t id = 0; id < 40; ++id) sent.push_back(numbered(id));
+  const std::int64_t before_ns = monotonic_ns();
+  const int accepted = a->send(sent);
+  EXPECT_LT(monotonic_ns() - before_ns, kSecond / 5) << "waited for the queue";
+  EXPECT_GE(accepted, 10);
+  EXPECT_LE(accepted, 12);
+  EXPECT_EQ(a->statistics().send_refused, 40 - accepted);
+  EXPECT_EQ(a->statistics().last_errno, ENOBUFS);
+  EXPECT_FALSE(a->statistics().link_down);
+  const auto got = receive(b.get(), static_cast<std::size_t>(accepted));
+  ASSERT_EQ(got.size(), static_cast<std::size_t>(accepted));
+  for (std::uint32_t id = 0; id < got.size(); ++id)
+    EXPECT_EQ(got[id].id, id) << "the first ones are those that went out";
+  EXPECT_EQ(a->send(numbered(41)), 1) << "the queue has room again";
+  run("tc qdisc del dev vxcan0 root");
+}
+
+TEST(SocketCanFaults, LossesInTheReceiveQueueAreCounted) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  std::array<CanFrame, 64> many;
+  many.fill(numbered(1));
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(a->send(many), 64);
+  std::int64_t got = 0;
+  while (const int taken = b->receive(many)) got += taken;
+  EXPECT_LT(got, 64'000);
+  a->send(numbered(2));  // the kernel tells of its losses with the next frame it delivers
+  got += static_cast<std::int64_t>(receive(b.get(), 1).size());
+  EXPECT_EQ(got + b->statistics().overflow, 64'001);
+}
+
+TEST(SocketCanFaults, NothingAllocatesWhateverHappens) {
+  const auto a = open_can_bus("socketcan:vxcan0", true);
+  const auto b = open_can_bus("socketcan:vxcan1", true);
+  CanBus* ends[] = {a.get(), b.get()};
+  std::array<CanFrame, 64> frames;
+  frames.fill(numbered(1));
+  const auto cycle = [&] {
+    const auto before = testing::allocations();
+    a->send(frames);
+    b->send(numbered(2));
+    wait_readable(ends, monotonic_ns() + kSecond / 50);
+    a->receive(frames);
+    b->receive(frames);
+    return testing::allocations() - before;
+  };
+  EXPECT_EQ(cycle(), 0);
+  run("ip link set vxcan0 down");
+  EXPECT_EQ(cycle(), 0);
+  run("ip link set vxcan0 up");
+  EXPECT_EQ(cycle(), 0);
+}
+
+// --- what cannot be opened ---
+
+TEST(SocketCanRefusal, NoSuchInterface) {
+  expect_contains(refusal("can7", true), "socketcan:can7: there is no such interface");
+  expect_contains(refusal("can7", true), "sudo ip link add dev can7 type vcan");
+}
+
+TEST(SocketCanRefusal, NotACanInterface) {
+  expect_contains(refusal("lo", false), "not a CAN interface");
+}
+
+TEST(SocketCanRefusal, ANameThatCannotBe) {
+  expect_contains(refusal("an_interface_name_too_long", false), "1 to 15 characters");
+}
+
+TEST(SocketCanRefusal, AnInterfaceThatIsDown) {
+  run("ip link add dev vcan8 type vcan");
+  expect_contains(refusal("vcan8", false), "sudo ip link set vcan8 up");
+  expect_contains(refusal("vcan8", false), "type can bitrate 1000000");
+  run("ip link del vcan8");
+}
+
+TEST(SocketCanRefusal, FdOnAnInterfaceWithoutIt) {
+  run("ip link add dev vcan8 type vcan && ip link set vcan8 mtu 16 up");
+  expect_contains(refusal("vcan8", true), "no CAN-FD");
+  expect_contains(refusal("vcan8", true), "mtu 72");
+  EXPECT_EQ(refusal("vcan8", false), "opened");
+  run("ip link del vcan8");
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,19 @@
+// Just enough to write JSON.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace limber::json {
+
+/// Each returns JSON text. Numbers that are not finite become null.
+std::string text(const std::string& value);
+std::string number(double value);
+std::string numbers(const std::vector<double>& values);
+std::string texts(const std::vector<std::string>& values);
+/// Of values that are JSON text already.
+std::string list(const std::vector<std::string>& values);
+std::string object(const std::vector<std::pair<std::string, std::string>>& members);
+
+}  // namespace limber::json

@@ -1,0 +1,18 @@
+// limber-check's output: for people, or as one JSON object.
+#pragma once
+
+#include <string>
+
+#include "scenarios/scenario.h"
+#include "tools/check/arm_report.h"
+
+namespace limber {
+
+std::string arm_text(const LoadedRobot& robot, const ArmReport& report);
+std::string arm_json(const LoadedRobot& robot, const ArmReport& report);
+std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot);
+std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot);
+/// {"ok": false, "complaints": [...]}, one a line of `what`.
+std::string refusal_json(const std::string& what);
+
+}  // namespace limber

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "tools/check/json.h"
+#include "tools/check/print.h"
+
+namespace limber {
+namespace {
+
+const char* type_name(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kPrismatic:
+      return "prismatic";
+  }
+  return "";
+}
+
+std::string bus_text(const BusConfig& bus, const BusReport& report, double rate_hz) {
+  const std::string speed = bus.fd ? fmt::format("CAN-FD {:g}/{:g} Mbit/s", bus.bitrate_bps * 1e-6,
+                                                 bus.data_bitrate_bps * 1e-6)
+                                   : fmt::format("CAN {:g} Mbit/s", bus.bitrate_bps * 1e-6);
+  return fmt::format("  {}  {}  {}: at most {:.1f} % busy at {} Hz; 80 % would be {:.0f} Hz\n",
+                     bus.name, bus.can, speed, 100.0 * report.load, rate_hz,
+                     report.highest_rate_hz);
+}
+
+std::string joint_table(const Robot& robot, const ArmReport& report) {
+  std::string table =
+      fmt::format("  {:<14} {:<10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9}", "joint", "type",
+                  "min", "max", "speed", "torque", "home", "g home", "g worst");
+  table += robot.has_drives ? "  motor, bus, id/reply\n" : "\n";
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointConfig& joint = robot.joints[i];
+    table += fmt::format(
+        "  {:<14} {:<10} {:>9.4f} {:>9.4f} {:>8.3f} {:>8.2f} {:>9.4f} {:>9.3f} {:>9.3f}",
+        joint.name, type_name(joint.type), joint.position_min, joint.position_max,
+        joint.velocity_limit, joint.torque_limit_Nm, joint.home, report.home_gravity_Nm[i],
+        report.worst_gravity_Nm[i]);
+    if (robot.has_drives) {
+      const DriveConfig& drive = joint.drive;
+      table += fmt::format("  {}, {}, {}/{}", drive.motor,
+                           robot.buses[static_cast<std::size_t>(drive.bus)].name, drive.command_id,
+                           drive.reply_id);
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+std::string joint_json(const Robot& robot, const ArmReport& report, std::size_t i) {
+  const JointConfig& joint = robot.joints[i];
+  std::vector<std::pair<std::string, std::string>> members = {
+      {"name", json::text(joint.name)},
+      {"type", json::text(type_name(joint.type))},
+      {"position_min", json::number(joint.position_min)},
+      {"position_max", json::number(joint.position_max)},
+      {"velocity_limit", json::number(joint.velocity_limit)},
+      {"torque_limit_Nm", json::number(joint.torque_limit_Nm)},
+      {"torque_rate_limit_Nm_per_s", json::number(joint.torque_rate_limit_Nm_per_s)},
+      {"home", json::number(joint.home)},
+      {"home_gravity_Nm", json::number(report.home_gravity_Nm[i])},
+      {"worst_gravity_Nm", json::number(report.worst_gravity_Nm[i])}};
+  if (robot.has_drives) {
+    const DriveConfig& drive = joint.drive;
+    const std::string& bus = robot.buses[static_cast<std::size_t>(drive.bus)].name;
+    members.insert(members.end(),
+                   {{"motor", json::text(drive.motor)},
+                    {"bus", json::text(bus)},
+                    {"id", json::number(drive.command_id)},
+                    {"reply_id", json::number(drive.reply_id)},
+                    {"rotor_inertia_kgm2", json::number(drive.rotor_inertia_kgm2)},
+                    {"torque_constant_Nm_per_A", json::number(drive.torque_constant_Nm_per_A)},
+                    {"short_circuit_damping_Nms", json::number(drive.short_circuit_damping_Nms)}});
+  }
+  return json::object(members);
+}
+
+}  // namespace
+
+std::string arm_text(const LoadedRobot& robot, const ArmReport& report) {
+  const Robot& arm = robot.robot;
+  std::string text = fmt::format(
+      "{}: {} joints from {} to {}, {:.4g} kg moving, gravity [{:.4g}, {:.4g}, {:.4g}] m/s^2 in "
+      "base "
+      "axes\n",
+      arm.name, arm.size(), arm.base, arm.tip, report.moving_mass_kg, arm.gravity[0],
+      arm.gravity[1], arm.gravity[2]);
+  text += "  rad, rad/s, N m (prismatic: m, m/s, N); g: torque against gravity\n";
+  text += joint_table(arm, report);
+  const auto& p = report.home_p_BT;
+  const auto& q = report.home_quat_BT;
+  text += fmt::format(
+      "  tip at home: [{:.4f}, {:.4f}, {:.4f}] m, quaternion wxyz [{:.4f}, {:.4f}, {:.4f}, "
+      "{:.4f}]\n",
+      p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+  for (std::size_t i = 0; i < report.buses.size(); ++i)
+    text += bus_text(arm.buses[i], report.buses[i], arm.rate_hz);
+  for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
+  for (const std::string& note : robot.notes) text += "  note: " + note + "\n";
+  return text;
+}
+
+std::string arm_json(const LoadedRobot& robot, const ArmReport& report) {
+  const Robot& arm = robot.robot;
+  std::vector<std::string> joints;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) joints.push_back(joint_json(arm, report, i));
+  std::vector<std::string> buses;
+  for (std::size_t i = 0; i < report.buses.size(); ++i) {
+    buses.push_back(
+        json::object({{"name", json::text(arm.buses[i].name)},
+                      {"can", json::text(arm.buses[i].can)},
+                      {"fd", arm.buses[i].fd ? "true" : "false"},
+                      {"predicted_load", json::number(report.buses[i].load)},
+                      {"highest_rate_hz", json::number(report.buses[i].highest_rate_hz)}}));
+  }
+  return json::object(
+             {{"ok", "true"},
+              {"name", json::text(arm.name)},
+              {"folder", json::text(arm.folder)},
+              {"urdf", json::text(arm.urdf_path)},
+              {"base", json::text(arm.base)},
+              {"tip", json::text(arm.tip)},
+              {"links", json::texts(robot.segment_links)},
+              {"rate_hz", json::number(arm.rate_hz)},
+              {"gravity_m_per_s2", json::numbers({arm.gravity[0], arm.gravity[1], arm.gravity[2]})},
+              {"moving_mass_kg", json::number(report.moving_mass_kg)},
+              {"home_p_BT", json::numbers(report.home_p_BT)},
+              {"home_quat_BT", json::numbers(report.home_quat_BT)},
+              {"joints", json::list(joints)},
+              {"buses", json::list(buses)},
+              {"warnings", json::texts(report.warnings)},
+              {"notes", json::texts(robot.notes)}}) +
+         "\n";
+}
+
+std::string refusal_json(const std::string& what) {
+  std::vector<std::string> complaints;
+  std::istringstream lines(what);
+  for (std::string line; std::getline(lines, line);) complaints.push_back(line);
+  return json::object({{"ok", "false"}, {"complaints", json::texts(complaints)}}) + "\n";
+}
+
+}  // namespace limber

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/check/json.h"
+#include "tools/check/print.h"
+
+namespace limber {
+namespace {
+
+std::string three(const double* values) {
+  return fmt::format("[{:g}, {:g}, {:g}]", values[0], values[1], values[2]);
+}
+
+std::string describe(const mode_request_t& request) {
+  const char* const names[] = {"idle", "hold", "active", "stop", "acknowledge", "release"};
+  return fmt::format("mode {}", names[request.request]);
+}
+
+std::string describe(const compliance_gains_t& gains) {
+  double diagonal[6];
+  for (int i = 0; i < 6; ++i) diagonal[i] = gains.K_x[i][i];
+  return fmt::format("gains: {}, K_x diagonal {} N/m {} N m/rad, over {:g} s",
+                     gains.law.empty() ? "same law" : gains.law, three(diagonal),
+                     three(diagonal + 3), gains.ramp_s);
+}
+
+std::string describe(const compliance_goal_t& goal) {
+  const char* const names[] = {"pose", "joints", "offset", "wrench"};
+  return fmt::format("goal: {} within {:g} s", names[goal.kind], goal.duration_s);
+}
+
+std::string describe(const push_t& push) {
+  return fmt::format("push {} at {}: {} N {} N m for {:g} s", push.id,
+                     push.link.empty() ? "the tip" : push.link, three(push.wrench),
+                     three(push.wrench + 3), push.duration_s);
+}
+
+std::string describe(const scenario_event_t& event) {
+  const char* const faults[] = {"silent", "frozen encoder", "drive error", "drop commands"};
+  if (event.kind == scenario_event_t::EVENT_FAULT) {
+    return fmt::format("fault: joint {} {}{}", event.joint, faults[event.fault],
+                       event.duration_s > 0.0 ? fmt::format(" for {:g} s", event.duration_s) : "");
+  }
+  if (event.kind == scenario_event_t::EVENT_PAYLOAD) {
+    return event.payload_mass_kg > 0.0 ? fmt::format("payload of {:g} kg", event.payload_mass_kg)
+                                       : "payload off";
+  }
+  if (event.stiffness_N_per_m <= 0.0) return "wall off";
+  return fmt::format("wall through {} m, normal {}, {:g} N/m", three(event.point),
+                     three(event.normal), event.stiffness_N_per_m);
+}
+
+std::string describe(const TimedMessage& timed) {
+  return std::visit([](const auto& message) { return describe(message); }, timed.message);
+}
+
+const char* mode_name(const Scenario& scenario) {
+  return scenario.lockstep ? "lockstep" : "realtime";
+}
+const char* integrator_name(const Scenario& scenario) {
+  return scenario.integrator == Integrator::kOde ? "ode" : "reference";
+}
+
+}  // namespace
+
+std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
+  std::string text = fmt::format(
+      "{}: {}, {:g} s, {}, {} integrator at {:g} ms, friction {}, seed {}\n", scenario.name,
+      robot.robot.name, scenario.duration_s, mode_name(scenario), integrator_name(scenario),
+      scenario.step_s * 1e3, scenario.friction ? "on" : "off", scenario.seed);
+  for (const TimedMessage& timed : scenario.timeline) {
+    text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
+                        describe(timed));
+  }
+  return text;
+}
+
+std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
+  std::vector<std::string> timeline;
+  for (const TimedMessage& timed : scenario.timeline) {
+    timeline.push_back(
+        json::object({{"at_s", json::number(static_cast<double>(timed.time_ns) * 1e-9)},
+                      {"what", json::text(describe(timed))}}));
+  }
+  return json::object({{"ok", "true"},
+                       {"name", json::text(scenario.name)},
+                       {"robot", json::text(robot.robot.name)},
+                       {"mode", json::text(mode_name(scenario))},
+                       {"duration_s", json::number(scenario.duration_s)},
+                       {"integrator", json::text(integrator_name(scenario))},
+                       {"step_s", json::number(scenario.step_s)},
+                       {"friction", scenario.friction ? "true" : "false"},
+                       {"seed", fmt::format("{}", scenario.seed)},
+                       {"start_q", json::numbers(scenario.start_q)},
+                       {"timeline", json::list(timeline)},
+                       {"notes", json::texts(robot.notes)}}) +
+         "\n";
+}
+
+}  // namespace limber

@@ -1,0 +1,5 @@
+"""`python -m limber` is the `limber` program."""
+
+from limber.cli import main
+
+main()

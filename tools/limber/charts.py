@@ -1,0 +1,162 @@
+"""What a log's charts show: both the PNG and the interactive page are drawn from this."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.logs import Log
+
+AXES = ("x", "y", "z")
+
+
+@dataclass
+class Chart:
+    """Lines over time. `t_s` is arm time; every series has one value for each of its entries."""
+
+    title: str
+    unit: str
+    t_s: np.ndarray
+    series: dict[str, np.ndarray] = field(default_factory=dict)
+    dashed: set[str] = field(default_factory=set)
+
+    def color_numbers(self) -> list[int]:
+        """One for each series; a desired value has the colour of the measured one before it."""
+        numbers: list[int] = []
+        for name in self.series:
+            paired = numbers and name.endswith(" desired")
+            numbers.append(numbers[-1] if paired else max(numbers, default=-1) + 1)
+        return numbers
+
+
+def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Chart]:
+    """Charts of a topic, leaving out what the log does not hold: none if it holds nothing of it."""
+    charts = TOPICS[what](log, joint_names or [])
+    return [chart for chart in charts if len(chart.t_s) > 1 and chart.series]
+
+
+def time_s(records: np.ndarray) -> np.ndarray:
+    return records["time_ns"] * 1e-9
+
+
+def rotation_error(quat_BT: np.ndarray, quat_BD: np.ndarray) -> np.ndarray:
+    """Log(R_BT R_BDᵀ) of rows of quaternions w, x, y, z; rows without a pose give zero."""
+    known = (np.linalg.norm(quat_BT, axis=1) > 0.5) & (np.linalg.norm(quat_BD, axis=1) > 0.5)
+    vectors = np.zeros((len(quat_BT), 3))
+    if known.any():
+        R_BT = Rotation.from_quat(quat_BT[known], scalar_first=True)
+        R_BD = Rotation.from_quat(quat_BD[known], scalar_first=True)
+        vectors[known] = (R_BT * R_BD.inv()).as_rotvec()
+    return vectors
+
+
+def _joint_count(records: np.ndarray) -> int:
+    return int(records["num_joints"].max(initial=0))
+
+
+def _labels(count: int, names: list[str]) -> list[str]:
+    return [names[i] if i < len(names) else f"joint {i + 1}" for i in range(count)]
+
+
+def _columns(values: np.ndarray, labels: list[str]) -> dict[str, np.ndarray]:
+    return {label: values[:, i] for i, label in enumerate(labels)}
+
+
+def _joint_charts(log: Log, names: list[str]) -> list[Chart]:
+    state = log.read("JOINT_STATE")
+    t, labels = time_s(state), _labels(_joint_count(state), names)
+    fields = (
+        ("q", "joint position", "rad"),
+        ("v", "joint velocity", "rad/s"),
+        ("tau", "torque the drives report", "N m"),
+        ("temperature_degC", "temperature", "°C"),
+    )
+    return [Chart(title, unit, t, _columns(state[key], labels)) for key, title, unit in fields]
+
+
+def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
+    status, truth = log.read("CONTROLLER_STATUS"), log.read("SIM_TRUTH")
+    t = time_s(status)
+    position = Chart("tip position", "m", t)
+    for i, axis in enumerate(AXES):
+        position.series[axis] = status["p_BT"][:, i]
+        position.series[f"{axis} desired"] = status["p_BD"][:, i]
+        position.dashed.add(f"{axis} desired")
+    away_mm = (status["p_BT"] - status["p_BD"]) * 1e3
+    turned = rotation_error(status["quat_BT"], status["quat_BD"])
+    charts = [
+        position,
+        Chart("tip away from its goal", "mm", t, _columns(away_mm, list(AXES))),
+        Chart("tip turned from its goal", "rad", t, _columns(turned, list(AXES))),
+    ]
+    if len(truth):
+        force = Chart("force on the arm (simulator)", "N", time_s(truth))
+        for i, axis in enumerate(AXES):
+            force.series[f"push {axis}"] = truth["F_push"][:, i]
+            force.series[f"contact {axis}"] = truth["F_contact"][:, i]
+            force.dashed.add(f"push {axis}")
+        charts.append(force)
+    energy = {"kinetic, arm": status["kinetic_energy_J"], "spring": status["spring_energy_J"]}
+    return [*charts, Chart("energy", "J", t, energy)]
+
+
+def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
+    """The terms of every joint's torque; one chart a joint."""
+    status = log.read("CONTROLLER_STATUS")
+    terms = ("stiffness", "damping", "null", "gravity", "coriolis", "sent")
+    charts = []
+    for i, label in enumerate(_labels(_joint_count(status), names)):
+        series = {term: status[f"tau_{term}"][:, i] for term in terms}
+        charts.append(Chart(f"torque of {label}", "N m", time_s(status), series))
+    return charts
+
+
+def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
+    status, driver = log.read("CONTROLLER_STATUS"), log.read("DRIVER_STATUS")
+    state = log.read("JOINT_STATE")
+    t = time_s(driver)
+    late = {
+        "median": driver["lateness_p50_ns"] * 1e-3,
+        "99 %": driver["lateness_p99_ns"] * 1e-3,
+        "99.9 %": driver["lateness_p999_ns"] * 1e-3,
+        "greatest": driver["lateness_max_ns"] * 1e-3,
+    }
+    answer = {
+        "median": driver["answer_p50_ns"] * 1e-3,
+        "99 %": driver["answer_p99_ns"] * 1e-3,
+        "greatest": driver["answer_max_ns"] * 1e-3,
+    }
+    counts = {
+        "late cycles": driver["late_cycles"],
+        "overruns": driver["overrun_cycles"],
+        "cycles without answer": driver["commands_missing"],
+        "commands refused": driver["commands_refused"][:, 1:].sum(axis=1),
+        "replies lost": driver["replies_lost"].sum(axis=1),
+    }
+    buses = int(driver["num_buses"].max(initial=0))
+    load = {f"bus {i + 1}": driver["bus_load_counted"][:, i] * 100 for i in range(buses)}
+    loop = {"controller cycle": status["cycle_ns"] * 1e-3}
+    step = np.diff(state["time_ns"], prepend=state["time_ns"][:1]) * 1e-6
+    return [
+        Chart("time from state to state", "ms", time_s(state), {"step": step}),
+        Chart("lateness of the cycle, so far", "µs", t, late),
+        Chart("state to torque, so far", "µs", t, answer),
+        Chart("controller's own time", "µs", time_s(status), loop),
+        Chart("counted so far", "cycles", t, counts),
+        Chart("bus load", "%", t, load),
+    ]
+
+
+SOURCES = {
+    "joint": ("JOINT_STATE",),
+    "cartesian": ("CONTROLLER_STATUS", "SIM_TRUTH"),
+    "torque": ("CONTROLLER_STATUS",),
+    "timing": ("JOINT_STATE", "DRIVER_STATUS", "CONTROLLER_STATUS"),
+}
+TOPICS: dict[str, Callable[[Log, list[str]], list[Chart]]] = {
+    "joint": _joint_charts,
+    "cartesian": _cartesian_charts,
+    "torque": _torque_charts,
+    "timing": _timing_charts,
+}

@@ -1,0 +1,119 @@
+"""The channel table, the message types, and numpy views of messages instead of decoding each.
+
+A message on the wire is its type's 8-byte fingerprint followed by its fields, big-endian, in order
+of declaration. Types without strings have a fixed size: a thousand messages are one numpy array.
+"""
+
+import importlib
+import os
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import yaml
+
+from limber.errors import RunError
+
+_SCALARS = {
+    "int8_t": "i1",
+    "byte": "u1",
+    "boolean": "i1",
+    "int16_t": ">i2",
+    "int32_t": ">i4",
+    "int64_t": ">i8",
+    "float": ">f4",
+    "double": ">f8",
+}
+FINGERPRINT = "_fingerprint"
+
+
+@dataclass(frozen=True)
+class Channel:
+    name: str
+    type_name: str
+    sender: str
+    plane: str
+    rate: str
+    timeout_s: float
+
+
+def _types() -> Any:
+    try:
+        return importlib.import_module("limber.lcmtypes")
+    except ImportError as error:
+        raise RunError("the messages are not generated yet: run ./limber once to build") from error
+
+
+@cache
+def _table() -> dict[str, Any]:
+    with open(os.path.join(_types().__path__[0], "channels.yaml"), encoding="utf-8") as file:
+        return yaml.safe_load(file)
+
+
+@cache
+def channels() -> dict[str, Channel]:
+    """Channels of the user plane by name: what a log holds and what `watch` hears."""
+    table = {}
+    for key, row in _table()["channels"].items():
+        if row["plane"] == "user":
+            name = row.get("name", key)
+            table[name] = Channel(
+                name, row["type"], row["from"], row["plane"], str(row["rate"]), row["timeout_s"]
+            )
+    return table
+
+
+def user_plane_url() -> str:
+    """$LCM_DEFAULT_URL or the channel table's address, with a large receive buffer."""
+    url = os.environ.get("LCM_DEFAULT_URL") or _table()["planes"]["user"]
+    return url + ("&" if "?" in url else "?") + "recv_buf_size=2097152"
+
+
+def message_class(type_name: str) -> Any:
+    return getattr(_types(), type_name)
+
+
+def constants(type_name: str, prefix: str) -> dict[int, str]:
+    """Value -> name of a message's constants: constants("joint_state_t", "DRIVE_")[3] == "ON"."""
+    members = vars(message_class(type_name)).items()
+    return {value: name.removeprefix(prefix) for name, value in members if name.startswith(prefix)}
+
+
+def bit_names(type_name: str, prefix: str, bits: int) -> list[str]:
+    return [name for bit, name in constants(type_name, prefix).items() if bits & bit]
+
+
+@cache
+def dtype_of(type_name: str) -> np.dtype | None:
+    """Wire layout of a type as a numpy dtype; None if it has strings (no fixed size)."""
+    cls = message_class(type_name)
+    fields: list[tuple] = [(FINGERPRINT, ">u8")]
+    for name, kind, shape in zip(cls.__slots__, cls.__typenames__, cls.__dimensions__, strict=True):
+        if kind not in _SCALARS or any(isinstance(size, str) for size in shape or ()):
+            return None
+        fields.append((name, _SCALARS[kind], tuple(shape or ())))
+    return np.dtype(fields)
+
+
+@cache
+def fingerprint_of(type_name: str) -> int:
+    return int.from_bytes(message_class(type_name)().encode()[:8], "big")
+
+
+@cache
+def native_dtype_of(type_name: str) -> np.dtype:
+    wire = dtype_of(type_name)
+    assert wire is not None
+    return np.dtype([(name, wire[name].newbyteorder("=")) for name in wire.names])
+
+
+def view(type_name: str, data: bytes) -> np.void:
+    """One message as a numpy record, in the machine's byte order."""
+    wire = dtype_of(type_name)
+    if wire is None or len(data) != wire.itemsize:
+        raise ValueError(f"not a {type_name}")
+    record = np.frombuffer(data, wire)
+    if int(record[FINGERPRINT][0]) != fingerprint_of(type_name):
+        raise ValueError(f"not a {type_name} of this version")
+    return record.astype(native_dtype_of(type_name))[0]

@@ -1,0 +1,123 @@
+"""Forward kinematics and Jacobian of a serial arm, straight from its URDF.
+
+Independent of the C++ chain on purpose: what `limber` measures shall not lean on the code it
+measures.
+"""
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.errors import InputError
+
+MOVING = ("revolute", "continuous", "prismatic")
+
+
+@dataclass(frozen=True)
+class Joint:
+    name: str
+    kind: str
+    parent: str
+    child: str
+    X_PF: np.ndarray  # 4x4, joint frame in the parent link at zero
+    axis: np.ndarray  # unit, joint frame
+    low: float  # position limits; infinite for continuous joints
+    high: float
+
+
+class Chain:
+    """The joints from `base` to `tip`, in order; `joint_names` are those that move."""
+
+    def __init__(self, urdf: Path, base: str, tip: str) -> None:
+        self.joints = _path_between(_read_joints(urdf), base, tip, urdf)
+        self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
+
+    def limits(self, name: str) -> tuple[float, float]:
+        joint = next(joint for joint in self.joints if joint.name == name)
+        return joint.low, joint.high
+
+    def forward(self, q: np.ndarray) -> np.ndarray:
+        """X_BT, 4x4."""
+        return self._frames(q)[0]
+
+    def jacobian(self, q: np.ndarray) -> np.ndarray:
+        """J_BT, 6xn: twist [v; w] of the tip in base axes, tip origin as reference point."""
+        X_BT, axes = self._frames(q)
+        columns = []
+        for kind, X_BJ, axis in axes:
+            a = X_BJ[:3, :3] @ axis
+            if kind == "prismatic":
+                columns.append(np.concatenate([a, np.zeros(3)]))
+            else:
+                columns.append(np.concatenate([np.cross(a, X_BT[:3, 3] - X_BJ[:3, 3]), a]))
+        return np.array(columns).T.reshape(6, -1)
+
+    def _frames(self, q: np.ndarray) -> tuple[np.ndarray, list[tuple[str, np.ndarray, np.ndarray]]]:
+        X = np.eye(4)
+        axes = []
+        values = iter(np.asarray(q, float)[: len(self.joint_names)])
+        for joint in self.joints:
+            X = X @ joint.X_PF
+            if joint.kind not in MOVING:
+                continue
+            axes.append((joint.kind, X, joint.axis))
+            X = X @ _motion(joint, next(values))
+        return X, axes
+
+
+def _motion(joint: Joint, value: float) -> np.ndarray:
+    X = np.eye(4)
+    if joint.kind == "prismatic":
+        X[:3, 3] = value * joint.axis
+    else:
+        X[:3, :3] = Rotation.from_rotvec(value * joint.axis).as_matrix()
+    return X
+
+
+def _numbers(element: ElementTree.Element | None, key: str, default: str) -> np.ndarray:
+    text = element.get(key, default) if element is not None else default
+    return np.array([float(part) for part in text.split()])
+
+
+def _read_joints(urdf: Path) -> dict[str, Joint]:
+    """Joints by the name of their child link."""
+    try:
+        root = ElementTree.parse(urdf).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise InputError(f"{urdf} cannot be read as URDF: {error}") from error
+    joints = {}
+    for element in root.findall("joint"):
+        origin = element.find("origin")
+        X_PF = np.eye(4)
+        X_PF[:3, 3] = _numbers(origin, "xyz", "0 0 0")
+        # URDF's rpy: roll about x, pitch about y, yaw about z, all of the parent's axes
+        roll_pitch_yaw = _numbers(origin, "rpy", "0 0 0")
+        X_PF[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
+        axis = _numbers(element.find("axis"), "xyz", "1 0 0")
+        child = element.find("child").get("link")
+        limit = element.find("limit") if element.get("type") != "continuous" else None
+        joints[child] = Joint(
+            element.get("name"),
+            element.get("type"),
+            element.find("parent").get("link"),
+            child,
+            X_PF,
+            axis / np.linalg.norm(axis),
+            float(limit.get("lower", 0)) if limit is not None else -np.inf,
+            float(limit.get("upper", 0)) if limit is not None else np.inf,
+        )
+    return joints
+
+
+def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> list[Joint]:
+    path = []
+    link = tip
+    while link != base:
+        if link not in joints:
+            raise InputError(f"{urdf}: no chain of joints leads from link '{base}' to link '{tip}'")
+        path.append(joints[link])
+        link = joints[link].parent
+    return path[::-1]
