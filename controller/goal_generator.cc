@@ -1,5 +1,6 @@
 #include "controller/goal_generator.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "controller/rotation.h"

@@ -2,8 +2,6 @@
 // cycle.
 #pragma once
 
-#include <algorithm>
-
 #include "common/types.h"
 #include "controller/pose.h"
 
@@ -38,7 +36,8 @@ class QuinticMotion {
 
   void advance(double dt) noexcept {
     if (!moving()) return;
-    elapsed_ = std::min(elapsed_ + dt, T_);
+    elapsed_ += dt;
+    if (elapsed_ > T_ - kRounding) elapsed_ = T_;
     const double s = elapsed_ / T_;
     const double s2 = s * s;
     const double s3 = s2 * s;
@@ -62,6 +61,9 @@ class QuinticMotion {
   Vector a;  ///< the rate's rate
 
  private:
+  // Many small steps do not add up to T exactly; what is left of the motion then is nothing.
+  static constexpr double kRounding = 1e-9;
+
   Vector end_;
   Vector d_;
   Vector v0_;

@@ -19,6 +19,7 @@ constexpr int kFramesPerPoll = 16;  // batches: a flooded bus must not keep the 
 ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
                       const ArmDriverOptions& options)
     : rate_hz(robot.rate_hz),
+      drive_watchdog_cycles(drive_watchdog_cycles_of(robot)),
       lockstep(options.lockstep),
       session(options.session),
       gate(gate_limits(robot, options.session)) {

@@ -32,6 +32,7 @@ struct ArmDriver::Impl {
   void take_frames(bool late) noexcept;
   void take_frame(int bus, const CanFrame& frame, bool late) noexcept;
   // finish_cycle
+  std::int64_t cycles_all_silent() const noexcept;
   void supervise() noexcept;
   void supervise_progress() noexcept;
   void supervise_replies() noexcept;
@@ -47,6 +48,7 @@ struct ArmDriver::Impl {
   bool in(DriveState wanted) const noexcept { return machine.state() == wanted; }
 
   double rate_hz;
+  int drive_watchdog_cycles;  ///< of the slowest drive
   bool lockstep;
   std::int64_t session;
   std::vector<Drive> drives;

@@ -45,7 +45,7 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
     case DriveState::kHold:
       // A drive that left the enabled state by itself is not spoken to as if it had not.
       if (!link_.enabled()) return link_.state_request();
-      return link_.command(hold_.command(link_, settling, !watch_.lost()));
+      return link_.command(hold_.command(link_, settling, watch_.trusted()));
     case DriveState::kDamp:
       if (!link_.enabled()) return link_.state_request();
       return link_.command(damp(link_));

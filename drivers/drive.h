@@ -37,7 +37,7 @@ class Drive {
   bool configured() const noexcept { return configure_.done(); }
   bool configuration_wrong() const noexcept { return configure_.failed(); }
   bool enabling_done() const noexcept { return enable_.done(link_); }
-  bool silent() const noexcept { return watch_.silent(); }
+  std::int64_t missing_cycles() const noexcept { return watch_.missing(); }
   bool lost() const noexcept { return watch_.lost(); }
   /// Above 110 % of the velocity limit in three cycles in a row.
   bool too_fast() const noexcept { return fast_cycles_ >= 3; }

@@ -120,7 +120,24 @@ int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
     run_realtime(stop);
   }
   publish_status();
+  say_end();
   return exit_status;
+}
+
+void DriverProcess::say_end() const {
+  std::int64_t refused = 0;
+  for (const std::int64_t count : status_.commands_refused) refused += count;
+  std::int64_t lost = 0;
+  for (const std::int32_t count : status_.replies_lost) lost += count;
+  spdlog::info("{} cycles; commands: {} accepted, {} refused, {} missing; replies lost: {}",
+               status_.cycles, status_.commands_accepted, refused, status_.commands_missing, lost);
+  if (options_.lockstep) return;
+  spdlog::info(
+      "{} late and {} overrun cycles; start late by 50 %: {} us, 99 %: {} us, at most {} us; "
+      "answer after 50 %: {} us, 99 %: {} us, at most {} us",
+      status_.late_cycles, status_.overrun_cycles, status_.lateness_p50_ns / 1000,
+      status_.lateness_p99_ns / 1000, status_.lateness_max_ns / 1000, status_.answer_p50_ns / 1000,
+      status_.answer_p99_ns / 1000, status_.answer_max_ns / 1000);
 }
 
 bool DriverProcess::finished(const volatile std::sig_atomic_t& stop) const {

@@ -64,6 +64,7 @@ class DriverProcess {
   void on_torque(const joint_torque_t& command);
   void publish_state(const joint_state_t& state);
   void publish_status();
+  void say_end() const;
 
   DriverProcessOptions options_;
   Robot robot_;

@@ -22,6 +22,13 @@ int cycles_of(double seconds, double rate_hz) noexcept {
   return std::max(1, static_cast<int>(std::ceil(seconds * rate_hz - 1e-6)));
 }
 
+int drive_watchdog_cycles_of(const Robot& robot) noexcept {
+  double longest_s = 0.0;
+  for (const JointConfig& joint : robot.joints)
+    longest_s = std::max(longest_s, joint.drive.watchdog_s);
+  return cycles_of(longest_s, robot.rate_hz);
+}
+
 void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t session) {
   const auto refuse = [&](const std::string& key, const std::string& problem) {
     throw ConfigError::at(robot.name, 0, key, problem);

@@ -19,6 +19,9 @@ double checked_bus_load(const Robot& robot, int bus);
 /// Limits of the gate at robot.rate_hz.
 GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept;
 
+/// Cycles after which the watchdog of the slowest drive has acted.
+int drive_watchdog_cycles_of(const Robot& robot) noexcept;
+
 /// A time in whole cycles, rounded up; at least one.
 int cycles_of(double seconds, double rate_hz) noexcept;
 

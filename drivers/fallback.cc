@@ -9,13 +9,12 @@ JointCommand JointHold::command(const JointLink& link, bool settling, bool trust
   const JointConfig& joint = link.joint();
   const double kp = joint.drive.hold_kp_Nm_per_rad;
   const double kd = joint.drive.hold_kd_Nms_per_rad;
-  if (settling) return {link.q(), 0.0, kd, gravity_};
-  if (!trusted) return damp(link);
-  if (!holding_) {
-    if (!link.fresh()) return {link.q(), 0.0, kd, gravity_};
-    q_hold_ = link.q();
-    holding_ = true;
+  if (settling || !trusted) {
+    holding_ = false;
+    return {link.q(), 0.0, kd, gravity_};
   }
+  if (!holding_) q_hold_ = link.q();
+  holding_ = true;
   if (kp > 0.0) {
     const double reach = std::max(joint.torque_limit_Nm - std::abs(gravity_), 0.0) / kp;
     q_hold_ = std::clamp(q_hold_, link.q() - reach, link.q() + reach);

@@ -3,7 +3,8 @@
 //   first 100 ms:  tau = gravity of the last accepted command - kd v
 //   then:          tau = gravity + kp (q_hold - q) - kd v,  q_hold: the angle reached by then
 //
-// A joint whose replies cannot be trusted gets no position: after the first 100 ms it only brakes.
+// A joint whose replies are missing gets no position to hold, as nobody knows where it is: it goes
+// on floating on that gravity torque, and braking.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ class JointHold {
     holding_ = false;
   }
 
-  /// `settling`: within the first 100 ms. `trusted`: the measured angle is good.
+  /// `settling`: within the first 100 ms. `trusted`: the measured angle is good; a joint that comes
+  /// back is held where it is then.
   /// The spring gives way: q_hold follows a joint that is pushed so far that spring and gravity
   /// together would exceed the joint's torque limit.
   JointCommand command(const JointLink& link, bool settling, bool trusted) noexcept;

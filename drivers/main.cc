@@ -1,9 +1,11 @@
 // limber-driver: owns the arm's buses and is its clock.
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -36,6 +38,18 @@ std::map<std::string, std::string> parse_buses(const std::vector<std::string>& t
   return buses;
 }
 
+/// CLI11's own ranges let NaN pass.
+CLI::Validator number_from(double low, double high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) {
+        double value = 0.0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        if (number && value >= low && value <= high) return std::string();
+        return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
+      },
+      "");
+}
+
 void add_options(CLI::App& app, limber::DriverProcessOptions& options,
                  std::vector<std::string>& buses) {
   app.add_option("--robot", options.robot, "shipped robot or folder with robot.yaml")
@@ -43,14 +57,14 @@ void add_options(CLI::App& app, limber::DriverProcessOptions& options,
   app.add_option("--bus", buses,
                  "NAME=ADDRESS: use socketcan:IFACE or virtual:GROUP for a bus of robot.yaml");
   app.add_option("--rate", options.rate_hz, "cycles per second instead of robot.yaml's")
-      ->check(CLI::Range(1.0, 20000.0));
+      ->check(number_from(1.0, 20000.0));
   app.add_flag("--lockstep", options.lockstep, "no clock: simulator and controller set the pace");
   app.add_option("--session", options.session, "number of this run (default: random; lock step: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, INT64_MAX));
   app.add_option("--duration", options.duration_s, "stop after so much arm time, s")
-      ->check(CLI::PositiveNumber);
+      ->check(number_from(1e-3, 1e8));
   app.add_option("--cycles", options.cycles, "stop after so many cycles")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, INT64_MAX));
   app.add_option("--realtime-priority", options.realtime_priority,
                  "SCHED_FIFO priority to ask for; 0: do not ask")
       ->capture_default_str()
@@ -58,7 +72,7 @@ void add_options(CLI::App& app, limber::DriverProcessOptions& options,
   app.add_option("--patience", options.patience_s,
                  "give up (exit 3) when motors, simulator or controller are silent so long, s")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(number_from(0.0, 1e6));
 }
 
 }  // namespace

@@ -16,14 +16,17 @@ class ReplyWatch {
   /// Once a cycle, when it is over.
   void close_cycle(bool answered, std::int64_t cycle) noexcept {
     missing_ = answered ? 0 : missing_ + 1;
-    if (!answered && losses_.add(cycle, cycles_per_second_)) lost_ = true;
-    if (silent()) lost_ = true;
+    answered_ = answered ? answered_ + 1 : 0;
+    const bool often = !answered && losses_.add(cycle, cycles_per_second_);
+    if (often || missing_ >= 3) lost_ = true;
   }
 
-  /// No reply in the last three cycles.
-  bool silent() const noexcept { return missing_ >= 3; }
-  /// Too many were missing at some time since reset(): the joint's angle is not to be built on.
+  /// Cycles without a reply up to now.
+  std::int64_t missing() const noexcept { return missing_; }
+  /// Too many were missing at some time since reset().
   bool lost() const noexcept { return lost_; }
+  /// The joint's angle is good to be held at: never lost, or back for 50 ms without a gap.
+  bool trusted() const noexcept { return !lost_ || 20 * answered_ >= cycles_per_second_; }
   void reset() noexcept {
     missing_ = 0;
     lost_ = false;
@@ -32,7 +35,8 @@ class ReplyWatch {
 
  private:
   int cycles_per_second_;
-  int missing_ = 0;
+  std::int64_t missing_ = 0;
+  std::int64_t answered_ = 0;
   bool lost_ = false;
   EventWindow<10> losses_;
 };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kEnabling_s = 0.1;  // at least kEnablingCycles
 constexpr int kEnablingCycles = 20;
+constexpr int kSilentCycles = 3;
 
 }  // namespace
 
@@ -49,10 +50,21 @@ void ArmDriver::Impl::supervise_replies() noexcept {
     if (bus.lost()) apply(DriveEvent::kBusLost);
   }
   if (in(DriveState::kConfiguring)) return;
-  if (all_drives(&Drive::silent)) apply(DriveEvent::kAllSilent);
+  // Late is not off: as long as the drives may still hear, they are told to hold. Once they have
+  // heard nobody for so long that their own watchdogs have acted, the arm is not ours any more.
+  const std::int64_t silence = cycles_all_silent();
+  if (silence >= kSilentCycles && silence >= drive_watchdog_cycles) apply(DriveEvent::kAllSilent);
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    if (drives[i].lost()) apply(DriveEvent::kReplyLost, static_cast<int>(i));
+    const int who = silence >= kSilentCycles ? -1 : static_cast<int>(i);
+    if (drives[i].lost()) apply(DriveEvent::kReplyLost, who);
   }
+}
+
+std::int64_t ArmDriver::Impl::cycles_all_silent() const noexcept {
+  const auto first_to_speak = std::min_element(
+      drives.begin(), drives.end(),
+      [](const Drive& a, const Drive& b) { return a.missing_cycles() < b.missing_cycles(); });
+  return first_to_speak->missing_cycles();
 }
 
 void ArmDriver::Impl::supervise_motion() noexcept {

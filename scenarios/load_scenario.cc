@@ -105,6 +105,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot) {
                             : Integrator::kReference;
   scenario.step_s = read_step(yaml, robot.robot.rate_hz);
   scenario.friction = yaml.boolean_or("friction", true);
+  scenario.stand = yaml.boolean_or("stand", true);
   scenario.start_q = read_start(yaml, robot.robot);
   if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
     yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");

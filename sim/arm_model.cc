@@ -23,7 +23,8 @@ bool is_prismatic(KDL::Joint::JointType type) {
          type == KDL::Joint::TransY || type == KDL::Joint::TransZ;
 }
 
-/// KDL keeps the rotational inertia about the frame's origin; dynamics here wants it about the centre of mass.
+/// KDL keeps the rotational inertia about the frame's origin; dynamics here wants it about the
+/// centre of mass.
 MassProperties to_mass_properties(KDL::RigidBodyInertia inertia) {
   MassProperties out;
   out.mass = inertia.getMass();
@@ -56,7 +57,8 @@ ArmModel build_arm_model(const LoadedRobot& robot) {
   ArmModel model;
   model.gravity = Eigen::Map<const Eigen::Vector3d>(robot.robot.gravity);
 
-  // Pose of the end of the segments walked so far in the present body's frame, and what this body weighs.
+  // Pose of the end of the segments walked so far in the present body's frame, and what this body
+  // weighs.
   KDL::Frame in_body = KDL::Frame::Identity();
   KDL::RigidBodyInertia inertia = KDL::RigidBodyInertia::Zero();
   const auto close_body = [&] {
@@ -87,8 +89,9 @@ ArmModel build_arm_model(const LoadedRobot& robot) {
   close_body();
 
   if (model.size() < 1 || model.size() > kMaxJoints || model.size() != robot.robot.size()) {
-    throw ConfigError(fmt::format("{}: the chain has {} moving joints and the robot {}; 1 to {}, and as many, are allowed",
-                                  robot.robot.name, model.size(), robot.robot.size(), kMaxJoints));
+    throw ConfigError(fmt::format(
+        "{}: the chain has {} moving joints and the robot {}; 1 to {}, and as many, are allowed",
+        robot.robot.name, model.size(), robot.robot.size(), kMaxJoints));
   }
   for (int i = 0; i < model.size(); ++i) {
     model.bodies[i].rotor_inertia = robot.robot.joints[i].drive.rotor_inertia_kgm2;

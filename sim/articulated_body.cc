@@ -25,8 +25,7 @@ ArticulatedBody::ArticulatedBody(ArmModel model)
 
 void ArticulatedBody::set_tip_load(double mass, const Vector3d& p_TL) noexcept {
   const LinkModel& tip_link = model_.links.back();
-  model_.bodies.back().mass =
-      with_point_mass(bare_tip_body_, mass, tip_link.p + tip_link.R * p_TL);
+  model_.bodies.back().mass = with_point_mass(bare_tip_body_, mass, tip_link.p + tip_link.R * p_TL);
 }
 
 void ArticulatedBody::set_state(const VectorJ& q, const VectorJ& v) noexcept {

@@ -1,10 +1,11 @@
-// Forward dynamics of a serial arm by the articulated-body algorithm, with rotors and wrenches on any link.
+// Forward dynamics of a serial arm by the articulated-body algorithm, with rotors and wrenches on
+// any link.
 //
 //   (M(q) + B) qdd + C(q,v) v + g(q) = tau + sum_i J_i^T F_i
 //
-// Source: R. Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 7; written with base axes throughout and each
-// body's own joint origin as reference point. Deliberately shares nothing with the controller's terms (KDL), so that the
-// one checks the other.
+// Source: R. Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 7; written with base axes
+// throughout and each body's own joint origin as reference point. Deliberately shares nothing with
+// the controller's terms (KDL), so that the one checks the other.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,8 @@
 
 namespace limber::sim {
 
-/// Everything in base axes. No member but the constructor allocates; all may be called in the cycle.
+/// Everything in base axes. No member but the constructor allocates; all may be called in the
+/// cycle.
 class ArticulatedBody {
  public:
   explicit ArticulatedBody(ArmModel model);
@@ -31,7 +33,8 @@ class ArticulatedBody {
   void set_state(const VectorJ& q, const VectorJ& v) noexcept;
 
   void clear_wrenches() noexcept;
-  /// The world pushes `body` with a force at `point` (base frame) and a moment. Body -1, the base, takes it in silence.
+  /// The world pushes `body` with a force at `point` (base frame) and a moment. Body -1, the base,
+  /// takes it in silence.
   void add_wrench(int body, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
                   const Eigen::Vector3d& moment) noexcept;
   // Sum of the wrenches added to a body, reduced to its joint origin.
@@ -40,11 +43,12 @@ class ArticulatedBody {
   /// Joint torque of the wrenches added: sum J_i^T F_i.
   void wrench_torque(VectorJ* tau) const noexcept;
 
-  /// Acceleration at the present state, with `extra_inertia` added to B (an implicit integrator's h*damping, or zero).
+  /// Acceleration at the present state, with `extra_inertia` added to B (an implicit integrator's
+  /// h*damping, or zero).
   void accelerations(const VectorJ& tau, const VectorJ& extra_inertia, VectorJ* qdd) noexcept;
 
-  /// n^T J (M + B)^-1 J^T n for the tip origin and a unit vector n: how fast a newton along n accelerates the tip along n,
-  /// 1/kg; 0 where the arm cannot move that way. Clears the wrenches.
+  /// n^T J (M + B)^-1 J^T n for the tip origin and a unit vector n: how fast a newton along n
+  /// accelerates the tip along n, 1/kg; 0 where the arm cannot move that way. Clears the wrenches.
   double tip_mobility(const Eigen::Vector3d& n) noexcept;
 
   /// Frames are indexed as in ArmModel::links.

@@ -14,7 +14,8 @@ struct Environment {
   Wall wall;
   PushSlots pushes;
 
-  /// Adds all wrenches at the arm's present state and simulated time t to the arm; returns their power, W.
+  /// Adds all wrenches at the arm's present state and simulated time t to the arm; returns their
+  /// power, W.
   double apply(ArticulatedBody* arm, std::int64_t t_ns) const noexcept;
 
   // Base axes, reduced to the tip origin.

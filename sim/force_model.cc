@@ -22,8 +22,9 @@ AffineForce ForceModel::passive_force(int joint, double q, double v, double v_gu
                                       double h) const noexcept {
   const AffineForce friction = friction_[joint].step_force(v, v_guess, h);
   const AffineForce stop = stops_[joint].step_force(q, h);
-  return {friction.offset + stop.offset,
-          friction.slope + stop.slope + drives[joint].passive_damping};
+  const AffineForce stand = stands[joint].step_force(q, h);
+  return {friction.offset + stop.offset + stand.offset,
+          friction.slope + stop.slope + stand.slope + drives[joint].passive_damping};
 }
 
 void ForceModel::soften_wall(ArticulatedBody* arm, double h) noexcept {
@@ -56,7 +57,7 @@ void ForceModel::begin_step(ArticulatedBody* arm, const VectorJ& q, const Vector
   for (int i = 0; i < size_; ++i) {
     friction_torque_[i] = -friction_[i].finish_step(v[i], v_guess_[i], v_end_[i], h) -
                           drives[i].passive_damping * v_end_[i];
-    stop_torque_[i] = stops_[i].torque(q[i], v_end_[i], h);
+    stop_torque_[i] = stops_[i].torque(q[i], v_end_[i], h) + stands[i].torque(q[i], v_end_[i], h);
   }
 }
 

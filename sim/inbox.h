@@ -7,7 +7,8 @@
 
 namespace limber::sim {
 
-/// Fetches in batches, hands out one by one, so that whoever stops in the middle loses nothing. Allowed in the cycle.
+/// Fetches in batches, hands out one by one, so that whoever stops in the middle loses nothing.
+/// Allowed in the cycle.
 class Inbox {
  public:
   explicit Inbox(CanBus* bus) : bus_(bus) {}

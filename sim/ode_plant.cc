@@ -25,7 +25,8 @@ void require_mass(const ArmModel& model) {
     const Eigen::Vector3d moments = mass.inertia.selfadjointView<Eigen::Lower>().eigenvalues();
     if (mass.mass > 0.0 && moments.minCoeff() > 0.0) continue;
     throw ConfigError(
-        fmt::format("the link moved by joint {} has mass {} kg and a smallest moment of inertia of {} kg m^2, and ODE "
+        fmt::format("the link moved by joint {} has mass {} kg and a smallest moment of inertia of "
+                    "{} kg m^2, and ODE "
                     "needs both above 0; use integrator: reference",
                     i + 1, mass.mass, moments.minCoeff()));
   }
@@ -49,7 +50,8 @@ void set_mass(dBodyID body, const MassProperties& mass) {
 
 Eigen::Vector3d to_eigen(const dReal* v) { return {v[0], v[1], v[2]}; }
 
-/// dJointGetSliderPositionRate() takes the difference of the bodies' velocities and forgets that the carrying body turns.
+/// dJointGetSliderPositionRate() takes the difference of the bodies' velocities and forgets that
+/// the carrying body turns.
 double slider_rate(dBodyID body, dBodyID parent, dJointID slider) {
   dVector3 axis;
   dJointGetSliderAxis(slider, axis);
@@ -57,8 +59,7 @@ double slider_rate(dBodyID body, dBodyID parent, dJointID slider) {
   if (parent != nullptr) {
     const Eigen::Vector3d between =
         to_eigen(dBodyGetPosition(body)) - to_eigen(dBodyGetPosition(parent));
-    v -= to_eigen(dBodyGetLinearVel(parent)) +
-         to_eigen(dBodyGetAngularVel(parent)).cross(between);
+    v -= to_eigen(dBodyGetLinearVel(parent)) + to_eigen(dBodyGetAngularVel(parent)).cross(between);
   }
   return to_eigen(axis).dot(v);
 }
@@ -74,7 +75,8 @@ OdePlant::OdePlant(const ArmModel& model)
   start_ode_once();
   world_ = dWorldCreate();
   joints_ = dJointGroupCreate(0);
-  dWorldSetCFM(world_, 0.0);  // a serial chain has no redundant constraints that would need softening
+  dWorldSetCFM(world_,
+               0.0);  // a serial chain has no redundant constraints that would need softening
   dWorldSetGravity(world_, model.gravity.x(), model.gravity.y(), model.gravity.z());
   for (int i = 0; i < model.size(); ++i) create(i);
   assemble();
@@ -140,7 +142,8 @@ void OdePlant::integrate(ForceModel* forces, double h) noexcept {
   const double contact_power = power.external - forces->stop_torque().dot(v_);
   arm_.accelerations(tau_, no_extra_inertia_, &qdd_);
   if (!tau_.allFinite() || !qdd_.allFinite()) {
-    v_.setConstant(std::numeric_limits<double>::quiet_NaN());  // ODE would abort; step() will not take this
+    v_.setConstant(
+        std::numeric_limits<double>::quiet_NaN());  // ODE would abort; step() will not take this
     return;
   }
   apply(tau_);

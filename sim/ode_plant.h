@@ -9,12 +9,13 @@
 
 namespace limber::sim {
 
-/// First order in the step. Rotor inertia has no place in ODE's bodies; each joint gets tau - B qdd instead of tau, with qdd
-/// from the articulated-body algorithm under the very same forces, so that the links feel M + B.
+/// First order in the step. Rotor inertia has no place in ODE's bodies; each joint gets tau - B qdd
+/// instead of tau, with qdd from the articulated-body algorithm under the very same forces, so that
+/// the links feel M + B.
 class OdePlant final : public ArmPlant {
  public:
-  /// ODE wants every body to have mass and a positive definite inertia: throws ConfigError where a moving link has not
-  /// (the reference integrator takes such arms).
+  /// ODE wants every body to have mass and a positive definite inertia: throws ConfigError where a
+  /// moving link has not (the reference integrator takes such arms).
   explicit OdePlant(const ArmModel& model);
   ~OdePlant() override;
 

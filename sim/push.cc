@@ -9,7 +9,8 @@ namespace {
 /// 0 to 1 with zero slope at both ends, over 0 < t < length; a step for length 0.
 double smooth_edge(std::int64_t t, std::int64_t length) {
   if (t >= length) return 1.0;
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * static_cast<double>(t) / static_cast<double>(length));
+  return 0.5 -
+         0.5 * std::cos(std::numbers::pi * static_cast<double>(t) / static_cast<double>(length));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace limber::sim {
 
-/// One push. It rises over `ramp` with a cosine edge from whatever the push it replaces was exerting, and falls to zero at the
-/// end of `duration`.
+/// One push. It rises over `ramp` with a cosine edge from whatever the push it replaces was
+/// exerting, and falls to zero at the end of `duration`.
 struct Push {
   int id = 0;
   int link = 0;  ///< index into ArmModel::links
@@ -30,8 +30,8 @@ class PushSlots {
  public:
   static constexpr int kSlots = 8;
 
-  /// A push with an id that is at work replaces it if it is on the same link, without a jump; on another link it starts
-  /// anew. False if all slots are taken.
+  /// A push with an id that is at work replaces it if it is on the same link, without a jump; on
+  /// another link it starts anew. False if all slots are taken.
   bool add(Push push, std::int64_t now_ns) noexcept;
   void clear() noexcept { count_ = 0; }
   /// Frees the slots of pushes that are over.

@@ -24,9 +24,9 @@ void ReferencePlant::integrate(ForceModel* forces, double h) noexcept {
   v_ += h / 6.0 * (k1_.qdd + 2.0 * k2_.qdd + 2.0 * k3_.qdd + k4_.qdd);
   arm_.set_state(q_, v_);
   const auto add = [&](double Work::*part) {
-    work_.*part += h / 6.0 *
-                   (k1_.power.*part + 2.0 * k2_.power.*part + 2.0 * k3_.power.*part +
-                    k4_.power.*part);
+    work_.*part +=
+        h / 6.0 *
+        (k1_.power.*part + 2.0 * k2_.power.*part + 2.0 * k3_.power.*part + k4_.power.*part);
   };
   add(&Work::motor);
   add(&Work::external);

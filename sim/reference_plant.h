@@ -5,7 +5,8 @@
 
 namespace limber::sim {
 
-/// Forces held over the step (friction, end stops) make the whole first order; without them it is fourth order.
+/// Forces held over the step (friction, end stops) make the whole first order; without them it is
+/// fourth order.
 class ReferencePlant final : public ArmPlant {
  public:
   explicit ReferencePlant(const ArmModel& model);

@@ -63,7 +63,8 @@ void SimProcess::subscribe() {
   });
   user_.subscribe<scenario_event_t>(
       channels::kScenarioEvent, kUserQueue, [this](const scenario_event_t& event) {
-        if (!simulator_.event(event)) complain("a SCENARIO_EVENT was refused (values out of range)");
+        if (!simulator_.event(event))
+          complain("a SCENARIO_EVENT was refused (values out of range)");
       });
   if (options_.simulator.lockstep) return;
   user_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
@@ -125,7 +126,8 @@ void SimProcess::learn_arm_time(const joint_state_t& state) {
     anchored_ = false;
     simulator_.restart_timeline();
   }
-  // The way from the driver to here only ever adds to the difference: the smallest seen is the nearest to the truth.
+  // The way from the driver to here only ever adds to the difference: the smallest seen is the
+  // nearest to the truth.
   const std::int64_t offset_ns = monotonic_ns() - start_ns_ - state.time_ns;
   if (anchored_ && offset_ns >= arm_offset_ns_) return;
   anchored_ = true;

@@ -1,4 +1,5 @@
-// The simulator as a process: buses on one side, the user plane of LCM on the other, time in between.
+// The simulator as a process: buses on one side, the user plane of LCM on the other, time in
+// between.
 #pragma once
 
 #include <array>

@@ -30,7 +30,8 @@ template <typename... Args>
 }
 
 void check(const Robot& robot, const std::vector<CanBus*>& buses, const SimulatorOptions& options) {
-  if (!robot.has_drives) refuse(robot, "has no drives (no robot.yaml), so there is nothing to simulate on a bus");
+  if (!robot.has_drives)
+    refuse(robot, "has no drives (no robot.yaml), so there is nothing to simulate on a bus");
   if (robot.size() < 1 || robot.size() > kMaxJoints) {
     refuse(robot, "has {} joints; 1 to {} are allowed", robot.size(), kMaxJoints);
   }
@@ -41,7 +42,8 @@ void check(const Robot& robot, const std::vector<CanBus*>& buses, const Simulato
   if (!(options.step_s >= 1e-6 && options.step_s <= 0.01)) {
     refuse(robot, "integration step {} s; allowed: 1e-6 to 0.01", options.step_s);
   }
-  if (!(robot.rate_hz >= 1.0 && robot.rate_hz <= 1e5)) refuse(robot, "rate {} Hz; allowed: 1 to 1e5", robot.rate_hz);
+  if (!(robot.rate_hz >= 1.0 && robot.rate_hz <= 1e5))
+    refuse(robot, "rate {} Hz; allowed: 1 to 1e5", robot.rate_hz);
   for (const JointConfig& joint : robot.joints) {
     if (joint.drive.bus < 0 || joint.drive.bus >= static_cast<int>(buses.size())) {
       refuse(robot, "joint {} is on bus number {}, which does not exist", joint.name,
@@ -76,6 +78,7 @@ struct Simulator::Impl {
   void on_frame(int bus, const CanFrame& frame) noexcept;
   bool on_tick(int bus, std::int64_t number) noexcept;
   void advance_step() noexcept;
+  void update_stand(std::int64_t now_ns) noexcept;
   void apply_timeline(std::int64_t time_ns) noexcept;
   void apply(const ScenarioMessage& message) noexcept;
   void clear_world() noexcept;
@@ -92,6 +95,8 @@ struct Simulator::Impl {
   std::vector<sim::Inbox> inboxes;
   sim::TickCount ticks;
   bool lockstep;
+  bool stand;
+  sim::StandFade stand_fade;
 
   std::int64_t period_ns;
   std::int64_t steps_per_period;
@@ -113,7 +118,8 @@ Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buse
                       const SimulatorOptions& options)
     : forces(robot.robot, options.friction),
       ticks(static_cast<int>(buses.size())),
-      lockstep(options.lockstep) {
+      lockstep(options.lockstep),
+      stand(options.stand) {
   const double period_s = 1.0 / robot.robot.rate_hz;
   period_ns = std::llround(1e9 * period_s);
   // The tolerance keeps 0.001 / 0.00025 from becoming 5 steps by rounding.
@@ -126,6 +132,9 @@ Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buse
   for (const JointConfig& joint : robot.robot.joints) {
     node_bus.push_back(joint.drive.bus);
     nodes.emplace_back(joint, robot.robot.buses[joint.drive.bus].fd);
+  }
+  for (int i = 0; stand && i < robot.robot.size(); ++i) {
+    forces.stands[i] = sim::Stand(robot.robot.joints[i], plant->q()[i]);
   }
 }
 
@@ -192,11 +201,21 @@ void Simulator::Impl::advance_step() noexcept {
   for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i].law();
   const std::int64_t now = sim_time(steps);
   const std::int64_t next = sim_time(steps + 1);
+  if (stand) update_stand(now);
   forces.environment.pushes.drop_finished(now);
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant->step(&forces, step_s, now + (next - now) / 2);
   ++steps;
   for (sim::DamiaoNode& node : nodes) node.update(next);
+}
+
+void Simulator::Impl::update_stand(std::int64_t now_ns) noexcept {
+  const bool enabled = std::all_of(nodes.begin(), nodes.end(), [](const sim::DamiaoNode& node) {
+    return node.state() == mit::DriveError::kEnabled;
+  });
+  const double left = stand_fade.left(now_ns, enabled);
+  for (std::size_t i = 0; i < nodes.size(); ++i) forces.stands[i].set_left(left);
+  stand = left > 0.0;
 }
 
 void Simulator::Impl::apply_timeline(std::int64_t time_ns) noexcept {
@@ -239,9 +258,9 @@ bool Simulator::Impl::event(const scenario_event_t& message) noexcept {
       if (!sim::read_fault(message, plant->arm().size(), &fault)) return false;
       const std::int64_t now = sim_time(steps);
       constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
-      nodes[fault.joint].inject(fault.fault, reading(fault.joint),
-                                fault.duration_ns > kForEver - now ? kForEver
-                                                                   : now + fault.duration_ns);
+      nodes[fault.joint].inject(
+          fault.fault, reading(fault.joint),
+          fault.duration_ns > kForEver - now ? kForEver : now + fault.duration_ns);
       return true;
     }
     default:

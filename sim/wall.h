@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <limits>
 
-
 namespace limber::sim {
 
-/// Contact of one point, the tip origin; base axes. Without stiffness there is no wall. Allowed in the cycle throughout.
+/// Contact of one point, the tip origin; base axes. Without stiffness there is no wall. Allowed in
+/// the cycle throughout.
 struct Wall {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< towards free space, unit length
@@ -21,8 +21,8 @@ struct Wall {
   double max_stiffness = std::numeric_limits<double>::infinity();
   double max_damping = std::numeric_limits<double>::infinity();
 
-  /// Keeps k h^2 <= m and b h <= m/2 for a tip that weighs m = 1 / mobility along the normal. A harder wall would throw the
-  /// tip back with more than it came with; use a shorter step for it.
+  /// Keeps k h^2 <= m and b h <= m/2 for a tip that weighs m = 1 / mobility along the normal. A
+  /// harder wall would throw the tip back with more than it came with; use a shorter step for it.
   void limit_to(double mobility, double h) noexcept {
     max_stiffness = 1.0 / (h * h * mobility);
     max_damping = 0.5 / (h * mobility);
@@ -34,8 +34,8 @@ struct Wall {
   Eigen::Vector3d force(const Eigen::Vector3d& p, const Eigen::Vector3d& v) const noexcept {
     const double delta = depth(p);
     if (!(stiffness > 0.0) || !(delta > 0.0)) return Eigen::Vector3d::Zero();
-    const double push = std::min(stiffness, max_stiffness) * delta -
-                        std::min(damping, max_damping) * normal.dot(v);
+    const double push =
+        std::min(stiffness, max_stiffness) * delta - std::min(damping, max_damping) * normal.dot(v);
     return (push > 0.0 ? push : 0.0) * normal;
   }
 };

@@ -87,9 +87,9 @@ bool read_fault(const scenario_event_t& event, int joints, NodeFault* fault) noe
       !within(event.duration_s, 0.0, kMaxFault_s)) {
     return false;
   }
-  *fault = {event.joint, event.fault,
-            event.duration_s > 0.0 ? to_ns(event.duration_s)
-                                   : std::numeric_limits<std::int64_t>::max()};
+  *fault = {
+      event.joint, event.fault,
+      event.duration_s > 0.0 ? to_ns(event.duration_s) : std::numeric_limits<std::int64_t>::max()};
   return true;
 }
 

@@ -10,13 +10,15 @@
 
 namespace limber::sim {
 
-// False, and nothing written, if a value is not finite or out of range, or a link is unknown. Allowed in the cycle.
+// False, and nothing written, if a value is not finite or out of range, or a link is unknown.
+// Allowed in the cycle.
 
-/// Forces and moments up to 1e4 N and N m each, 0 < duration <= 60 s, both edges within it. Time and the predecessor are left
-/// to PushSlots.
+/// Forces and moments up to 1e4 N and N m each, 0 < duration <= 60 s, both edges within it. Time
+/// and the predecessor are left to PushSlots.
 [[nodiscard]] bool read_push(const push_t& message, const ArmModel& model, Push* push) noexcept;
 
-/// Stiffness 0 (no wall) to 1e7 N/m, damping up to 1e5 N s/m, points within 100 m, a normal of unit length to 1 %.
+/// Stiffness 0 (no wall) to 1e7 N/m, damping up to 1e5 N s/m, points within 100 m, a normal of unit
+/// length to 1 %.
 [[nodiscard]] bool read_wall(const scenario_event_t& event, Wall* wall) noexcept;
 
 struct Payload {

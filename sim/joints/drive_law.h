@@ -13,7 +13,8 @@ struct DriveLaw {
   double v_des = 0.0;
   double tau_ff = 0.0;
   double limit = 0.0;
-  /// Phases shorted: a passive damper, N m s/rad; not limited, since no current controller is at work.
+  /// Phases shorted: a passive damper, N m s/rad; not limited, since no current controller is at
+  /// work.
   double passive_damping = 0.0;
 
   double torque(double q, double v) const noexcept {

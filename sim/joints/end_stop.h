@@ -8,8 +8,9 @@
 
 namespace limber::sim {
 
-/// Outside the limits F = k * depth + d * (speed inwards), never pulling. k is such that the joint's torque limit presses
-/// the stop in by 10 mrad (10 mm on a prismatic joint); d = k * 5 ms. Continuous joints have none.
+/// Outside the limits F = k * depth + d * (speed inwards), never pulling. k is such that the
+/// joint's torque limit presses the stop in by 10 mrad (10 mm on a prismatic joint); d = k * 5 ms.
+/// Continuous joints have none.
 class EndStop {
  public:
   EndStop() = default;

@@ -18,8 +18,8 @@ LugreFriction::LugreFriction(const FrictionConfig& config, double rotor_inertia)
 
 LugreFriction::Coefficients LugreFriction::coefficients(double v, double v_guess,
                                                         double h) const noexcept {
-  // G is taken at the start of the step: its negative slope (Stribeck) is slow against a step and must not enter the
-  // implicit part, where it would be negative damping.
+  // G is taken at the start of the step: its negative slope (Stribeck) is slow against a step and
+  // must not enter the implicit part, where it would be negative damping.
   const double ratio = v / stribeck_;
   const double level = coulomb_ + (static_ - coulomb_) * std::exp(-ratio * ratio);
   const double speed = std::abs(v_guess);
@@ -35,8 +35,7 @@ AffineForce LugreFriction::step_force(double v, double v_guess, double h) const 
   return {gain * z_ - sigma1 / h * z_, gain * h + viscous_};
 }
 
-double LugreFriction::finish_step(double v, double v_guess, double v_end,
-                                  double h) noexcept {
+double LugreFriction::finish_step(double v, double v_guess, double v_end, double h) noexcept {
   if (!(coulomb_ > 0.0)) return viscous_ * v_end;
   const auto [decay, sigma1] = coefficients(v, v_guess, h);
   const double z_end = (z_ + h * v_end) / decay;

@@ -1,18 +1,21 @@
-// LuGre friction of one joint, advanced by an implicit step that is stable and passive whatever its parameters.
+// LuGre friction of one joint, advanced by an implicit step that is stable and passive whatever its
+// parameters.
 //
 //   zdot = v - sigma0 |v| z / G(v),   G(v) = F_c + (F_s - F_c) exp(-(v / v_s)^2)
 //   F    = sigma0 z + sigma1(v) zdot + d v,          the torque on the joint is -F
 //
-// Source: Canudas de Wit, Olsson, Astrom, Lischinsky, "A new model for control of systems with friction", IEEE TAC 40
-// (1995). sigma1 falls with speed, 1/sigma1 = 1/sigma1(0) + |v| / (4 G), which is the condition for passivity in Olsson's
-// thesis (1996): a constant sigma1 can return energy at speed. sigma1(0) damps the bristle on the bare rotor critically.
+// Source: Canudas de Wit, Olsson, Astrom, Lischinsky, "A new model for control of systems with
+// friction", IEEE TAC 40 (1995). sigma1 falls with speed, 1/sigma1 = 1/sigma1(0) + |v| / (4 G),
+// which is the condition for passivity in Olsson's thesis (1996): a constant sigma1 can return
+// energy at speed. sigma1(0) damps the bristle on the bare rotor critically.
 #pragma once
 
 #include "robots/robot.h"
 
 namespace limber::sim {
 
-/// A force that is affine in the velocity at the end of a step: F = offset + slope * v_end, slope >= 0.
+/// A force that is affine in the velocity at the end of a step: F = offset + slope * v_end, slope
+/// >= 0.
 struct AffineForce {
   double offset = 0.0;
   double slope = 0.0;
@@ -23,12 +26,13 @@ class LugreFriction {
   LugreFriction() = default;
   LugreFriction(const FrictionConfig& config, double rotor_inertia);
 
-  /// The friction of a step of length h that starts at velocity `v`, with |v_end| in the bristle's decay taken as |v_guess|.
-  /// For any guess the step dissipates: F * v_end * h >= change of the bristle's energy.
+  /// The friction of a step of length h that starts at velocity `v`, with |v_end| in the bristle's
+  /// decay taken as |v_guess|. For any guess the step dissipates: F * v_end * h >= change of the
+  /// bristle's energy.
   AffineForce step_force(double v, double v_guess, double h) const noexcept;
 
-  /// Ends the step at v_end: moves the bristle and returns F. With the guess that step_force() was last given, F is exactly the
-  /// force v_end was solved with.
+  /// Ends the step at v_end: moves the bristle and returns F. With the guess that step_force() was
+  /// last given, F is exactly the force v_end was solved with.
   double finish_step(double v, double v_guess, double v_end, double h) noexcept;
 
   void reset() noexcept { z_ = 0.0; }

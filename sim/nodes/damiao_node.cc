@@ -152,8 +152,8 @@ DriveLaw DamiaoNode::law() const noexcept {
   law.passive_damping = shorted_ ? drive_.short_circuit_damping_Nms : 0.0;
   if (state_ != mit::DriveError::kEnabled) return law;
   const double peak = drive_.peak_torque_Nm;
-  law.limit = peak > 0.0 ? std::min(peak, registers_.range().torque_Nm)
-                         : registers_.range().torque_Nm;
+  law.limit =
+      peak > 0.0 ? std::min(peak, registers_.range().torque_Nm) : registers_.range().torque_Nm;
   law.tau_ff = drive_.sign * command_.torque_Nm;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
     // The loop runs on what the encoder says, which no longer depends on the joint.

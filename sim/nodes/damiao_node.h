@@ -1,7 +1,9 @@
-// An emulated Damiao motor drive: what a real one does with each frame, and when it switches itself off.
+// An emulated Damiao motor drive: what a real one does with each frame, and when it switches itself
+// off.
 //
-// Every frame for the node is answered with the state before the frame takes effect, on the reply id, in the format (classic or
-// FD) of the request. The node speaks the drive's own angle (sign and offset of the robot's description, then set-zero).
+// Every frame for the node is answered with the state before the frame takes effect, on the reply
+// id, in the format (classic or FD) of the request. The node speaks the drive's own angle (sign and
+// offset of the robot's description, then set-zero).
 #pragma once
 
 #include <array>
@@ -22,29 +24,30 @@ struct JointReading {
   double motor_torque = 0.0;
 };
 
-/// States are those of the status nibble: disabled (phases open: rotor and friction are all the joint feels), enabled, or a
-/// latched error, which leaves enabled mode until it is cleared (FB) and the drive enabled again (FC).
-/// After construction every member is allowed in the cycle.
+/// States are those of the status nibble: disabled (phases open: rotor and friction are all the
+/// joint feels), enabled, or a latched error, which leaves enabled mode until it is cleared (FB)
+/// and the drive enabled again (FC). After construction every member is allowed in the cycle.
 class DamiaoNode {
  public:
   DamiaoNode(const JointConfig& joint, bool fd);
 
-  /// Handles a frame at simulated time `now`. True if `reply` is to be sent; frames for others, of the wrong length, extended,
-  /// remote or error frames are no concern of the node.
+  /// Handles a frame at simulated time `now`. True if `reply` is to be sent; frames for others, of
+  /// the wrong length, extended, remote or error frames are no concern of the node.
   bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                CanFrame* reply) noexcept;
 
-  /// Lets simulated time pass: the drive's own watchdog, the end of faults. Call before every integration step.
+  /// Lets simulated time pass: the drive's own watchdog, the end of faults. Call before every
+  /// integration step.
   void update(std::int64_t now_ns) noexcept;
 
-  /// The torque law at work, in joint coordinates: kp, kd and t of the last command, limited to the smaller of the torque
-  /// range and the drive's peak.
+  /// The torque law at work, in joint coordinates: kp, kd and t of the last command, limited to the
+  /// smaller of the torque range and the drive's peak.
   DriveLaw law() const noexcept;
 
   /// scenario_event_t FAULT_* until a simulated time:
   ///   SILENT          obeys, but its replies never reach the bus
-  ///   FROZEN_ENCODER  position stays what it was, speed reads 0, for the bus and for the drive's own law
-  ///   DRIVE_ERROR     over-current: leaves enabled mode; cannot be cleared while it lasts
+  ///   FROZEN_ENCODER  position stays what it was, speed reads 0, for the bus and for the drive's
+  ///   own law DRIVE_ERROR     over-current: leaves enabled mode; cannot be cleared while it lasts
   ///   DROP_COMMANDS   answers, but takes nothing in: the watchdog is not fed
   void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept;
   void clear_faults() noexcept;

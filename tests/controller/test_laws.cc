@@ -116,7 +116,9 @@ TEST(Springs, ForceIsLimitedWithoutAnEdge) {
     const LawOutput& out = bench.at(bent(7), VectorJ::Zero(7));
     EXPECT_NEAR(out.F[0], std::min(500.0 * x, SpringLimit::kMaxForce_N), 1e-6);
     EXPECT_LE(out.F[0] - last, 500.0 * 1e-3 + 1e-9);
-    EXPECT_EQ(out.limits != 0, x > 0.2 + 1e-9);
+    if (std::abs(x - 0.2) > 1e-9) {
+      EXPECT_EQ(out.limits != 0, x > 0.2);
+    }
     last = out.F[0];
   }
 }

@@ -43,8 +43,8 @@ inline void add_segment(LoadedRobot& robot, const KDL::Joint& joint, const KDL::
   robot.segment_links.push_back(name);
 }
 
-/// Two rods in the x-y plane, gravity along -y, masses m at l with inertia I, lengths a; motor 2 of mass `motor` at
-/// the elbow.
+/// Two rods in the x-y plane, gravity along -y, masses m at l with inertia I, lengths a; motor 2 of
+/// mass `motor` at the elbow.
 struct PlanarSet {
   double a1, a2, l1, l2, m1, m2, I1, I2, motor, B1, B2;
 };
@@ -55,7 +55,8 @@ inline LoadedRobot planar_arm(const PlanarSet& s) {
   robot.robot.gravity[2] = 0.0;
   const auto rod = [](double m, double l, double a, double I) {
     // Inertias given at the segment's end frame, as KDL wants them.
-    return KDL::RigidBodyInertia(m, KDL::Vector(l - a, 0, 0), KDL::RotationalInertia(0.1 * I, I, I));
+    return KDL::RigidBodyInertia(m, KDL::Vector(l - a, 0, 0),
+                                 KDL::RotationalInertia(0.1 * I, I, I));
   };
   const KDL::RigidBodyInertia elbow_motor(s.motor, KDL::Vector(0, 0, 0));
   const KDL::Vector zero(0, 0, 0);
@@ -76,8 +77,8 @@ inline PlanarSet desktop() {
   return {0.35, 0.3, 0.175, 0.15, 1.2, 0.8, 0.01225, 0.006, 0.3, 1.8e-3, 1.8e-3};
 }
 
-/// A random spatial arm: skew axes, off-centre masses, fixed segments between moving ones (one of them before the first joint),
-/// every third joint prismatic if `sliders`.
+/// A random spatial arm: skew axes, off-centre masses, fixed segments between moving ones (one of
+/// them before the first joint), every third joint prismatic if `sliders`.
 inline LoadedRobot random_arm(int joints, bool sliders, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -89,10 +90,10 @@ inline LoadedRobot random_arm(int joints, bool sliders, unsigned seed) {
   };
   const auto inertia = [&] {
     const double m = 1.0 + 0.5 * unit(random);
-    return KDL::RigidBodyInertia(m, vector(0.05),
-                                 KDL::RotationalInertia(0.01 + 0.004 * unit(random),
-                                                        0.012 + 0.004 * unit(random), 0.011, 0.001,
-                                                        -0.002, 0.0015));
+    return KDL::RigidBodyInertia(
+        m, vector(0.05),
+        KDL::RotationalInertia(0.01 + 0.004 * unit(random), 0.012 + 0.004 * unit(random), 0.011,
+                               0.001, -0.002, 0.0015));
   };
   LoadedRobot robot = arm_on_one_bus();
   robot.robot.gravity[0] = 1.0;

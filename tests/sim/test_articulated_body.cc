@@ -1,6 +1,5 @@
-// The articulated-body algorithm against closed forms, KDL's inverse dynamics and mechanics' own balances.
-#include "sim/articulated_body.h"
-
+// The articulated-body algorithm against closed forms, KDL's inverse dynamics and mechanics' own
+// balances.
 #include <gtest/gtest.h>
 
 #include <kdl/chaindynparam.hpp>
@@ -9,6 +8,7 @@
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
+#include "sim/articulated_body.h"
 #include "tests/sim/test_arms.h"
 
 namespace limber::sim {
@@ -63,7 +63,8 @@ TEST(ArticulatedBody, PlanarArmFollowsClosedForm) {
 }
 
 TEST(ArticulatedBody, PlanarArmHoldsTabulatedGravityTorque) {
-  // Worked by hand: horizontal arm, g1 = (1.2*0.175 + 0.3*0.35 + 0.8*0.35) 9.81 + g2, g2 = 0.8*0.15*9.81.
+  // Worked by hand: horizontal arm, g1 = (1.2*0.175 + 0.3*0.35 + 0.8*0.35) 9.81 + g2, g2 =
+  // 0.8*0.15*9.81.
   ArticulatedBody arm(build_arm_model(testing::planar_arm(desktop())));
   arm.set_state(VectorJ::Zero(2), VectorJ::Zero(2));
   VectorJ tau(2);
@@ -80,8 +81,7 @@ TEST_P(SpatialArm, AgreesWithInverseDynamicsOfKdl) {
   const auto [joints, sliders] = GetParam();
   const LoadedRobot robot = random_arm(joints, sliders, 7);
   ArticulatedBody arm(build_arm_model(robot));
-  const KDL::Vector gravity(robot.robot.gravity[0], robot.robot.gravity[1],
-                            robot.robot.gravity[2]);
+  const KDL::Vector gravity(robot.robot.gravity[0], robot.robot.gravity[1], robot.robot.gravity[2]);
   KDL::ChainIdSolver_RNE inverse(robot.chain, gravity);
   KDL::ChainDynParam terms(robot.chain, gravity);
   KDL::ChainFkSolverPos_recursive fk(robot.chain);
@@ -93,7 +93,8 @@ TEST_P(SpatialArm, AgreesWithInverseDynamicsOfKdl) {
     const VectorJ v = random_vector(joints, 2.0, random);
     const VectorJ tau = random_vector(joints, 10.0, random);
     arm.set_state(q, v);
-    // A wrench on every link, base axes at the link's origin; KDL wants them in the link's own axes.
+    // A wrench on every link, base axes at the link's origin; KDL wants them in the link's own
+    // axes.
     KDL::Wrenches wrenches(segments);
     for (unsigned link = 0; link < segments; ++link) {
       const VectorJ F = random_vector(6, 5.0, random);
@@ -101,8 +102,8 @@ TEST_P(SpatialArm, AgreesWithInverseDynamicsOfKdl) {
       fk.JntToCart(to_kdl(q), pose, static_cast<int>(link) + 1);
       const int index = static_cast<int>(link);
       EXPECT_LT((to_kdl(arm.link_position(index)) - pose.p).Norm(), 1e-12);
-      wrenches[link] = pose.M.Inverse() * KDL::Wrench(KDL::Vector(F[0], F[1], F[2]),
-                                                      KDL::Vector(F[3], F[4], F[5]));
+      wrenches[link] = pose.M.Inverse() *
+                       KDL::Wrench(KDL::Vector(F[0], F[1], F[2]), KDL::Vector(F[3], F[4], F[5]));
       arm.add_wrench(arm.model().links[link].body, arm.link_position(index), F.head<3>(),
                      F.tail<3>());
     }
@@ -181,9 +182,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SpatialArm,
 TEST(ArticulatedBody, PotentialEnergyIsTheIntegralOfGravityTorque) {
   const LoadedRobot robot = random_arm(5, true, 10);
   ArticulatedBody arm(build_arm_model(robot));
-  KDL::ChainDynParam terms(robot.chain,
-                           KDL::Vector(robot.robot.gravity[0], robot.robot.gravity[1],
-                                       robot.robot.gravity[2]));
+  KDL::ChainDynParam terms(robot.chain, KDL::Vector(robot.robot.gravity[0], robot.robot.gravity[1],
+                                                    robot.robot.gravity[2]));
   std::mt19937 random(5);
   const VectorJ q = random_vector(5, 2.0, random);
   KDL::JntArray g(5);

@@ -1,10 +1,10 @@
 // LuGre friction on a single mass: what stiction, sliding and passivity must look like.
-#include "sim/joints/friction.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "sim/joints/friction.h"
 
 namespace limber::sim {
 namespace {
@@ -44,7 +44,8 @@ struct Mass {
 };
 
 TEST(Lugre, SticksBelowBreakawayWithPresliding) {
-  // A constant force F < G rests at z = F / sigma0. On the way there dz/dx = 1 - z sigma0 / G, so x = -G/sigma0 ln(1 - F/G).
+  // A constant force F < G rests at z = F / sigma0. On the way there dz/dx = 1 - z sigma0 / G, so x
+  // = -G/sigma0 ln(1 - F/G).
   for (const double share : {0.01, 0.3, 0.8}) {
     Mass mass{LugreFriction(config(0.5, 0.5, 0.05, 1e-4), 0.01), 0.01};
     const double ramp_steps = 4000;  // slow, so that nothing overshoots
@@ -130,8 +131,7 @@ TEST(Lugre, NeverAcceleratesAMassForAnyParameters) {
     const double start = 0.5 * mass.inertia * mass.v * mass.v;
     for (int k = 0; k < 2000; ++k) {
       mass.step(0.0);
-      const double energy =
-          0.5 * mass.inertia * mass.v * mass.v + mass.friction.bristle_energy();
+      const double energy = 0.5 * mass.inertia * mass.v * mass.v + mass.friction.bristle_energy();
       ASSERT_LE(energy, start * (1.0 + 1e-9)) << trial << " " << k;
     }
   }

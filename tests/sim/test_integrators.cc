@@ -1,13 +1,13 @@
-// The two integrators against each other, against formulas and against mechanics' balances. How far they part at a step is what
-// the default step of 0.25 ms was chosen by.
+// The two integrators against each other, against formulas and against mechanics' balances. How far
+// they part at a step is what the default step of 0.25 ms was chosen by.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <kdl/chaindynparam.hpp>
 #include <numbers>
 
-#include "robots/load_robot.h"
 #include "common/config_error.h"
+#include "robots/load_robot.h"
 #include "sim/arm_plant.h"
 #include "tests/sim/test_arms.h"
 
@@ -24,8 +24,8 @@ VectorJ home(const LoadedRobot& robot) {
   return q;
 }
 
-/// The arm under joint impedance, computed every millisecond from the exact state, around a sine of 0.5 Hz: joint positions of
-/// the last of five seconds.
+/// The arm under joint impedance, computed every millisecond from the exact state, around a sine of
+/// 0.5 Hz: joint positions of the last of five seconds.
 std::vector<VectorJ> track_sine(const LoadedRobot& robot, Integrator integrator, double step) {
   const int n = robot.robot.size();
   ForceModel forces(robot.robot, false);
@@ -68,8 +68,9 @@ TEST(Integrators, OdeFollowsTheReferenceWhileTracking) {
   const auto truth = track_sine(robot, Integrator::kReference, kStep);
   const double coarse = largest_difference(track_sine(robot, Integrator::kOde, 1e-3), truth);
   const double fine = largest_difference(track_sine(robot, Integrator::kOde, kStep), truth);
-  const double reference = largest_difference(track_sine(robot, Integrator::kReference, 1e-3), truth);
-  EXPECT_LT(fine, 2e-5);  // a twentieth of a count of the 14-bit encoder
+  const double reference =
+      largest_difference(track_sine(robot, Integrator::kReference, 1e-3), truth);
+  EXPECT_LT(fine, 2e-5);                 // a twentieth of a count of the 14-bit encoder
   EXPECT_NEAR(coarse / fine, 4.0, 0.4);  // first order
   EXPECT_LT(reference, 1e-10);
 }
@@ -153,13 +154,14 @@ LoadedRobot weightless(LoadedRobot robot) {
 }
 
 TEST_P(BothIntegrators, LinksFeelTheRotors) {
-  // Elbow locked by symmetry is not to be had; torques chosen so that only joint 1 accelerates: tau = (M + B) (a, 0).
+  // Elbow locked by symmetry is not to be had; torques chosen so that only joint 1 accelerates: tau
+  // = (M + B) (a, 0).
   const auto s = desktop();
   make(weightless(testing::planar_arm(s)));
   const double a = 2.0;
   const double m12 = s.I2 + s.m2 * (s.l2 * s.l2 + s.a1 * s.l2);
-  const double m11 = s.I1 + s.m1 * s.l1 * s.l1 + s.motor * s.a1 * s.a1 + s.I2 +
-                     s.m2 * std::pow(s.a1 + s.l2, 2);
+  const double m11 =
+      s.I1 + s.m1 * s.l1 * s.l1 + s.motor * s.a1 * s.a1 + s.I2 + s.m2 * std::pow(s.a1 + s.l2, 2);
   set_torque(0, (m11 + s.B1) * a);
   set_torque(1, m12 * a);
   run(kStep);
@@ -325,7 +327,8 @@ TEST_P(BothIntegrators, EnergyIsAccountedFor) {
   EXPECT_GT(std::abs(work.motor), 0.1);
   EXPECT_GT(std::abs(work.external), 0.01);
   EXPECT_LT(work.friction, -0.01);
-  // First order in the step for ODE; the reference does its own bookkeeping to fourth order, but for the bristle.
+  // First order in the step for ODE; the reference does its own bookkeeping to fourth order, but
+  // for the bristle.
   EXPECT_NEAR(balance, 0.0, GetParam() == Integrator::kOde ? 5e-3 : 1e-4);
 }
 
@@ -392,10 +395,10 @@ TEST(Integrators, MasslessLinkIsRefusedByOdeWithAReason) {
   const KDL::Vector z(0, 0, 1);
   testing::add_segment(robot, KDL::Joint("a", {}, z, KDL::Joint::RotAxis), KDL::Frame::Identity(),
                        KDL::RigidBodyInertia::Zero());
-  testing::add_segment(robot, KDL::Joint("b", {}, {1, 0, 0}, KDL::Joint::RotAxis),
-                       KDL::Frame(KDL::Vector(0, 0, 0.3)),
-                       KDL::RigidBodyInertia(1.0, {0, 0, -0.1},
-                                             KDL::RotationalInertia(0.02, 0.02, 0.02)));
+  testing::add_segment(
+      robot, KDL::Joint("b", {}, {1, 0, 0}, KDL::Joint::RotAxis),
+      KDL::Frame(KDL::Vector(0, 0, 0.3)),
+      KDL::RigidBodyInertia(1.0, {0, 0, -0.1}, KDL::RotationalInertia(0.02, 0.02, 0.02)));
   robot.robot.joints = {testing::joint_config(0, JointType::kRevolute, 0.01),
                         testing::joint_config(1, JointType::kRevolute, 0.01)};
   const ArmModel model = build_arm_model(robot);

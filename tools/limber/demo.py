@@ -33,7 +33,7 @@ def demo(
 ) -> int:
     scenario = jobs.load_checked(SCENARIO)
     if seconds is not None:
-        scenario.duration_s = min(seconds, scenario.duration_s)
+        scenario.duration_s = seconds
     network.ensure_multicast(private)
     folder = output_folder(out or jobs.next_folder("demo"))
     console.print(

@@ -87,7 +87,7 @@ def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[Measured]) -> None:
     ax.set_ylabel("tip moved along the push's axis (mm)")
     ax.set_xlabel("arm time (s)")
     if pushes:
-        ax.legend(loc="upper right", fontsize=8)
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8)
 
 
 def _softness(ax: plt.Axes, pushes: list[Measured]) -> None:

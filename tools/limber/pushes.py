@@ -121,9 +121,9 @@ def push_results(pushes: list[Measured], tolerance: float) -> list[Result]:
         unit = "N m/rad" if measured.angular else "N/m"
         force_unit = "N m" if measured.angular else "N"
         share = tolerance + measured.friction_force / measured.force
-        note = f"push of {measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
+        note = f"{measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
         if measured.friction_force:
-            note += f", friction may take {measured.friction_force:.2g} {force_unit} of it"
+            note += f"; friction may take {measured.friction_force:.2g} {force_unit}"
         result = close_to(
             f"stiffness {measured.axis}",
             measured.stiffness,
@@ -140,7 +140,8 @@ def push_results(pushes: list[Measured], tolerance: float) -> list[Result]:
         if np.isfinite(measured.offset_after_m):
             offset_mm = measured.offset_after_m * 1e3
             name = f"offset after push {measured.axis}"
-            results.append(Result(name, offset_mm, "mm", note="friction keeps it"))
+            note = "kept by friction" if measured.friction_force else ""
+            results.append(Result(name, offset_mm, "mm", note=note))
     return results
 
 

@@ -57,8 +57,11 @@ class Summary:
 
     def table(self, title: str) -> Table:
         table = Table(title=title, title_justify="left", box=None, padding=(0, 2, 0, 0))
-        for name in ("", "measured", "asked", "may be off by", "", ""):
-            table.add_column(name, justify="right" if name else "left", header_style="dim")
+        table.add_column("", no_wrap=True)
+        for name in ("measured", "asked", "off by at most"):
+            table.add_column(name, justify="right", header_style="dim", no_wrap=True)
+        table.add_column("", no_wrap=True)
+        table.add_column("", style="dim")
         for result in self.results:
             table.add_row(
                 result.name,
@@ -66,7 +69,7 @@ class Summary:
                 "" if result.asked is None else _text(result.asked),
                 "" if not result.tolerance else _text(result.tolerance),
                 {None: "", True: "[green]ok[/]", False: "[bold red]NO[/]"}[result.passed],
-                f"[dim]{result.note}[/]",
+                result.note,
             )
         return table
 

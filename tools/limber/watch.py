@@ -97,9 +97,10 @@ class View:
         return self.joints[index].name if index < len(self.joints) else f"joint {index + 1}"
 
     def _joints(self, state: np.void) -> Table:
-        table = Table(box=None, padding=(0, 2), header_style="dim")
-        for name in ("joint", "position", "", "speed", "torque", "applied", "°C", "age"):
-            table.add_column(name, justify="left" if name in ("joint", "") else "right")
+        table = Table(box=None, padding=(0, 1), header_style="dim")
+        for name in ("joint", "position", "", "speed", "torque", "applied", "°C", "age", ""):
+            justify = "left" if name in ("joint", "") else "right"
+            table.add_column(name, justify=justify, no_wrap=True)
         for i in range(int(state["num_joints"])):
             q = float(state["q"][i])
             flags = messages.bit_names("joint_state_t", "JOINT_", int(state["joint_flags"][i]))

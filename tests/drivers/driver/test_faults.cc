@@ -124,12 +124,21 @@ TEST(ReplyLostTest, TwoAreBridgedTheThirdHoldsTheOthers) {
   EXPECT_EQ(arm.read_status().replies_lost[1], 3);
   for (int i = 0; i < 110; ++i) arm.cycle_with(kAskOn);
   EXPECT_EQ(raw_command(arm.motors[0].last()).kp, kKp50);
-  EXPECT_EQ(raw_command(arm.motors[1].last()).kp, 0);  // its angle is not known: it only brakes
+  EXPECT_EQ(raw_command(arm.motors[1].last()).kp, 0);  // nobody knows where it is
   EXPECT_EQ(raw_command(arm.motors[1].last()).kd, kKd1);
-  EXPECT_NEAR(torque_sent(arm, 1), 0.0, 5e-3);
-  arm.motors[1].silent = false;  // and it is not trusted again without an acknowledgement
-  for (int i = 0; i < 50; ++i) arm.cycle_with(kAskOn);
-  EXPECT_EQ(raw_command(arm.motors[1].last()).kp, 0);
+  EXPECT_NEAR(torque_sent(arm, 1), 0.3, 5e-3);
+  // When it is back for 50 ms it is held as well, where it is then; the fault stays.
+  arm.motors[1].silent = false;
+  arm.set_angle(1, 0.01);
+  for (int i = 0; i < 50; ++i) {
+    arm.cycle_with(kAskOn);
+    EXPECT_EQ(raw_command(arm.motors[1].last()).kp, 0);
+  }
+  arm.cycle_with(kAskOn);
+  EXPECT_EQ(raw_command(arm.motors[1].last()).kp, kKp50);
+  EXPECT_NEAR(-12.5 + raw_command(arm.motors[1].last()).p * 25.0 / 65535.0, 0.3 - 0.01, 5e-4);
+  EXPECT_EQ(arm.state->drive_state, kHold);
+  EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
 }
 
 TEST(ReplyLostTest, TenWithinASecondAreTooManyAsWell) {
@@ -146,15 +155,29 @@ TEST(ReplyLostTest, TenWithinASecondAreTooManyAsWell) {
   }
 }
 
-TEST(ReplyLostTest, AllSilentIsAFault) {
+TEST(ReplyLostTest, AllSilentIsAHoldUntilTheDrivesOwnWatchdogsHaveActed) {
   FakeArm arm = loaded_arm(2);
   for (testing::FakeMotor& motor : arm.motors) motor.silent = true;
-  for (int i = 0; i < 3; ++i) arm.cycle_with(kAskOn);
-  EXPECT_EQ(arm.state->drive_state, kFault);
+  for (int silent = 1; silent <= 22; ++silent) {
+    arm.cycle_with(kAskOn);
+    EXPECT_EQ(arm.state->drive_state, silent < 3 ? kOn : silent < 20 ? kHold : kFault) << silent;
+  }
+  EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
   EXPECT_EQ(arm.state->fault_joint, -1);
-  arm.cycle_with(kAskOn);
   EXPECT_TRUE(is_special(arm.motors[0].last(), 0xFD));
   EXPECT_TRUE(is_special(arm.motors[1].last(), 0xFD));
+}
+
+TEST(ReplyLostTest, AStallOfTenCyclesEndsInAFirmHold) {
+  FakeArm arm = loaded_arm(2);
+  for (testing::FakeMotor& motor : arm.motors) motor.silent = true;
+  for (int i = 0; i < 10; ++i) arm.cycle_with(kAskOn);
+  for (testing::FakeMotor& motor : arm.motors) motor.silent = false;
+  for (int i = 0; i < 94; ++i) {
+    arm.cycle_with(kAskOn);
+    EXPECT_NEAR(torque_sent(arm, 0), 0.3, 5e-3);  // never without its weight
+  }
+  EXPECT_EQ(raw_command(arm.motors[0].last()).kp, kKp50);
 }
 
 TEST(ReplyLostTest, ASilentDriveWhileOffMayHaveForgottenItsSettings) {
@@ -330,7 +353,7 @@ TEST(BusTest, BusOffOfTheOnlyBusIsAFault) {
   arm.cycle_with(kAskOn);
   EXPECT_NE(arm.state->drive_state, kOn);
   EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_BUS + 0);
-  for (int i = 0; i < 3; ++i) arm.cycle_with(kAskOn);
+  for (int i = 0; i < 20; ++i) arm.cycle_with(kAskOn);
   EXPECT_EQ(arm.state->drive_state, kFault);
 }
 

@@ -175,7 +175,7 @@ TEST(RecoveryTest, AfterAFaultTheArmStartsFromTheBeginning) {
   FakeArm arm(test_robot(2));
   ASSERT_TRUE(arm.switch_on());
   for (testing::FakeMotor& motor : arm.motors) motor.silent = true;
-  for (int i = 0; i < 3; ++i) arm.cycle_with(kAskOn);
+  for (int i = 0; i < 20; ++i) arm.cycle_with(kAskOn);
   ASSERT_EQ(arm.state->drive_state, kFault);
   for (testing::FakeMotor& motor : arm.motors) motor.silent = false;
   arm.set_angle(0, 1.0);  // the arm was moved meanwhile
