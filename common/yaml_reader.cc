@@ -37,8 +37,8 @@ std::string wanted(Range allowed) {
 
 }  // namespace
 
-YamlMap::YamlMap(YAML::Node node, std::string path, std::shared_ptr<const std::string> file)
-    : node_(std::move(node)),
+YamlMap::YamlMap(const YAML::Node& node, std::string path, std::shared_ptr<const std::string> file)
+    : node_(node),
       path_(std::move(path)),
       file_(std::move(file)),
       known_(std::make_shared<std::vector<std::string>>()) {}
@@ -173,7 +173,7 @@ std::string YamlMap::text_or(const std::string& key, const std::string& otherwis
 
 std::string YamlMap::word(const std::string& key, const std::vector<std::string>& allowed) const {
   const YAML::Node node = need(key, "one of: " + joined(allowed));
-  const std::string word = node.IsScalar() ? node.Scalar() : "";
+  std::string word = node.IsScalar() ? node.Scalar() : "";
   if (std::find(allowed.begin(), allowed.end(), word) == allowed.end()) {
     const std::string near = nearest_word(word, allowed);
     complain(node, key,

@@ -71,7 +71,7 @@ class YamlMap {
   const std::string& file() const { return *file_; }
 
  private:
-  YamlMap(YAML::Node node, std::string path, std::shared_ptr<const std::string> file);
+  YamlMap(const YAML::Node& node, std::string path, std::shared_ptr<const std::string> file);
   YAML::Node find(const std::string& key) const;
   YAML::Node need(const std::string& key, const std::string& what) const;
   std::string path_to(const std::string& key) const;

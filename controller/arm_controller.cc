@@ -42,7 +42,7 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
 
 struct ArmController::Impl {
   Impl(const LoadedRobot& robot, const ArmControllerOptions& given)
-      : options(given), supervisor(robot.robot.size()), cycle(controllable(robot), given.law) {
+      : options(given), supervisor(robot.robot.size(), given.oldest_joint_cycles), cycle(controllable(robot), given.law) {
     answer.controller = options.controller;
     answer.num_joints = static_cast<std::int16_t>(robot.robot.size());
     status.controller = options.controller;
@@ -127,7 +127,8 @@ void ArmController::Impl::write_answer(const joint_state_t& state) noexcept {
 }
 
 void ArmController::Impl::write_status(std::int64_t started_ns) noexcept {
-  if (answer.state_seq % channels::kControllerStatusEvery == 0) ++status.seq;  // those that are published
+  if (answer.state_seq % channels::kControllerStatusEvery == 0)
+    ++status.seq;  // those that are published
   status.time_ns = answer.time_ns;
   status.session = answer.session;
   status.state_seq = answer.state_seq;
@@ -206,6 +207,9 @@ const char* ArmController::on_gains(const compliance_gains_t& gains) noexcept {
 void ArmController::on_silence() noexcept {
   impl_->supervisor.raise(Event::kStateLost);
   impl_->follow_mode();
+  ++impl_->status.seq;
+  impl_->status.mode = static_cast<std::int8_t>(impl_->supervisor.mode());
+  impl_->status.reason = impl_->supervisor.reason();
 }
 
 const controller_status_t& ArmController::status() const noexcept { return impl_->status; }

@@ -16,11 +16,24 @@ constexpr int kStateQueue = 64;
 constexpr int kRequestQueue = 32;
 constexpr std::int64_t kComplainEvery_ns = 200'000'000;
 
+RealtimeGrant ask(const ControllerProcessOptions& options) {
+  if (options.lockstep || options.priority == 0) return {};
+  RealtimeGrant grant = ask_for_realtime(options.priority);
+  if (!grant.reason.empty()) spdlog::warn("not real-time: {}; cycles may be late", grant.reason);
+  return grant;
+}
+
 }  // namespace
 
 ControllerProcess::ControllerProcess(ArmController* controller,
                                      const ControllerProcessOptions& options)
-    : controller_(controller), options_(options), arm_(arm_plane_url()), user_(user_plane_url()) {
+    : controller_(controller),
+      options_(options),
+      // LCM starts a thread for each plane. The user plane's, which anybody may flood, keeps normal
+      // priority; the arm plane's inherits ours.
+      user_(user_plane_url()),
+      grant_(ask(options)),
+      arm_(arm_plane_url()) {
   arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
                                 [this](const joint_state_t& state) { on_state(state); });
   user_.subscribe<mode_request_t>(channels::kModeRequest, kRequestQueue,
@@ -85,6 +98,7 @@ void ControllerProcess::watch_silence() noexcept {
   if (now_ns - heard_ns_ < kSilence_ns) return;
   heard_ns_ = now_ns;
   controller_->on_silence();
+  user_.publish(channels::kControllerStatus, controller_->status());
 }
 
 void ControllerProcess::complain(const char* what, const char* reason) noexcept {

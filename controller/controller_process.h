@@ -5,6 +5,7 @@
 #include <limber/joint_state_t.hpp>
 
 #include "common/lcm_port.h"
+#include "common/realtime.h"
 #include "controller/arm_controller.h"
 
 namespace limber {
@@ -12,6 +13,7 @@ namespace limber {
 struct ControllerProcessOptions {
   bool lockstep = false;    ///< every state is answered in order; no clock decides anything
   double duration_s = 0.0;  ///< ends by itself after this long; 0: never
+  int priority = 0;         ///< SCHED_FIFO priority to ask for; 0: do not ask
 };
 
 class ControllerProcess {
@@ -34,8 +36,9 @@ class ControllerProcess {
 
   ArmController* controller_;
   ControllerProcessOptions options_;
-  LcmPort arm_;
   LcmPort user_;
+  RealtimeGrant grant_;  // between the planes, see the constructor
+  LcmPort arm_;
   joint_state_t newest_{};
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;

@@ -9,9 +9,7 @@ void write(const VectorJ& tau, float (&field)[kMaxJoints]) noexcept {
   for (Eigen::Index i = 0; i < tau.size(); ++i) field[i] = static_cast<float>(tau[i]);
 }
 
-void write(const Vector6& vector, double (&field)[6]) noexcept {
-  Vector6::Map(field) = vector;
-}
+void write(const Vector6& vector, double (&field)[6]) noexcept { Vector6::Map(field) = vector; }
 
 void write(const Pose& pose, double (&p)[3], double (&quat)[4]) noexcept {
   Eigen::Vector3d::Map(p) = pose.p;

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "common/config_error.h"
-#include "common/realtime.h"
 #include "controller/arm_controller.h"
 #include "controller/controller_process.h"
 #include "controller/laws/registry.h"
@@ -17,6 +16,8 @@
 namespace {
 
 using namespace limber;
+
+constexpr double kVirtualBridge_s = 0.06;
 
 volatile bool stop = false;
 
@@ -34,7 +35,8 @@ struct Arguments {
 };
 
 void define(CLI::App& app, Arguments& given) {
-  app.add_option("--robot", given.robot, "name of a shipped robot, or a folder with robot.yaml");
+  app.add_option("--robot", given.robot,
+                 "shipped robot or folder with robot.yaml (default: the scenario's, else openarm)");
   app.add_option("--scenario", given.scenario,
                  "scenario file: names the robot, plays its timeline");
   app.add_option("--law", given.law, "the law ACTIVE starts with")->capture_default_str();
@@ -61,20 +63,13 @@ std::int64_t random_id() {
   return std::uniform_int_distribution<std::int64_t>(2)(device);
 }
 
-void ask_for_priority(int priority) {
-  if (priority == 0) return;
-  const RealtimeGrant grant = ask_for_realtime(priority);
-  if (!grant.fifo || !grant.locked_memory) {
-    spdlog::warn("not real-time: {}; cycles may be late", grant.reason);
-  }
+std::string robot_name(const Arguments& given) {
+  if (!given.robot.empty()) return given.robot;
+  return given.scenario.empty() ? "openarm" : scenario_robot(given.scenario);
 }
 
 void run(const Arguments& given) {
-  if (given.robot.empty() && given.scenario.empty()) {
-    throw ConfigError("which arm? give --robot NAME or --scenario FILE");
-  }
-  const LoadedRobot robot =
-      load_robot(given.robot.empty() ? scenario_robot(given.scenario) : given.robot);
+  const LoadedRobot robot = load_robot(robot_name(given));
   std::optional<Scenario> scenario;
   if (!given.scenario.empty()) scenario = load_scenario(given.scenario, robot);
   const bool lockstep = given.lockstep.value_or(scenario ? scenario->lockstep : false);
@@ -83,10 +78,13 @@ void run(const Arguments& given) {
   options.law = given.law;
   options.controller = given.controller.value_or(lockstep ? 1 : random_id());
   options.measure_time = !lockstep;
+  if (!lockstep && robot.robot.on_virtual_buses()) {
+    // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the controller.
+    options.oldest_joint_cycles = static_cast<int>(kVirtualBridge_s * robot.robot.rate_hz);
+  }
   ArmController controller(robot, options);
   if (scenario) controller.set_timeline(&scenario->timeline);
-  ControllerProcess process(&controller, {lockstep, given.duration_s});
-  if (!lockstep) ask_for_priority(given.priority);
+  ControllerProcess process(&controller, {lockstep, given.duration_s, given.priority});
 
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);

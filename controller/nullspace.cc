@@ -3,9 +3,9 @@
 namespace limber::controller {
 namespace {
 
-// Directions whose apparent inertia is more than a thousand times the lightest one's are being
+// Directions whose apparent inertia is more than ten thousand times the lightest one's are being
 // lost.
-constexpr double kLostShare = 1e-3;
+constexpr double kLostShare = 1e-4;
 
 }  // namespace
 

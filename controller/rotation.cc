@@ -39,8 +39,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) noexcept {
 
 Eigen::Quaterniond exp_rotation(const Eigen::Vector3d& phi) noexcept {
   const double angle = phi.norm();
-  const double factor =
-      angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
+  const double factor = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
   Eigen::Quaterniond Q;
   Q.w() = std::cos(0.5 * angle);
   Q.vec() = factor * phi;

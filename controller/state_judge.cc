@@ -49,7 +49,7 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   judgement.fresh = true;
   for (int i = 0; i < joints_; ++i) {
     if ((state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0) judgement.fresh = false;
-    if (!(state.age_cycles[i] <= kOldestJoint)) judgement.joint_silent = true;
+    if (!(state.age_cycles[i] <= oldest_joint_)) judgement.joint_silent = true;
   }
   return judgement;
 }

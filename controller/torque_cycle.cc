@@ -126,6 +126,7 @@ VectorJ TorqueCycle::null_space() noexcept {
 
 void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {
   VectorJ tau = target;
+  goals_.reset(terms_.X_BT, state_.q);
   law_.reset();
   tau_null_.setZero();
   tau_gravity_ = gravity_;

@@ -43,7 +43,8 @@ class TorqueCycle {
   /// One cycle of the running law, `dt_s` after the last. False if the result is not finite; the
   /// torque is then the one before.
   bool control(double dt_s) noexcept;
-  /// One cycle without a law: straight to `target`, or in steps the gate lets pass if `in_steps`.
+  /// One cycle without a law, the goal where the arm is: straight to `target`, or in steps the gate
+  /// lets pass if `in_steps`.
   void rest(const VectorJ& target, bool in_steps) noexcept;
 
   const VectorJ& torque() const noexcept { return limits_.previous(); }

@@ -9,7 +9,6 @@
 namespace limber {
 namespace {
 
-constexpr int kBridgedCycles = 2;    // without an answer of the controller
 constexpr double kSettling_s = 0.1;  // HOLD: damping before the position is held
 constexpr double kShutDownBraking_s = 0.3;
 constexpr int kFramesPerPoll = 16;  // batches: a flooded bus must not keep the cycle
@@ -21,6 +20,7 @@ ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
     : rate_hz(robot.rate_hz),
       drive_watchdog_cycles(drive_watchdog_cycles_of(robot)),
       lockstep(options.lockstep),
+      bridged_cycles(options.bridged_cycles),
       session(options.session),
       gate(gate_limits(robot, options.session)) {
   for (std::size_t b = 0; b < can.size(); ++b) {
@@ -28,7 +28,8 @@ ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
     load_predicted.push_back(checked_bus_load(robot, static_cast<int>(b)));
   }
   for (const JointConfig& joint : robot.joints) {
-    drives.emplace_back(joint, buses.at(static_cast<std::size_t>(joint.drive.bus)).fd(), rate_hz);
+    drives.emplace_back(joint, buses.at(static_cast<std::size_t>(joint.drive.bus)).fd(), rate_hz,
+                        bridged_cycles);
   }
   published.session = session;
   published.period_ns = std::llround(1e9 / rate_hz);
@@ -70,7 +71,7 @@ void ArmDriver::Impl::watch_controller() noexcept {
   unheard_cycles = heard ? 0 : unheard_cycles + 1;
   if (!heard && gate.memory().controller != 0) ++missing;
   heard = false;
-  if (unheard_cycles > kBridgedCycles) apply(DriveEvent::kControllerLost);
+  if (unheard_cycles > bridged_cycles) apply(DriveEvent::kControllerLost);
 }
 
 void ArmDriver::Impl::watch_shut_down() noexcept {
@@ -216,7 +217,8 @@ void ArmDriver::request_hold(int fault) noexcept {
 void ArmDriver::request_shut_down() noexcept { impl_->shutting_down = true; }
 
 bool ArmDriver::shut_down() const noexcept {
-  return impl_->shutting_down && !impl_->machine.powered() && impl_->all_drives(&Drive::disabled);
+  return impl_->shutting_down && (impl_->in(DriveState::kOff) || impl_->in(DriveState::kFault)) &&
+         impl_->all_drives(&Drive::disabled);
 }
 
 }  // namespace limber

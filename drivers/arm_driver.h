@@ -18,6 +18,8 @@ namespace limber {
 struct ArmDriverOptions {
   std::int64_t session = 1;   ///< random in realtime, from the seed in lock step; never 0
   bool lockstep = false;      ///< end each cycle with a TICK, know it complete by the TOCK
+  /// So many cycles in a row may go without an answer of the controller, or of a motor; the next one trips.
+  int bridged_cycles = 2;
 };
 
 /// One cycle, at a fixed rate, is

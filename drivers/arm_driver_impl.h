@@ -50,6 +50,7 @@ struct ArmDriver::Impl {
   double rate_hz;
   int drive_watchdog_cycles;  ///< of the slowest drive
   bool lockstep;
+  int bridged_cycles;
   std::int64_t session;
   std::vector<Drive> drives;
   std::vector<BusEnd> buses;

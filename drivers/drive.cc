@@ -4,10 +4,10 @@
 
 namespace limber {
 
-Drive::Drive(const JointConfig& joint, bool fd, double rate_hz)
-    : link_(joint, fd, 1.0 / rate_hz),
+Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
+    : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
       configure_(joint.drive, fd),
-      watch_(static_cast<int>(std::ceil(rate_hz))) {}
+      watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles) {}
 
 void Drive::enter(DriveState state, DriveState from, double gravity) noexcept {
   switch (state) {

@@ -15,7 +15,7 @@ namespace limber {
 /// Everything but the constructor is allowed inside the cycle.
 class Drive {
  public:
-  Drive(const JointConfig& joint, bool fd, double rate_hz);
+  Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles);
 
   /// The arm's state changed; `gravity` is what holds this joint, from the last accepted command.
   void enter(DriveState state, DriveState from, double gravity) noexcept;

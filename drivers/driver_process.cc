@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -21,6 +22,11 @@ constexpr std::int64_t kSpin_ns = 80'000;  // before each deadline; sleeping is 
 constexpr double kReplyShare = 0.6;        // of the period, at most, for the motors' replies
 constexpr std::int64_t kRepeat_ns = 100'000'000;  // lock step: say it again, a datagram may be lost
 constexpr double kShutDownPatience_s = 1.0;
+// A virtual bus is as punctual as this machine's scheduler, which pauses a process for tens of
+// milliseconds now and then; a wire is not. What would be a cut cable there is a hiccup here.
+constexpr double kVirtualBridge_s = 0.05;
+constexpr double kVirtualWatchdog_s = 0.1;
+constexpr int kBridgedCycles = 2;
 
 Robot load(const DriverProcessOptions& options) {
   Robot robot = load_robot(options.robot).robot;
@@ -39,6 +45,14 @@ Robot load(const DriverProcessOptions& options) {
                                     robot.name, name, names));
   }
   return robot;
+}
+
+/// The tolerances of a realtime run on virtual buses: the drives' watchdogs wait longer, too.
+int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
+  if (options.lockstep || !robot->on_virtual_buses()) return kBridgedCycles;
+  for (JointConfig& joint : robot->joints)
+    joint.drive.watchdog_s = std::max(joint.drive.watchdog_s, kVirtualWatchdog_s);
+  return std::max(kBridgedCycles, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
 }
 
 std::int64_t random_session() {
@@ -69,12 +83,13 @@ std::string said(const RealtimeGrant& grant, int priority) {
 DriverProcess::DriverProcess(const DriverProcessOptions& options)
     : options_(options),
       robot_(load(options)),
+      bridged_cycles_(bridged_cycles(options, &robot_)),
       period_ns_(std::llround(1e9 / robot_.rate_hz)),
       session_(options.session != 0 ? options.session
                : options.lockstep   ? 1
                                     : random_session()),
       loop_(period_ns_, kSpin_ns),
-      overruns_(std::llround(std::ceil(robot_.rate_hz))) {
+      overruns_(std::llround(std::ceil(robot_.rate_hz)), bridged_cycles_) {
   // In this order: LCM starts a thread for each port. The user plane's, which anybody may flood,
   // keeps normal priority; the arm plane's inherits ours.
   reporter_ = std::make_unique<StateReporter>(joint_names(robot_));
@@ -89,7 +104,7 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
     bus_pointers_.push_back(buses_.back().get());
   }
   driver_ = std::make_unique<ArmDriver>(robot_, bus_pointers_,
-                                        ArmDriverOptions{session_, options_.lockstep});
+                                        ArmDriverOptions{session_, options_.lockstep, bridged_cycles_});
 }
 
 void DriverProcess::say_start() const {

@@ -68,6 +68,7 @@ class DriverProcess {
 
   DriverProcessOptions options_;
   Robot robot_;
+  int bridged_cycles_ = 2;
   std::int64_t period_ns_ = 0;
   std::int64_t session_ = 0;
   RealtimeGrant grant_;

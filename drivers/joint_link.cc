@@ -9,14 +9,13 @@ namespace {
 constexpr int kPositionBits = 16;
 constexpr int kBits = 12;
 constexpr double kPositionMargin_rad = 0.02;
-constexpr int kLongestGap =
-    3;  // cycles; a joint that was silent for longer has to be configured again
 
 }  // namespace
 
-JointLink::JointLink(const JointConfig& joint, bool fd, double period_s)
+JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles)
     : joint_(joint),
       fd_(fd),
+      longest_gap_(bridged_cycles + 1),
       jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
       jump_resolution_(4.0 * mit::half_count(joint.drive.range.position_rad, kPositionBits)),
       torque_count_(2.0 * mit::half_count(joint.drive.range.torque_Nm, kBits)) {}
@@ -75,7 +74,7 @@ bool JointLink::receive(const CanFrame& frame) noexcept {
 
 bool JointLink::plausible(double q) const noexcept {
   if (!angle_known_) return std::isfinite(q);
-  const int cycles = std::clamp(age_cycles_, 1, kLongestGap);
+  const int cycles = std::clamp(age_cycles_, 1, longest_gap_);
   return std::abs(q - q_) <= cycles * jump_per_cycle_ + jump_resolution_;
 }
 

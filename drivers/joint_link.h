@@ -23,7 +23,7 @@ struct JointCommand {
 
 class JointLink {
  public:
-  JointLink(const JointConfig& joint, bool fd, double period_s);
+  JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles);
 
   // --- towards the drive; each call makes the frame of this cycle -----------------------------
 
@@ -44,7 +44,8 @@ class JointLink {
 
   /// Takes a state reply. False, and nothing taken: not one, another motor's number, a second one
   /// in this cycle, or an angle the joint cannot have reached since the last one
-  /// (1.5 velocity_limit T for each cycle since, at most three, plus two counts).
+  /// (1.5 velocity_limit T for each cycle since, at most as many as are bridged and one, plus two
+  /// counts).
   /// Replies are decoded with half a count added, because drives truncate.
   bool receive(const CanFrame& frame) noexcept;
 
@@ -77,6 +78,7 @@ class JointLink {
 
   JointConfig joint_;
   bool fd_;
+  int longest_gap_;  ///< cycles
   double jump_per_cycle_;   ///< rad
   double jump_resolution_;  ///< rad
   double torque_count_;     ///< N m

@@ -1,4 +1,4 @@
-// Counts cycles that took longer than their period.
+// Counts cycles that took longer than their period; b in a row are bridged (two on a wire).
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,23 @@ namespace limber {
 /// Allowed inside the cycle.
 class OverrunWatch {
  public:
-  explicit OverrunWatch(std::int64_t cycles_per_second) : cycles_per_second_(cycles_per_second) {}
+  explicit OverrunWatch(std::int64_t cycles_per_second, int bridged_cycles = 2)
+      : span_(2 * cycles_per_second / bridged_cycles), bridged_(bridged_cycles) {}
 
-  /// Once a cycle; true if it is the third overrun in a row, or the tenth within a second.
+  /// Once a cycle; true if one more than bridged is an overrun in a row, or it is the tenth within 2/b seconds.
   bool too_many(bool overrun) noexcept {
     ++cycle_;
     in_a_row_ = overrun ? in_a_row_ + 1 : 0;
     if (!overrun) return false;
     ++count_;
-    const bool often = window_.add(cycle_, cycles_per_second_);
-    return often || in_a_row_ >= 3;
+    const bool often = window_.add(cycle_, span_);
+    return often || in_a_row_ > bridged_;
   }
   std::int64_t count() const noexcept { return count_; }
 
  private:
-  std::int64_t cycles_per_second_;
+  std::int64_t span_;
+  int bridged_;
   std::int64_t cycle_ = 0;
   std::int64_t count_ = 0;
   int in_a_row_ = 0;

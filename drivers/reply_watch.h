@@ -1,5 +1,5 @@
-// Watchdog on one joint's replies: two cycles without one are bridged, the third in a row or the
-// tenth within a second is too much.
+// Watchdog on one joint's replies: b cycles without one are bridged (two on a wire). One more in a row is
+// too much, and so is the tenth within 2/b seconds.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,17 @@ namespace limber {
 /// Allowed inside the cycle.
 class ReplyWatch {
  public:
-  explicit ReplyWatch(int cycles_per_second) : cycles_per_second_(cycles_per_second) {}
+  ReplyWatch(int cycles_per_second, int bridged_cycles)
+      : cycles_per_second_(cycles_per_second),
+        bridged_(bridged_cycles),
+        span_(2 * cycles_per_second / bridged_cycles) {}
 
   /// Once a cycle, when it is over.
   void close_cycle(bool answered, std::int64_t cycle) noexcept {
     missing_ = answered ? 0 : missing_ + 1;
     answered_ = answered ? answered_ + 1 : 0;
-    const bool often = !answered && losses_.add(cycle, cycles_per_second_);
-    if (often || missing_ >= 3) lost_ = true;
+    const bool often = !answered && losses_.add(cycle, span_);
+    if (often || missing_ > bridged_) lost_ = true;
   }
 
   /// Cycles without a reply up to now.
@@ -35,6 +38,8 @@ class ReplyWatch {
 
  private:
   int cycles_per_second_;
+  int bridged_;
+  int span_;
   std::int64_t missing_ = 0;
   std::int64_t answered_ = 0;
   bool lost_ = false;

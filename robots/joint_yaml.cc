@@ -129,6 +129,7 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
   JointConfig& joint = robot->joints[index];
   const Units& units = units_of(joint);
   std::vector<std::string> types;
+  types.reserve(motors.size());
   for (const auto& [name, motor] : motors) types.push_back(name);
   joint.drive = motors.at(yaml.word("motor", types));
   read_address(yaml, *robot, &joint.drive);

@@ -105,6 +105,14 @@ struct Robot {
   bool has_drives = false;  ///< false for a bare URDF: fit for `check` and `eval`, not for running
 
   int size() const { return static_cast<int>(joints.size()); }
+
+  /// Every bus is limber's own user-space one: as punctual as this machine's scheduler, not as a wire.
+  bool on_virtual_buses() const {
+    for (const BusConfig& bus : buses) {
+      if (bus.can.rfind("virtual:", 0) != 0) return false;
+    }
+    return !buses.empty();
+  }
 };
 
 }  // namespace limber

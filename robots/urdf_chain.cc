@@ -12,6 +12,7 @@
 #include "common/config_error.h"
 #include "common/joints.h"
 #include "common/suggest.h"
+#include "robots/urdf_to_kdl.h"
 
 namespace limber {
 namespace {
@@ -39,109 +40,35 @@ urdf::ModelInterfaceSharedPtr parse(const UrdfText& text) {
   return model;
 }
 
-KDL::Vector to_kdl(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
-
-KDL::Frame to_kdl(const urdf::Pose& pose) {
-  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-  pose.rotation.getQuaternion(x, y, z, w);
-  return {KDL::Rotation::Quaternion(x, y, z, w), to_kdl(pose.position)};
-}
-
-/// The URDF gives the tensor about the centre of mass in axes of <inertial><origin>; KDL wants it
-/// about the centre of mass in link axes.
-KDL::RigidBodyInertia to_kdl(const urdf::Inertial& inertial) {
-  const KDL::Frame X_LI = to_kdl(inertial.origin);
-  const KDL::RotationalInertia tensor(inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy,
-                                      inertial.ixz, inertial.iyz);
-  const KDL::RigidBodyInertia turned =
-      X_LI.M * KDL::RigidBodyInertia(inertial.mass, KDL::Vector::Zero(), tensor);
-  return KDL::RigidBodyInertia(inertial.mass, X_LI.p, turned.getRotationalInertia());
-}
-
-bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
-
-struct Load {
-  KDL::RigidBodyInertia inertia = KDL::RigidBodyInertia::Zero();
-  double branch_mass_kg = 0.0;
-  std::vector<std::string> frozen;
-};
-
-/// A link with all that hangs from it but `next`, in link axes.
-Load load_of(const urdf::LinkConstSharedPtr& link, const urdf::LinkConstSharedPtr& next) {
-  Load load;
-  if (link->inertial) load.inertia = to_kdl(*link->inertial);
-  struct Open {
-    urdf::LinkConstSharedPtr link;
-    KDL::Frame X_LO;
-  };
-  std::vector<Open> open;
-  auto hang = [&](const urdf::LinkConstSharedPtr& from, const KDL::Frame& X_LF) {
-    for (const auto& joint : from->child_joints) {
-      if (next && joint->child_link_name == next->name) continue;
-      const auto child = std::find_if(
-          from->child_links.begin(), from->child_links.end(),
-          [&](const auto& candidate) { return candidate->name == joint->child_link_name; });
-      open.push_back({*child, X_LF * to_kdl(joint->parent_to_joint_origin_transform)});
-      if (moves(*joint)) load.frozen.push_back(joint->name);
-    }
-  };
-  hang(link, KDL::Frame::Identity());
-  while (!open.empty()) {
-    const Open here = open.back();
-    open.pop_back();
-    if (here.link->inertial) {
-      load.inertia = load.inertia + here.X_LO * to_kdl(*here.link->inertial);
-      load.branch_mass_kg += here.link->inertial->mass;
-    }
-    hang(here.link, here.X_LO);
-  }
-  return load;
-}
-
-KDL::Joint to_kdl_joint(const urdf::Joint& joint) {
-  const KDL::Frame X_PJ = to_kdl(joint.parent_to_joint_origin_transform);
-  if (!moves(joint)) return KDL::Joint(joint.name, KDL::Joint::Fixed);
-  const auto type =
-      joint.type == urdf::Joint::PRISMATIC ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;
-  KDL::Vector axis = to_kdl(joint.axis);
-  axis.Normalize();
-  return KDL::Joint(joint.name, X_PJ.p, X_PJ.M * axis, type);
-}
-
 JointConfig to_config(const urdf::Joint& joint, int line, Complaints* complaints,
                       std::vector<std::string>* notes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::string where = fmt::format("joint '{}'", joint.name);
   JointConfig config;
   config.name = joint.name;
   config.position_min = -kInfinity;
   config.position_max = kInfinity;
-  const std::string where = fmt::format("joint '{}'", joint.name);
-  if (joint.type == urdf::Joint::CONTINUOUS) {
-    config.type = JointType::kContinuous;
-  } else {
+  config.type = JointType::kContinuous;
+  if (joint.type != urdf::Joint::CONTINUOUS) {
     config.type =
         joint.type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
     config.position_min = joint.limits->lower;
     config.position_max = joint.limits->upper;
-    if (!(config.position_min < config.position_max)) {
-      complaints->add(line, where,
-                      fmt::format("<limit>: lower {} must be below upper {}", config.position_min,
-                                  config.position_max));
-    }
   }
-  if (!joint.limits) {
+  config.velocity_limit = joint.limits ? joint.limits->velocity : kInfinity;
+  config.torque_limit_Nm = joint.limits ? joint.limits->effort : kInfinity;
+  if (!joint.limits)
     notes->push_back(where + ": no <limit>, so neither speed nor torque is limited by the URDF");
-    config.velocity_limit = config.torque_limit_Nm = kInfinity;
-    return config;
-  }
-  config.velocity_limit = joint.limits->velocity;
-  config.torque_limit_Nm = joint.limits->effort;
-  if (!(config.velocity_limit > 0.0))
-    complaints->add(line, where,
-                    fmt::format("<limit> velocity: {} must be above 0", config.velocity_limit));
-  if (!(config.torque_limit_Nm > 0.0))
-    complaints->add(line, where,
-                    fmt::format("<limit> effort: {} must be above 0", config.torque_limit_Nm));
+  const auto expect = [&](bool right, const std::string& problem) {
+    if (!right) complaints->add(line, where, "<limit>" + problem);
+  };
+  expect(
+      config.position_min < config.position_max,
+      fmt::format(": lower {} must be below upper {}", config.position_min, config.position_max));
+  expect(config.velocity_limit > 0.0,
+         fmt::format(" velocity: {} must be above 0", config.velocity_limit));
+  expect(config.torque_limit_Nm > 0.0,
+         fmt::format(" effort: {} must be above 0", config.torque_limit_Nm));
   return config;
 }
 
@@ -188,6 +115,31 @@ KDL::Rotation root_to_base(const urdf::LinkConstSharedPtr& base, std::vector<std
   return R_RB;
 }
 
+/// The joint above a link, and the link with its load.
+void add_segment(const urdf::Link& link, const urdf::Link* next, const UrdfText& text,
+                 Complaints* complaints, UrdfChain* result) {
+  const urdf::Joint& joint = *link.parent_joint;
+  const int line = text.joint_lines.at(joint.name);
+  if (joint.type == urdf::Joint::FLOATING || joint.type == urdf::Joint::PLANAR) {
+    complaints->add(line, fmt::format("joint '{}'", joint.name),
+                    "floating and planar joints cannot be part of an arm");
+    return;
+  }
+  if (moves(joint)) result->joints.push_back(to_config(joint, line, complaints, &result->notes));
+  const Load load = load_of(link, next);
+  if (load.branch_mass_kg > 0.0) {
+    result->notes.push_back(fmt::format("link '{}' carries {:.4g} kg of side branches as load",
+                                        link.name, load.branch_mass_kg));
+  }
+  for (const std::string& frozen : load.frozen) {
+    result->notes.push_back(
+        fmt::format("joint '{}' is not part of the arm: frozen at zero", frozen));
+  }
+  result->chain.addSegment(KDL::Segment(
+      link.name, to_kdl(joint), to_kdl(joint.parent_to_joint_origin_transform), load.inertia));
+  result->segment_links.push_back(link.name);
+}
+
 void check_count(const UrdfChain& result, const UrdfText& text, const std::string& base,
                  const std::string& tip) {
   const std::string between = fmt::format("between '{}' and '{}'", base, tip);
@@ -204,35 +156,14 @@ void check_count(const UrdfChain& result, const UrdfText& text, const std::strin
 UrdfChain build_urdf_chain(const UrdfText& text, const std::string& base, const std::string& tip) {
   const urdf::ModelInterfaceSharedPtr model = parse(text);
   const auto base_link = find_link(*model, text, "base", base);
-  const auto tip_link = find_link(*model, text, "tip", tip);
-  const auto links = path(base_link, tip_link, text);
-
+  const auto links = path(base_link, find_link(*model, text, "tip", tip), text);
   UrdfChain result;
   result.notes = text.notes;
   result.R_RB = root_to_base(base_link, &result.notes);
   Complaints complaints(text.file);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    const urdf::Joint& joint = *links[i]->parent_joint;
-    const int line = text.joint_lines.at(joint.name);
-    if (joint.type == urdf::Joint::FLOATING || joint.type == urdf::Joint::PLANAR) {
-      complaints.add(line, fmt::format("joint '{}'", joint.name),
-                     "floating and planar joints cannot be part of an arm");
-      continue;
-    }
-    if (moves(joint)) result.joints.push_back(to_config(joint, line, &complaints, &result.notes));
-    const Load load = load_of(links[i], i + 1 < links.size() ? links[i + 1] : nullptr);
-    if (load.branch_mass_kg > 0.0) {
-      result.notes.push_back(fmt::format("link '{}' carries {:.4g} kg of side branches as load",
-                                         links[i]->name, load.branch_mass_kg));
-    }
-    for (const std::string& frozen : load.frozen)
-      result.notes.push_back(
-          fmt::format("joint '{}' is not part of the arm: frozen at zero", frozen));
-    result.chain.addSegment(KDL::Segment(links[i]->name, to_kdl_joint(joint),
-                                         to_kdl(joint.parent_to_joint_origin_transform),
-                                         load.inertia));
-    result.segment_links.push_back(links[i]->name);
-  }
+  for (std::size_t i = 0; i < links.size(); ++i)
+    add_segment(*links[i], i + 1 < links.size() ? links[i + 1].get() : nullptr, text, &complaints,
+                &result);
   complaints.throw_if_any();
   check_count(result, text, base, tip);
   return result;

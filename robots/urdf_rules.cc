@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,7 +16,6 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr double kLargestMass_kg = 1000.0;
 /// No joint limit or mounting angle is two turns; 90 or 180 is.
 constexpr double kLargestAngle_rad = 4.0 * std::numbers::pi;
 
@@ -177,52 +175,6 @@ void check_urdf_numbers(const XMLElement& top, const std::string& where, Complai
   // The parser refuses nesting deeper than 100, so this recursion is bounded.
   for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement())
     check_urdf_numbers(*child, where, complaints);
-}
-
-void check_urdf_inertial(const XMLElement& inertial, const std::string& where,
-                         Complaints* complaints) {
-  const XMLElement* mass = inertial.FirstChildElement("mass");
-  const XMLElement* inertia = inertial.FirstChildElement("inertia");
-  for (const auto& [element, name] : {std::pair{mass, "mass"}, std::pair{inertia, "inertia"}}) {
-    if (element == nullptr) {
-      complaints->add(inertial.GetLineNum(), where,
-                      fmt::format("<inertial> without <{}>; leave <inertial> out altogether for a "
-                                  "link without mass",
-                                  name));
-    }
-  }
-  if (mass != nullptr) {
-    const double value = attribute_number(*mass, "value", 1.0);
-    if (!(value > 0.0 && value <= kLargestMass_kg)) {
-      complaints->add(mass->GetLineNum(), where,
-                      fmt::format("<mass> value: {} kg; allowed: above 0, up to {} (leave "
-                                  "<inertial> out for a link without mass)",
-                                  value, kLargestMass_kg));
-    }
-  }
-  if (inertia == nullptr) return;
-  Eigen::Matrix3d tensor;
-  const char* const names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
-  const int rows[] = {0, 0, 0, 1, 1, 2};
-  const int columns[] = {0, 1, 2, 1, 2, 2};
-  for (int i = 0; i < 6; ++i) {
-    const auto value = attribute_numbers(*inertia, names[i]);
-    if (value.size() != 1) return;  // complained about already
-    tensor(rows[i], columns[i]) = tensor(columns[i], rows[i]) = value[0];
-  }
-  const Eigen::Vector3d moment =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
-  const std::string moments = fmt::format("principal moments {:.6g}, {:.6g}, {:.6g} kg m^2",
-                                          moment[0], moment[1], moment[2]);
-  if (!(moment[0] > 0.0)) {
-    complaints->add(inertia->GetLineNum(), where,
-                    fmt::format("<inertia>: not positive definite ({})", moments));
-  } else if (!(moment[2] <= (moment[0] + moment[1]) * (1.0 + 1e-9))) {
-    complaints->add(inertia->GetLineNum(), where,
-                    fmt::format("<inertia>: no body has it: one principal moment exceeds the sum "
-                                "of the other two ({})",
-                                moments));
-  }
 }
 
 }  // namespace limber

@@ -22,9 +22,4 @@ double attribute_number(const tinyxml2::XMLElement& element, const char* attribu
 void check_urdf_numbers(const tinyxml2::XMLElement& top, const std::string& where,
                         Complaints* complaints);
 
-/// <inertial>: one mass in (0, 1000] kg; one inertia, positive definite, no principal moment larger
-/// than the sum of the other two.
-void check_urdf_inertial(const tinyxml2::XMLElement& inertial, const std::string& where,
-                         Complaints* complaints);
-
 }  // namespace limber

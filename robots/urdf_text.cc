@@ -14,6 +14,7 @@
 #include "common/complaints.h"
 #include "common/config_error.h"
 #include "common/suggest.h"
+#include "robots/urdf_inertial.h"
 #include "robots/urdf_rules.h"
 #include "robots/urdf_tree.h"
 

@@ -9,6 +9,7 @@
 #include "scenarios/entry_yaml.h"
 #include "scenarios/gains_yaml.h"
 #include "scenarios/scenario.h"
+#include "scenarios/values_yaml.h"
 
 namespace limber {
 namespace {
@@ -22,14 +23,7 @@ std::vector<double> read_start(const YamlMap& yaml, const Robot& robot) {
   std::vector<double> start;
   for (const JointConfig& joint : robot.joints) start.push_back(joint.home);
   if (!yaml.has("start_q")) return start;
-  start = yaml.numbers("start_q", robot.size(), {-1e3, 1e3});
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const JointConfig& joint = robot.joints[i];
-    if (!(start[i] >= joint.position_min && start[i] <= joint.position_max)) {
-      yaml.refuse("start_q", fmt::format("{} for {} is outside its limits {} to {}", start[i],
-                                         joint.name, joint.position_min, joint.position_max));
-    }
-  }
+  read_joint_pose(yaml, "start_q", robot, start.data());
   return start;
 }
 

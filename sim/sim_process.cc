@@ -27,10 +27,13 @@ std::vector<CanBus*> pointers(const std::vector<std::unique_ptr<CanBus>>& buses)
   return out;
 }
 
-std::string scheduling(int priority) {
-  if (priority == 0) return "normal scheduling";
+std::string schedule(const SimProcessOptions& options) {
+  if (options.simulator.lockstep) return "lock step";
+  const int priority = options.priority;
+  if (priority == 0) return "realtime, normal scheduling";
   const RealtimeGrant grant = ask_for_realtime(priority);
-  std::string out = grant.fifo ? fmt::format("SCHED_FIFO {}", priority) : "normal scheduling";
+  std::string out =
+      grant.fifo ? fmt::format("realtime, SCHED_FIFO {}", priority) : "realtime, normal scheduling";
   out += grant.locked_memory ? ", locked memory" : "";
   return grant.reason.empty() ? out : fmt::format("{} ({})", out, grant.reason);
 }
@@ -47,6 +50,7 @@ SimProcess::SimProcess(const LoadedRobot& robot, const std::vector<TimedMessage>
                        const SimProcessOptions& options)
     : name_(robot.robot.name),
       options_(options),
+      scheduling_(schedule(options)),
       buses_(open_buses(robot.robot)),
       simulator_(robot, pointers(buses_), options.simulator),
       user_(user_plane_url()),
@@ -72,12 +76,10 @@ void SimProcess::subscribe() {
 }
 
 void SimProcess::run(const std::atomic<bool>& stop) {
-  const bool lockstep = options_.simulator.lockstep;
-  const std::string how = lockstep ? "lock step" : "realtime, " + scheduling(options_.priority);
   fmt::print(stderr, "limber-sim: {}, {} at {:g} us, {}\n", name_,
              options_.simulator.integrator == Integrator::kOde ? "ode" : "reference",
-             1e6 * options_.simulator.step_s, how);
-  if (lockstep) {
+             1e6 * options_.simulator.step_s, scheduling_);
+  if (options_.simulator.lockstep) {
     run_lockstep(stop);
   } else {
     run_realtime(stop);
@@ -105,6 +107,9 @@ void SimProcess::run_realtime(const std::atomic<bool>& stop) {
 
 void SimProcess::catch_up(std::int64_t now_ns) {
   const std::int64_t behind_ns = now_ns - start_ns_ - simulator_.sim_time_ns();
+  if (simulator_.next_step_ns() <= now_ns - start_ns_) {
+    lateness_.add(now_ns - start_ns_ - simulator_.next_step_ns());
+  }
   if (behind_ns > kMostCatchUp_ns) {
     start_ns_ += behind_ns;
     dropped_ns_ += behind_ns;
@@ -147,6 +152,11 @@ void SimProcess::complain(const char* what) {
 void SimProcess::report() const {
   fmt::print(stderr, "limber-sim: ended at {:.3f} s of simulated time\n",
              static_cast<double>(simulator_.sim_time_ns()) * 1e-9);
+  if (lateness_.count() > 0) {
+    fmt::print(
+        stderr, "limber-sim: steps were late by {} us (median), {} us (99.9 %), {} us (max)\n",
+        lateness_.quantile(0.5) / 1000, lateness_.quantile(0.999) / 1000, lateness_.max() / 1000);
+  }
   if (drops_ > 0) {
     fmt::print(stderr, "limber-sim: could not keep up {} times, {:.3f} s dropped in all\n", drops_,
                static_cast<double>(dropped_ns_) * 1e-9);

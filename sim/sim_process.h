@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/latency_histogram.h"
 #include "common/lcm_port.h"
 #include "drivers/can/can_bus.h"
 #include "sim/simulator.h"
@@ -49,6 +50,7 @@ class SimProcess {
 
   std::string name_;
   SimProcessOptions options_;
+  std::string scheduling_;  // asked for before user_: LCM's thread inherits it
   std::vector<std::unique_ptr<CanBus>> buses_;
   Simulator simulator_;
   LcmPort user_;
@@ -60,6 +62,7 @@ class SimProcess {
   std::int64_t session_ = 0;
   bool anchored_ = false;
   std::int64_t arm_offset_ns_ = 0;
+  LatencyHistogram lateness_;
   std::int64_t dropped_ns_ = 0;
   std::int64_t drops_ = 0;
   std::int64_t complained_ns_ = 0;

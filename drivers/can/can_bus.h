@@ -13,10 +13,11 @@ namespace limber {
 struct CanStatistics {
   std::int64_t sent = 0;
   std::int64_t received = 0;
-  std::int64_t send_refused = 0;    ///< queue full (ENOBUFS, EAGAIN) or link down: frame dropped, never queued
+  std::int64_t send_refused =
+      0;  ///< queue full (ENOBUFS, EAGAIN) or link down: frame dropped, never queued
   std::int64_t error_frames = 0;
-  std::int64_t malformed = 0;       ///< datagrams or frames that could not be a CAN frame
-  std::int64_t overflow = 0;        ///< frames lost in the receive queue, as far as the carrier tells
+  std::int64_t malformed = 0;  ///< datagrams or frames that could not be a CAN frame
+  std::int64_t overflow = 0;   ///< frames lost in the receive queue, as far as the carrier tells
   bool bus_off = false;
   bool link_down = false;
   int last_errno = 0;
@@ -27,29 +28,33 @@ class CanBus {
  public:
   virtual ~CanBus() = default;
 
-  /// Sends the frames in order; returns how many were accepted. What is not accepted is dropped and counted.
+  /// Sends the frames in order; returns how many were accepted. What is not accepted is dropped and
+  /// counted.
   virtual int send(std::span<const CanFrame> frames) noexcept = 0;
   int send(const CanFrame& frame) noexcept { return send(std::span(&frame, 1)); }
 
-  /// Takes frames that have arrived (not our own), at most frames.size(); returns the number, 0 when none wait.
+  /// Takes frames that have arrived (not our own), at most frames.size(); returns the number, 0
+  /// when none wait.
   virtual int receive(std::span<CanFrame> frames) noexcept = 0;
 
-  /// Descriptor that polls readable when receive() may return something; -1 where there is none (in-memory).
+  /// Descriptor that polls readable when receive() may return something; -1 where there is none
+  /// (in-memory).
   virtual int descriptor() const noexcept = 0;
 
   virtual const CanStatistics& statistics() const noexcept = 0;
 };
 
-/// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the reason and the cure
-/// (no such interface, interface down, no FD, no AF_CAN in this kernel, no multicast route). Set-up only.
+/// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the
+/// reason and the cure (no such interface, interface down, no FD, no AF_CAN in this kernel, no
+/// multicast route). Set-up only.
 ///
-/// virtual:NAME speaks python-can's udp_multicast format. NAME "default" is python-can's own group 239.74.163.2;
-/// another NAME selects a group 239.74.x.y by hash, an address "239.1.2.3" is taken as it is; port 43113, TTL 0.
-/// Environment LIMBER_VIRTUAL_BUS_PORT overrides the port.
+/// virtual:NAME speaks python-can's udp_multicast format. NAME "default" is python-can's own group
+/// 239.74.163.2; another NAME selects a group 239.74.x.y by hash, an address "239.1.2.3" is taken
+/// as it is; port 43113, TTL 0. Environment LIMBER_VIRTUAL_BUS_PORT overrides the port.
 std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd);
 
-/// Waits until one of the buses is readable or the absolute CLOCK_MONOTONIC time is reached (ns; <= 0: return at once).
-/// Returns false on time-out. May be called inside the cycle.
+/// Waits until one of the buses is readable or the absolute CLOCK_MONOTONIC time is reached (ns; <=
+/// 0: return at once). Returns false on time-out. May be called inside the cycle.
 bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns) noexcept;
 
 }  // namespace limber

@@ -38,10 +38,7 @@ ReceiveBatch::ReceiveBatch(std::size_t longest_bytes)
 int ReceiveBatch::receive(int descriptor, int at_most) noexcept {
   const auto wanted = static_cast<unsigned>(std::clamp(at_most, 0, kBatch));
   for (unsigned i = 0; i < wanted; ++i) messages_[i].msg_hdr.msg_controllen = sizeof(Control);
-  int count = 0;
-  do {
-    count = recvmmsg(descriptor, messages_.data(), wanted, MSG_DONTWAIT, nullptr);
-  } while (count < 0 && errno == EINTR);
+  const int count = recvmmsg(descriptor, messages_.data(), wanted, MSG_DONTWAIT, nullptr);
   if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : -1;
   if (count == 0) return 0;
   // The kernel stamps with the wall clock. An offset taken now carries a stamp over to the
@@ -110,11 +107,8 @@ int SendBatch::flush(int descriptor) noexcept {
   while (sent < count_) {
     const int taken = sendmmsg(descriptor, messages_.data() + sent,
                                static_cast<unsigned>(count_ - sent), MSG_DONTWAIT);
-    if (taken > 0) {
-      sent += taken;
-    } else if (errno != EINTR) {
-      break;
-    }
+    if (taken < 0) break;
+    sent += taken;
   }
   count_ = 0;
   return sent;

@@ -1,8 +1,9 @@
-// Lock step on the wire. Where the arm is simulated and no clock shall decide anything, the driver ends each cycle with a
-// TICK frame, and the simulator, having advanced by exactly one period, answers TOCK with the same number. All replies to
-// the cycle's commands lie before the TOCK, so a lost reply is known to be lost without waiting. A TICK that is repeated
-// (same number) is answered again without advancing. Both are 29-bit frames, so no 11-bit motor node ever sees them;
-// on a real arm they do not exist.
+// Lock step on the wire. Where the arm is simulated and no clock shall decide anything, the driver
+// ends each cycle with a TICK frame, and the simulator, having advanced by exactly one period,
+// answers TOCK with the same number. All replies to the cycle's commands lie before the TOCK, so a
+// lost reply is known to be lost without waiting. A TICK that is repeated (same number) is answered
+// again without advancing. Both are 29-bit frames, so no 11-bit motor node ever sees them; on a
+// real arm they do not exist.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// A CAN bus inside one process: for the lab and for unit tests. Deterministic, single-threaded, allocates only in the
-// constructor.
+// A CAN bus inside one process: for the lab and for unit tests. Deterministic, single-threaded,
+// allocates only in the constructor.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,9 @@
 
 namespace limber {
 
-/// Owns the bus; ends are created with `attach`. A frame sent by one end reaches every other end, in order.
-/// A queue that is full drops the new frame and counts it at the receiving end (`overflow`).
+/// Owns the bus; ends are created with `attach`. A frame sent by one end reaches every other end,
+/// in order. A queue that is full drops the new frame and counts it at the receiving end
+/// (`overflow`).
 class MemoryBus {
  public:
   explicit MemoryBus(int queue_frames = 256);

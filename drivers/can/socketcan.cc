@@ -124,9 +124,7 @@ bool from_kernel(std::span<const std::uint8_t> bytes, CanFrame* frame) noexcept 
   return true;
 }
 
-bool is_link_error(int error) noexcept {
-  return error == ENETDOWN || error == ENODEV || error == ENXIO;
-}
+bool is_link_error(int error) noexcept { return error == ENETDOWN || error == ENODEV; }
 
 class SocketCanBus final : public CanBus {
  public:

@@ -1,5 +1,5 @@
-// MIT mini-cheetah framing as Damiao drives speak it: bytes only, both directions, no I/O, no state.
-// All angles, speeds and torques here are the drive's own (before joint sign and offset).
+// MIT mini-cheetah framing as Damiao drives speak it: bytes only, both directions, no I/O, no
+// state. All angles, speeds and torques here are the drive's own (before joint sign and offset).
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,15 @@ struct Command {
 
 /// Damiao status nibble.
 enum class DriveError : std::uint8_t {
-  kDisabled = 0x0, kEnabled = 0x1, kOverVoltage = 0x8, kUnderVoltage = 0x9, kOverCurrent = 0xA,
-  kMosOverTemperature = 0xB, kRotorOverTemperature = 0xC, kCommunicationLost = 0xD, kOverload = 0xE,
+  kDisabled = 0x0,
+  kEnabled = 0x1,
+  kOverVoltage = 0x8,
+  kUnderVoltage = 0x9,
+  kOverCurrent = 0xA,
+  kMosOverTemperature = 0xB,
+  kRotorOverTemperature = 0xC,
+  kCommunicationLost = 0xD,
+  kOverload = 0xE,
 };
 
 struct Reply {
@@ -36,50 +43,63 @@ struct Reply {
   int rotor_temperature_degC = 0;
 };
 
-enum class Special : std::uint8_t { kEnable = 0xFC, kDisable = 0xFD, kSetZero = 0xFE, kClearError = 0xFB };
+enum class Special : std::uint8_t {
+  kEnable = 0xFC,
+  kDisable = 0xFD,
+  kSetZero = 0xFE,
+  kClearError = 0xFB
+};
 
 /// Damiao registers limber uses.
 enum class Register : std::uint8_t {
-  kTimeout = 9,      ///< uint32, counts of 50 us
-  kControlMode = 10, ///< uint32, 1 = MIT
-  kPositionRange = 21, kVelocityRange = 22, kTorqueRange = 23,  ///< float32
+  kTimeout = 9,       ///< uint32, counts of 50 us
+  kControlMode = 10,  ///< uint32, 1 = MIT
+  kPositionRange = 21,
+  kVelocityRange = 22,
+  kTorqueRange = 23,  ///< float32
 };
 inline constexpr std::uint32_t kRegisterId = 0x7FF;
 inline constexpr double kTimeoutCount_s = 50e-6;
 
-/// The half count that a truncating sender's values lie below the truth on average: add it to a decoded field that spans
-/// -range to +range. A truncated zero then decodes to exactly 0.
+/// The half count that a truncating sender's values lie below the truth on average: add it to a
+/// decoded field that spans -range to +range. A truncated zero then decodes to exactly 0.
 double half_count(double range, int bits) noexcept;
 
-// Master to drive. Values outside the ranges saturate; a non-finite value (or range) gives false and leaves the frame alone.
-// A command that would read as a special frame (torque within four counts of the top, all other fields at the top) is
-// moved down to the first torque count that does not.
-[[nodiscard]] bool encode_command(const Command& command, const MitRange& range, std::uint32_t id, bool fd,
-                                  Quantiser quantiser, CanFrame* frame) noexcept;
+// Master to drive. Values outside the ranges saturate; a non-finite value (or range) gives false
+// and leaves the frame alone. A command that would read as a special frame (torque within four
+// counts of the top, all other fields at the top) is moved down to the first torque count that does
+// not.
+[[nodiscard]] bool encode_command(const Command& command, const MitRange& range, std::uint32_t id,
+                                  bool fd, Quantiser quantiser, CanFrame* frame) noexcept;
 CanFrame encode_special(Special special, std::uint32_t id, bool fd) noexcept;
 CanFrame encode_register_read(std::uint16_t id, Register reg, bool fd) noexcept;
-CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw_value, bool fd) noexcept;
+CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw_value,
+                               bool fd) noexcept;
 /// Asks for a state reply without commanding anything.
 CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 
 // Drive to master.
 /// Decodes a state reply; false if it cannot be one (length, remote, error frame).
-[[nodiscard]] bool decode_reply(const CanFrame& frame, const MitRange& range, Reply* reply) noexcept;
+[[nodiscard]] bool decode_reply(const CanFrame& frame, const MitRange& range,
+                                Reply* reply) noexcept;
 /// Decodes a register answer; false unless id, operation (0x33 or 0x55) and register match.
 [[nodiscard]] bool decode_register(const CanFrame& frame, std::uint16_t id, std::uint8_t operation,
                                    Register reg, std::uint32_t* raw_value) noexcept;
 
 // The node's side, for the simulator.
 [[nodiscard]] bool decode_special(const CanFrame& frame, Special* special) noexcept;
-[[nodiscard]] bool decode_command(const CanFrame& frame, const MitRange& range, Command* command) noexcept;
+[[nodiscard]] bool decode_command(const CanFrame& frame, const MitRange& range,
+                                  Command* command) noexcept;
 struct RegisterRequest {
   std::uint16_t id = 0;
   std::uint8_t operation = 0;  ///< 0x33 read, 0x55 write, 0xAA store, 0xCC state request
   std::uint8_t reg = 0;
   std::uint32_t raw_value = 0;
 };
-[[nodiscard]] bool decode_register_request(const CanFrame& frame, RegisterRequest* request) noexcept;
-/// Values outside the ranges saturate; NaN, which no physical state holds, becomes the lowest count.
+[[nodiscard]] bool decode_register_request(const CanFrame& frame,
+                                           RegisterRequest* request) noexcept;
+/// Values outside the ranges saturate; NaN, which no physical state holds, becomes the lowest
+/// count.
 CanFrame encode_reply(const Reply& reply, const MitRange& range, std::uint32_t reply_id, bool fd,
                       Quantiser quantiser) noexcept;
 CanFrame encode_register_answer(const RegisterRequest& request, std::uint32_t raw_value,

@@ -5,9 +5,10 @@
 //   F    = sigma0 z + sigma1(v) zdot + d v,          the torque on the joint is -F
 //
 // Source: Canudas de Wit, Olsson, Astrom, Lischinsky, "A new model for control of systems with
-// friction", IEEE TAC 40 (1995). sigma1 falls with speed, 1/sigma1 = 1/sigma1(0) + |v| / (4 G),
-// which is the condition for passivity in Olsson's thesis (1996): a constant sigma1 can return
-// energy at speed. sigma1(0) damps the bristle on the bare rotor critically.
+// friction", IEEE TAC 40 (1995). A constant sigma1 can return energy at speed (Barabanov, Ortega,
+// IEEE TAC 45, 2000); here 1/sigma1 = 1/sigma1(0) + |v| / (4 G), which makes the power lost,
+// F v - d/dt (sigma0 z^2 / 2), a positive form in v and z. sigma1(0) damps the bristle on the bare
+// rotor critically.
 #pragma once
 
 #include "robots/robot.h"

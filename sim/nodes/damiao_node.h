@@ -45,10 +45,11 @@ class DamiaoNode {
   DriveLaw law() const noexcept;
 
   /// scenario_event_t FAULT_* until a simulated time:
-  ///   SILENT          obeys, but its replies never reach the bus
-  ///   FROZEN_ENCODER  position stays what it was, speed reads 0, for the bus and for the drive's
-  ///   own law DRIVE_ERROR     over-current: leaves enabled mode; cannot be cleared while it lasts
-  ///   DROP_COMMANDS   answers, but takes nothing in: the watchdog is not fed
+  /// - SILENT: obeys, but its replies never reach the bus.
+  /// - FROZEN_ENCODER: position stays what it was, speed reads 0, for the bus and for the drive's
+  ///   own law.
+  /// - DRIVE_ERROR: over-current; leaves enabled mode, cannot be cleared while it lasts.
+  /// - DROP_COMMANDS: answers, but takes nothing in; the watchdog is not fed.
   void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept;
   void clear_faults() noexcept;
 

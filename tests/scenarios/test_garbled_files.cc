@@ -7,7 +7,7 @@
 namespace limber {
 namespace {
 
-constexpr int kRounds = 30000;
+constexpr int kRounds = 1000;
 constexpr std::uint64_t kSeed = 20240229;
 
 const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm/";

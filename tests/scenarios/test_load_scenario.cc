@@ -37,6 +37,7 @@ TEST_F(GoodScenario, HeadIsRead) {
   EXPECT_EQ(scenario_.integrator, Integrator::kReference);
   EXPECT_EQ(scenario_.step_s, 0.0005);
   EXPECT_FALSE(scenario_.friction);
+  EXPECT_FALSE(scenario_.stand);
   EXPECT_EQ(scenario_.start_q, (std::vector<double>{0.1, 0.2, 0.0}));
 }
 
@@ -159,6 +160,7 @@ TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
   EXPECT_EQ(scenario.name, "short");
   EXPECT_TRUE(scenario.lockstep);
   EXPECT_TRUE(scenario.friction);
+  EXPECT_TRUE(scenario.stand);
   EXPECT_EQ(scenario.integrator, Integrator::kOde);
   EXPECT_EQ(scenario.start_q, (std::vector<double>{-1.2, 1.4}));
   // Nobody asks for a mode: hold, then active.

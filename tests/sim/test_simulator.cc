@@ -418,6 +418,25 @@ TEST(Simulator, WatchdogCountsSimulatedTime) {
   }
 }
 
+TEST(Simulator, StandCarriesTheArmUntilAllDrivesAreEnabled) {
+  SimulatorOptions options = reference();
+  options.stand = true;
+  options.start_q = {0.1, 0.2};
+  Bench bench(two_bus_arm(), options);
+  std::int64_t k = 0;
+  const auto run = [&](int cycles) {
+    for (const std::int64_t end = k + cycles; k < end; ++k) bench.cycle(k);
+    return std::abs(bench.simulator().truth().q[0] - 0.1);
+  };
+  // The torque limit of 7 N m would move it by 2 mrad, and 7 N m of gravity do.
+  EXPECT_NEAR(run(1000), 0.002, 0.0005);
+  bench.send(0, Special::kEnable);
+  EXPECT_LT(run(1000), 0.0025);  // one drive is not enough
+  bench.send(1, Special::kEnable);
+  EXPECT_LT(run(290), 0.0025);
+  EXPECT_GT(run(700), 0.1);
+}
+
 TEST(Simulator, RealtimeAdvancesByWholeStepsAndIgnoresTicks) {
   SimulatorOptions options = reference();
   options.lockstep = false;

@@ -97,6 +97,20 @@ TEST(Check, TellsOfAScenario) {
   EXPECT_TRUE(contains(outcome.output, "push 3 at fore: [1, 2, 3] N [0.1, 0, 0] N m for 0.5 s"));
 }
 
+TEST(Check, RefusesALawThatDoesNotExist) {
+  const testing::TemporaryFolder folder;
+  const std::string file =
+      folder.write("s.yaml",
+                   "format: limber-scenario/1\nrobot: openarm\nduration_s: 2\ntimeline:\n"
+                   "  - {at_s: 1.5, gains: {law: cartesian_impedence}}\n");
+  const Outcome outcome = check("scenario " + file);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.output,
+                       "gains at 1.5 s: no law 'cartesian_impedence'; did you mean "
+                       "'cartesian_impedance'?"))
+      << outcome.output;
+}
+
 TEST(Check, SpeaksJson) {
   for (const std::string& arguments :
        {std::string("robot openarm"), "urdf " + kUrdf + " --base world --tip hand",

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from conftest import records, write_log
+from limber import cli
 
 SCENARIO = "format: limber-scenario/1\nrobot: openarm\nduration_s: 1\n"
 
@@ -35,7 +36,7 @@ WRONG = [
     (["measure", "{dir}/nowhere"], "summary.json"),
     (["check"], "'what'"),
     (["check", "unheard_of"], "planar2r"),
-    (["check", "arm.urdf"], "does not exist"),
+    (["check", "missing.urdf"], "does not exist"),
     (["check", "{dir}/arm.urdf"], "--base LINK --tip LINK"),
     (["check", "openarm", "--base", "world"], "robot.yaml"),
     (["record"], "--out"),
@@ -54,6 +55,7 @@ WRONG = [
     (["plot", "{dir}/run.lcmlog", "--what", "torque"], "CONTROLLER_STATUS"),
     (["watch", "--robot", "unheard_of"], "planar2r"),
     (["test", "everything"], "ctest"),
+    (["bench", "faster"], "unexpected extra argument"),
 ]
 
 
@@ -79,14 +81,39 @@ def folder(tmp_path_factory):
 
 
 @pytest.mark.parametrize(("arguments", "said"), WRONG, ids=lambda v: " ".join(v) if v else "")
-def test_wrong_arguments(limber, folder, arguments, said):
-    done = limber(*(word.format(dir=folder) for word in arguments))
-    assert done.returncode == 2, done.stdout + done.stderr
-    lines = done.stderr.splitlines()
-    assert len(lines) == 1, done.stderr
+def test_wrong_arguments(folder, arguments, said, monkeypatch, capsys):
+    """In this process, which is quicker; test_as_a_program starts it as a user does."""
+    monkeypatch.setattr(sys, "argv", ["limber", *(word.format(dir=folder) for word in arguments)])
+    monkeypatch.chdir(folder)
+    before = {path.name for path in folder.iterdir()}
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    out, errors = capsys.readouterr()
+    assert ended.value.code == 2, out + errors
+    lines = errors.splitlines()
+    assert len(lines) == 1, errors
     assert lines[0].startswith("limber: ")
     assert said in lines[0], lines[0]
-    assert "Traceback" not in done.stdout + done.stderr
+    assert {path.name for path in folder.iterdir()} == before, "nothing is left behind"
+
+
+@pytest.mark.parametrize("arguments", [["dmeo"], ["log", "info", "missing"], ["demo", "--out"]])
+def test_as_a_program(limber, arguments):
+    done = limber(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_unexpected_trouble_is_one_line_too(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["limber", "doctor"])
+    monkeypatch.setattr("limber.doctor.examine", lambda: 1 // 0)
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 3
+    assert capsys.readouterr().err.splitlines() == [
+        "limber: ZeroDivisionError: integer division or modulo by zero (LIMBER_DEBUG=1 shows where)"
+    ]
 
 
 def test_log_commands(limber, folder):

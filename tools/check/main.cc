@@ -1,6 +1,9 @@
 // limber-check: reads a robot, a URDF or a scenario as the other programs would, and says what it
 // found, or everything that is wrong with it.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -8,6 +11,8 @@
 
 #include "common/config_error.h"
 #include "common/parse_number.h"
+#include "common/suggest.h"
+#include "controller/arm_controller.h"
 #include "tools/check/print.h"
 
 namespace {
@@ -44,6 +49,22 @@ std::string check_arm(const LoadedRobot& robot, bool as_json) {
   return as_json ? arm_json(robot, report) : arm_text(robot, report);
 }
 
+/// The controller would refuse an unknown law in the middle of the run.
+void check_laws(const Scenario& scenario) {
+  const std::vector<std::string> laws = law_names();
+  for (const TimedMessage& timed : scenario.timeline) {
+    const auto* gains = std::get_if<compliance_gains_t>(&timed.message);
+    if (gains == nullptr || gains->law.empty()) continue;
+    if (std::find(laws.begin(), laws.end(), gains->law) != laws.end()) continue;
+    const std::string near = nearest_word(gains->law, laws);
+    throw ConfigError::at(
+        scenario.path, 0, "",
+        fmt::format("gains at {} s: no law '{}'{}; there are: {}",
+                    static_cast<double>(timed.time_ns) * 1e-9, gains->law,
+                    near.empty() ? "" : "; did you mean '" + near + "'?", joined(laws)));
+  }
+}
+
 std::string check(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("robot")) return check_arm(load_robot(arguments.robot), arguments.as_json);
   if (app.got_subcommand("urdf")) {
@@ -53,6 +74,7 @@ std::string check(const CLI::App& app, const Arguments& arguments) {
   }
   const LoadedRobot robot = load_robot(scenario_robot(arguments.scenario));
   const Scenario scenario = load_scenario(arguments.scenario, robot);
+  check_laws(scenario);
   return arguments.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
 }
 

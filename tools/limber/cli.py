@@ -22,7 +22,8 @@ app = typer.Typer(
 )
 log_app = typer.Typer(help="Look into recorded logs.", no_args_is_help=True)
 app.add_typer(log_app, name="log")
-console = Console()
+# into a pipe or file there is no width to keep to
+console = Console(width=None if sys.stdout.isatty() else 120)
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for the results.")]
 Buses = Annotated[
@@ -197,10 +198,10 @@ def watch(
 ) -> None:
     """Live view: mode, joints, tip, faults, and what each channel is doing."""
     from limber import watch as module
-    from limber.network import ensure_multicast
+    from limber.network import require_multicast
     from limber.robot import load_robot
 
-    ensure_multicast(private=False)
+    require_multicast()
     module.watch(load_robot(robot).joints, module.law_names(), once, console)
 
 
@@ -233,12 +234,12 @@ def test(
     raise typer.Exit(0 if passed else OUT_OF_TOLERANCE)
 
 
-@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
-def bench(context: typer.Context) -> None:
-    """Build the benchmarks in release mode and run them; arguments go to each of them."""
+@app.command()
+def bench() -> None:
+    """Build the benchmarks in release mode and run them, each beside a peer."""
     from limber import bench as module
 
-    module.bench(context.args, console)
+    raise typer.Exit(module.bench(console))
 
 
 def fail(message: str, code: int) -> NoReturn:

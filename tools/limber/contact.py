@@ -31,7 +31,7 @@ def contact_results(truth: np.ndarray, scenario: Scenario, tolerance: float) -> 
         depth = -((truth["p_BT"][steady] - wall.point) @ wall.normal).mean()
         predicted = wall.stiffness_N_per_m * depth
         measured = force[steady].mean()
-        note = f"the wall's stiffness times its depth of {depth * 1e3:.3g} mm"
+        note = f"wall's stiffness x {depth * 1e3:.3g} mm"
         results.append(
             close_to(
                 "static contact force", measured, "N", predicted, tolerance * abs(predicted), note

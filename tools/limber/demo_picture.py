@@ -42,12 +42,8 @@ def save(log: Log, scenario: Scenario, pushes: list[Measured], path: Path) -> No
     plt.close(fig)
 
 
-def _letter(measured: Measured) -> str:
-    return measured.axis.lstrip("+-")
-
-
 def _color(measured: Measured) -> str:
-    return AXIS_COLORS.get(_letter(measured), "#444444")
+    return AXIS_COLORS.get(measured.axis.lstrip("+-"), "#444444")
 
 
 def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[Measured]) -> None:
@@ -60,25 +56,22 @@ def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[Measured]) -> None:
         sign = np.sign(measured.direction[np.argmax(np.abs(measured.direction))])
         moved_mm = (truth["p_BT"][window] - rest) @ measured.direction[:3] * 1e3 * sign
         ax.plot(t[window], moved_mm, color=_color(measured))
-        asked = sign * measured.force / measured.asked * 1e3
-        hidden = measured.friction_force / measured.asked * 1e3
         plateau = [start + measured.push.ramp_s, start + length - measured.push.ramp_s]
-        label = "where the asked stiffness puts it" if i == 0 else None
-        ax.plot(plateau, [asked] * 2, "k--", lw=1.2, label=label)
-        if hidden:
-            label = "what joint friction may hide" if i == 0 else None
-            band = (asked - hidden, asked + hidden)
-            ax.fill_between(plateau, *band, color="0.85", zorder=0, label=label)
-        above = sign > 0
-        tops = [*moved_mm, asked + hidden, asked - hidden]
-        place = (start + length / 2, max(tops) if above else min(tops))
+        mm_per_N = sign * 1e3 / measured.asked
+        asked = measured.force * mm_per_N
+        left = (measured.force - measured.friction_took) * mm_per_N
+        labels = ("asked: force / stiffness", "asked, less what friction took")
+        ax.plot(plateau, [asked] * 2, "k--", lw=1.2, label=None if i else labels[0])
+        if measured.friction_bound:
+            ax.plot(plateau, [left] * 2, "k:", lw=1.6, label=None if i else labels[1])
+        tops = [*moved_mm, asked]
         ax.annotate(
             f"{measured.force:.0f} N\nalong {measured.axis}",
-            place,
-            xytext=(0, 8 if above else -8),
+            (start + length / 2, max(tops) if sign > 0 else min(tops)),
+            xytext=(0, 6 * sign),
             textcoords="offset points",
             ha="center",
-            va="bottom" if above else "top",
+            va="bottom" if sign > 0 else "top",
             color=_color(measured),
             fontsize=8,
         )
@@ -91,29 +84,29 @@ def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[Measured]) -> None:
 
 
 def _softness(ax: plt.Axes, pushes: list[Measured]) -> None:
-    """Force over displacement, one point a push; the lines are the asked stiffness."""
-    reach = max((abs(measured.force / measured.asked) for measured in pushes), default=0.0) * 1.25
-    seen: set[str] = set()
+    """Force over distance: as felt, and after friction has taken its part; the line is asked."""
+    reach_mm = max((measured.force / measured.asked for measured in pushes), default=0.0) * 1250
+    for asked in sorted({round(measured.asked) for measured in pushes}):
+        ax.plot([0, reach_mm], [0, asked * reach_mm * 1e-3], "k--", lw=1.0)
+        place = (reach_mm * 0.97, asked * reach_mm * 0.97e-3)
+        ax.annotate(f"asked: {asked} N/m", place, ha="right", va="bottom", fontsize=8)
     for measured in pushes:
-        letter, color = _letter(measured), _color(measured)
-        d = float(measured.displacement @ measured.direction)
-        if letter not in seen:
-            seen.add(letter)
-            line = np.array([0.0, reach])
-            ax.plot(line * 1e3, line * measured.asked, "--", color=color, lw=1.0)
-            if measured.friction_force:
-                low, high = (line * measured.asked + s * measured.friction_force for s in (-1, 1))
-                ax.fill_between(line * 1e3, low, high, color=color, alpha=0.10, lw=0)
-            label = f"{letter}: asked {measured.asked:.0f}, measured {measured.stiffness:.0f} N/m"
-            ax.plot(d * 1e3, measured.force, "o", color=color, label=label)
-        else:
-            ax.plot(d * 1e3, measured.force, "o", color=color)
+        d_mm, left = measured.moved * 1e3, measured.force - measured.friction_took
+        color = _color(measured)
+        value = measured.stiffness_without_friction
+        label = f"{measured.axis}: {value:.0f} N/m"
+        if measured.friction_bound:
+            label += " less friction"
+            ax.plot(d_mm, measured.force, "o", color=color, mfc="white")
+            ax.plot([d_mm] * 2, [measured.force, left], ":", color=color, lw=1.5)
+        ax.plot(d_mm, left, "o", color=color, label=label)
     ax.set_title("Force over distance is stiffness", loc="left")
     ax.set_xlabel("tip moved (mm)")
     ax.set_ylabel("push (N)")
     ax.set_xlim(left=0)
     ax.set_ylim(bottom=0)
     if pushes:
+        ax.plot([], [], "o", color="0.4", mfc="white", label="as felt, with friction")
         ax.legend(loc="lower right", fontsize=8)
 
 
@@ -136,6 +129,7 @@ def _forces(ax: plt.Axes, truth: np.ndarray, scenario: Scenario) -> None:
         )
     for wall in scenario.walls:
         ax.axvline(wall.at_s, color="0.5", ls=":", lw=1)
+        ax.annotate(" wall put up", (wall.at_s, 0), va="bottom", color="0.4", fontsize=8)
     title = "Forces on the arm" if not contact.any() else "Forces on the arm: pushes, then a wall"
     ax.set_title(title, loc="left")
     ax.set_ylabel("force (N)")

@@ -45,6 +45,7 @@ def load_checked(path: Path) -> Scenario:
 
 def run(request: RunRequest, console: Console) -> int:
     scenario = load_checked(request.scenario)
+    runner.check_buses(scenario, request.buses)
     if request.buses and not request.with_simulator:
         console.print("[yellow]no simulator: whatever is on the bus will move[/]")
     network.ensure_multicast(request.private)

@@ -16,7 +16,7 @@ def measure(
     log: Log, scenario: Scenario, mode: str, recorder_lost: dict[str, int] | None = None
 ) -> tuple[Summary, list[Measured]]:
     truth = log.read("SIM_TRUTH")
-    pushes = measure_pushes(truth, scenario) if len(truth) else []
+    pushes = measure_pushes(log, scenario)
     tolerances = scenario.tolerances
     results = health_results(log, scenario, recorder_lost or {})
     results += push_results(pushes, tolerances.stiffness)

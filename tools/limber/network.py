@@ -58,6 +58,12 @@ def enter_private() -> NoReturn:
     os.execvp(command[0], command)
 
 
+def require_multicast() -> None:
+    """For what only makes sense where the others are: no private network instead."""
+    if not multicast_works():
+        raise RunError(f"no multicast route on this machine, so nothing can be heard: {CURE}")
+
+
 def ensure_multicast(private: bool) -> None:
     """Returns where LCM can work: here, or (by starting again) in a private network."""
     if is_private() or (not private and multicast_works()):

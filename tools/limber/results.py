@@ -58,7 +58,7 @@ class Summary:
     def table(self, title: str) -> Table:
         table = Table(title=title, title_justify="left", box=None, padding=(0, 2, 0, 0))
         table.add_column("", no_wrap=True)
-        for name in ("measured", "asked", "off by at most"):
+        for name in ("measured", "asked"):
             table.add_column(name, justify="right", header_style="dim", no_wrap=True)
         table.add_column("", no_wrap=True)
         table.add_column("", style="dim")
@@ -66,8 +66,7 @@ class Summary:
             table.add_row(
                 result.name,
                 f"{_text(result.value)} {result.unit}".strip(),
-                "" if result.asked is None else _text(result.asked),
-                "" if not result.tolerance else _text(result.tolerance),
+                _asked(result),
                 {None: "", True: "[green]ok[/]", False: "[bold red]NO[/]"}[result.passed],
                 result.note,
             )
@@ -80,6 +79,13 @@ def _as_json(result: Result) -> dict[str, Any]:
     if not content["note"]:
         del content["note"]
     return content
+
+
+def _asked(result: Result) -> str:
+    if result.asked is None:
+        return ""
+    within = f" ± {_text(result.tolerance)}" if result.tolerance else ""
+    return _text(result.asked) + within
 
 
 def _text(value: float | int | str | bool) -> str:

@@ -44,7 +44,6 @@ class RunOptions:
 
 def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> RunResult:
     """The three processes and a recorder. Ctrl-C ends the run in good order, the log stays."""
-    _check_buses(scenario, options.buses)
     if somebody_drives():
         raise RunError(
             "another driver is publishing on this machine: stop it, or run beside it with --private"
@@ -90,7 +89,8 @@ def _said_last(child: Child) -> str:
     return lines[0].strip() if lines else "starting"
 
 
-def _check_buses(scenario: Scenario, buses: tuple[str, ...]) -> None:
+def check_buses(scenario: Scenario, buses: tuple[str, ...]) -> None:
+    """Refuses NAME=ADDR that names no bus of the robot or no address that could be one."""
     known = scenario.robot.buses
     for text in buses:
         name, _, address = text.partition("=")

@@ -1,9 +1,10 @@
 """What the statics of an impedance law predict at the tip, and how far friction can hide it.
 
-At rest the law's torque, the push and friction balance. With τ = -Jᵀ K_x e (Cartesian impedance) or
-τ = -K_q (q - q_D) (joint impedance) a push F moves the tip by C F, where
-    C = J (Jᵀ K_x J)⁺ Jᵀ   (K_x⁻¹ for six or more joints; what is left of it for fewer), or
-    C = J K_q⁻¹ Jᵀ.
+At rest the law's torque, the push F and all other joint torque τ (friction, null space) balance:
+    Cartesian impedance   Jᵀ K_x J Δq = Jᵀ F + τ
+    joint impedance            K_q Δq = Jᵀ F + τ
+so the tip moves by Δx = G (Jᵀ F + τ) with G = J (Jᵀ K_x J)⁺ or G = J K_q⁻¹, and its compliance is
+C = G Jᵀ. For six or more joints under Cartesian impedance that is K_x⁻¹.
 (Salisbury, "Active stiffness control of a manipulator in Cartesian coordinates", 1980.)
 """
 
@@ -13,14 +14,12 @@ CARTESIAN = "cartesian_impedance"
 JOINT = "joint_impedance"
 
 
-def tip_compliance(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> np.ndarray | None:
-    """C, 6x6, m/N and rad/(N m); None for laws that hold no pose."""
+def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> np.ndarray | None:
+    """G, 6xn: tip displacement per joint torque; None for laws that hold no pose."""
     if law == JOINT:
-        return J @ np.diag(1.0 / K_q) @ J.T
+        return J / K_q
     if law == CARTESIAN:
-        if J.shape[1] >= 6:
-            return np.linalg.pinv(K_x, hermitian=True)
-        return J @ np.linalg.pinv(J.T @ K_x @ J, hermitian=True) @ J.T
+        return J @ np.linalg.pinv(J.T @ K_x @ J, rcond=1e-9, hermitian=True)
     return None
 
 
@@ -29,11 +28,15 @@ def stiffness_along(C: np.ndarray, direction: np.ndarray) -> float:
     return float(1.0 / (direction @ C @ direction))
 
 
-def friction_force(J: np.ndarray, friction: np.ndarray, direction: np.ndarray) -> float:
-    """How much of a push along a unit direction joint friction can take: Σ |(J⁺ n)_i| τ_f,i.
+def force_of_torque(
+    G: np.ndarray, C: np.ndarray, direction: np.ndarray, torque: np.ndarray
+) -> float:
+    """The push along a direction that moves the tip as far along it as these joint torques do."""
+    return float(direction @ G @ torque) * stiffness_along(C, direction)
 
-    The joint motion that moves the tip by n does this much work against friction per m (or rad).
-    """
-    rows = J if J.shape[1] >= 6 else J[:3]
-    n = direction if J.shape[1] >= 6 else direction[:3]
-    return float(np.abs(np.linalg.pinv(rows) @ n) @ friction)
+
+def greatest_friction_force(
+    G: np.ndarray, C: np.ndarray, direction: np.ndarray, friction: np.ndarray
+) -> float:
+    """How much of a push joint friction can hold: all joints' friction against it at once."""
+    return float(np.abs(direction @ G) @ friction) * stiffness_along(C, direction)

@@ -1,4 +1,4 @@
-"""The other end of test_virtual_bus: prints every frame it hears and answers it with the next identifier."""
+"""The other end of test_virtual_bus: prints each frame it hears and answers with the next id."""
 
 import sys
 
@@ -21,9 +21,7 @@ def text(message: can.Message) -> str:
 
 
 def main(group: str, port: int) -> None:
-    with can.Bus(
-        interface="udp_multicast", channel=group, port=port, hop_limit=0, fd=True
-    ) as bus:
+    with can.Bus(interface="udp_multicast", channel=group, port=port, hop_limit=0, fd=True) as bus:
         bus.send(can.Message(arbitration_id=HELLO, is_extended_id=False))
         while message := bus.recv(timeout=10):
             if message.arbitration_id % 2 == 1:  # our own frames come back: they are the odd ones

@@ -109,6 +109,11 @@ TEST(FrameTime, FdStuffingByHand) {
   // Fast bits: 0 1000 and 64 zeros, so 67 zeros in a row. Every five of them are followed by a
   // stuff bit, which is a one and starts the count anew: 13.
   EXPECT_NEAR(frame_time_s(frame, kClassic, kFast), 30e-6 + (96.0 + 13) / 5e6, 1e-12);
+  for (std::size_t i = 0; i < 8; ++i) frame.data[i] = i == 0 ? 0xF8 : 0x78;
+  // Five ones, a stuff bit 0; it and the four zeros that follow are five, a stuff bit 1; and so on,
+  // fourteen times more.
+  EXPECT_NEAR(frame_time_s(frame, kClassic, kFast), 30e-6 + (96.0 + 15) / 5e6, 1e-12);
+  frame.data.fill(0);
   frame.bitrate_switch =
       false;  // the switch bit becomes 0 and joins the error state bit: no run of five
   EXPECT_NEAR(frame_time_s(frame, kClassic, kFast), (30 + 96.0 + 13) / 1e6, 1e-12);

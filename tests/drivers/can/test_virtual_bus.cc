@@ -18,6 +18,7 @@
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "drivers/can/virtual_bus.h"
+#include "drivers/can/virtual_frame.h"
 #include "tests/drivers/can/private_network.h"
 #include "tests/support/allocation_counter.h"
 
@@ -88,8 +89,9 @@ TEST(VirtualBus, AnEndWithoutFdNeitherSendsNorHearsFd) {
   const auto fd = open_can_bus("virtual:mixed", true);
   CanFrame frame = numbered(1);
   frame.fd = frame.bitrate_switch = true;
-  EXPECT_EQ(classic->send(frame), 0);
+  EXPECT_EQ(classic->send(std::array{frame, numbered(3)}), 1);
   EXPECT_EQ(classic->statistics().send_refused, 1);
+  EXPECT_EQ(receive(fd.get(), 1).size(), 1U);
   EXPECT_EQ(fd->send(std::array{frame, numbered(2)}), 2);
   const auto got = receive(classic.get(), 1);
   ASSERT_EQ(got.size(), 1U);
@@ -118,27 +120,59 @@ TEST(VirtualBus, StampsAreMonotonicTimeOfArrival) {
   EXPECT_LE(got[0].timestamp_ns, sent_ns + 10'000'000) << "time of reading instead of arrival";
 }
 
+/// Any datagram to a bus, or to another address on its port.
+void send_raw(const std::string& address, std::span<const std::uint8_t> datagram) {
+  const int raw = socket(AF_INET, SOCK_DGRAM, 0);
+  const int ttl = 0;
+  ASSERT_EQ(setsockopt(raw, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof(ttl)), 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(std::atoi(kPort)));
+  ASSERT_EQ(inet_pton(AF_INET, address.c_str(), &to.sin_addr), 1);
+  sendto(raw, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+         sizeof(to));
+  close(raw);
+}
+
+std::vector<std::uint8_t> good_datagram() {
+  std::vector<std::uint8_t> bytes(kLongestEncodedBytes);
+  bytes.resize(encode_datagram(numbered(7), bytes));
+  return bytes;
+}
+
 TEST(VirtualBus, MalformedDatagramsAreCountedAndDoNoHarm) {
   const auto a = open_can_bus("virtual:noise", true);
   const auto b = open_can_bus("virtual:noise", true);
-  const int noise = socket(AF_INET, SOCK_DGRAM, 0);
-  const int ttl = 0;
-  ASSERT_EQ(setsockopt(noise, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof(ttl)), 0);
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(static_cast<std::uint16_t>(std::atoi(kPort)));
-  ASSERT_EQ(inet_pton(AF_INET, virtual_bus_group("noise").c_str(), &group.sin_addr), 1);
-  for (const std::string& datagram :
-       {std::string("hello"), std::string(), std::string(1400, '\x91'), std::string("\x8b")}) {
-    sendto(noise, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&group),
-           sizeof(group));
-  }
-  close(noise);
+  const std::string group = virtual_bus_group("noise");
+  send_raw(group, {});
+  send_raw(group, std::vector<std::uint8_t>{'h', 'e', 'l', 'l', 'o'});
+  send_raw(group, std::vector<std::uint8_t>(1400, 0x91));
+  // A good map of 1024 bytes, padded in a key of its own, then with a byte behind it that must not
+  // be cut off and forgotten.
+  std::vector<std::uint8_t> longer = good_datagram();
+  ++longer[0];
+  longer.insert(longer.end(), {0xA1, 'x', 0xC5, 0, 0});
+  const std::size_t padding = 1024 - longer.size();
+  longer[longer.size() - 2] = static_cast<std::uint8_t>(padding >> 8U);
+  longer[longer.size() - 1] = static_cast<std::uint8_t>(padding);
+  longer.resize(1024);
+  send_raw(group, longer);
+  ASSERT_EQ(receive(b.get(), 1).size(), 1U) << "1024 bytes are allowed";
+  longer.push_back(0xC0);
+  send_raw(group, longer);
   a->send(numbered(1));
   const auto got = receive(b.get(), 1);
   ASSERT_EQ(got.size(), 1U);
   EXPECT_EQ(got[0].id, 1U);
   EXPECT_EQ(b->statistics().malformed, 4);
+}
+
+TEST(VirtualBus, OnlyTheGroupIsHeard) {
+  const auto bus = open_can_bus("virtual:group", true);
+  send_raw("127.0.0.1", good_datagram());
+  EXPECT_TRUE(is_silent(bus.get()));
+  send_raw(virtual_bus_group("group"), good_datagram());
+  EXPECT_FALSE(is_silent(bus.get()));
 }
 
 TEST(VirtualBus, LossesInTheReceiveQueueAreCounted) {

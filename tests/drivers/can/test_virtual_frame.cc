@@ -268,10 +268,14 @@ TEST(VirtualFrame, BrokenDatagrams) {
   longer.push_back(0xC0);
   EXPECT_FALSE(decodes(longer)) << "something after the map";
   EXPECT_FALSE(decodes(from_hex("DFFFFFFFFF"))) << "four thousand million pairs, none there";
-  EXPECT_FALSE(decodes(from_hex("81A178DDFFFFFFFF"))) << "array without elements";
-  EXPECT_FALSE(decodes(from_hex("81A178C6FFFFFFFFAA"))) << "binary longer than the datagram";
-  EXPECT_FALSE(decodes(from_hex("81A178C1"))) << "0xC1 is no type";
   EXPECT_FALSE(decodes(from_hex("9005"))) << "not a map";
+  const auto with_extra = [](const char* value) {
+    return map_of({{"arbitration_id", "05"}, {"extra", value}});
+  };
+  EXPECT_TRUE(decodes(with_extra("C0")));
+  EXPECT_FALSE(decodes(with_extra("DDFFFFFFFF"))) << "array without elements";
+  EXPECT_FALSE(decodes(with_extra("C6FFFFFFFFAA"))) << "binary longer than the datagram";
+  EXPECT_FALSE(decodes(with_extra("C1"))) << "0xC1 is no type";
   Bytes nested = {0x81, 0xA1, 0x78};
   nested.resize(1000, 0x91);
   EXPECT_FALSE(decodes(nested)) << "arrays in arrays to the end";

@@ -75,8 +75,9 @@ class FakeMotor {
   double angle = 0.0;            ///< drive side
   double speed = 0.0;
   double torque = 0.0;
-  bool silent = false;   ///< hears and obeys, does not answer
-  bool obedient = true;  ///< false: ignores enable
+  bool silent = false;    ///< hears and obeys, does not answer
+  bool obedient = true;   ///< false: ignores enable
+  bool stubborn = false;  ///< ignores disable
   bool ignores_writes = false;
 
  private:
@@ -110,7 +111,7 @@ class FakeMotor {
   void obey(const CanFrame& frame) {
     if (is_special(frame, 0xFB) && error >= 8) error = 0;
     if (is_special(frame, 0xFC) && error == 0 && obedient) error = 1;
-    if (is_special(frame, 0xFD)) error = 0;
+    if (is_special(frame, 0xFD) && !stubborn) error = 0;
   }
 
   DriveConfig drive_;

@@ -177,7 +177,7 @@ TEST(FollowingTest, FirstTorqueAfterEnablingStartsAtZero) {
   ASSERT_TRUE(arm.run_until(kOff, kKeep));
   arm.command.tau[0] = 3.0;  // asked for long before the drive is on
   int verdict = kAccepted;
-  while (arm.state->drive_state != kOn) {
+  for (int i = 0; i < 20 && arm.state->drive_state != kOn; ++i) {
     EXPECT_EQ(verdict, kAccepted);  // heard, not followed
     verdict = arm.cycle_with(kAskOn);
   }
@@ -340,7 +340,7 @@ TEST(ShutDownTest, BrakesThenDisables) {
     EXPECT_EQ(raw.kd, 819);  // 1 N m s/rad of 5
     EXPECT_FALSE(arm.driver->shut_down());
   }
-  for (int i = 0; i < 3; ++i) arm.cycle_with(kAskOn);
+  for (int i = 0; i < 12; ++i) arm.cycle_with(kAskOn);
   EXPECT_TRUE(arm.driver->shut_down());
   EXPECT_EQ(arm.motors[0].error, 0);
   for (int i = 0; i < 50; ++i) arm.cycle_with(kAskOn);

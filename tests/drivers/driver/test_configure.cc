@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "drivers/configure.h"
 #include "tests/drivers/driver/fake_arm.h"
 
 namespace limber {
@@ -85,8 +86,44 @@ TEST(ConfigureTest, AMotorLeftEnabledIsDisabledAndNeverCommanded) {
   arm.motors[0].error = 1;  // somebody's leftover
   ASSERT_TRUE(arm.run_until(kOff, joint_torque_t::REQUEST_KEEP, 20));
   EXPECT_EQ(arm.motors[0].error, 0);
-  for (const CanFrame& frame : arm.motors[0].frames)
-    EXPECT_TRUE(frame.id == 0x7FF || testing::is_special(frame, 0xFD));
+  int disabled = 0;
+  for (const CanFrame& frame : arm.motors[0].frames) {
+    const bool disable = testing::is_special(frame, 0xFD);
+    EXPECT_TRUE(frame.id == 0x7FF || disable);
+    disabled += disable ? 1 : 0;
+  }
+  EXPECT_EQ(disabled,
+            2);  // the reply to the first still said enabled; it is believed at the second
+}
+
+TEST(ConfigureTest, AMotorThatCannotBeDisabledIsRefused) {
+  FakeArm arm(test_robot(2));
+  arm.motors[1].error = 1;
+  arm.motors[1].stubborn = true;
+  for (int i = 0; i < 10; ++i) arm.half_cycle();
+  EXPECT_EQ(arm.state->drive_state, kFault);
+  EXPECT_EQ(arm.state->fault_joint, 1);
+  EXPECT_NE(arm.driver->configuration_problem().find("could not be disabled"), std::string::npos);
+}
+
+TEST(ConfigureTest, AnAnswerThatWasNotAskedForYetDoesNotCount) {
+  const DriveConfig drive = test_robot(1).joints[0].drive;
+  ConfigureDialogue dialogue(drive, true);
+  testing::FakeMotor motor(drive);
+  dialogue.start();
+  dialogue.receive_state(false);
+  dialogue.close_cycle();
+  CanFrame pmax;
+  CanFrame vmax;
+  ASSERT_TRUE(
+      motor.handle(mit::encode_register_read(1, mit::Register::kPositionRange, true), &pmax));
+  ASSERT_TRUE(
+      motor.handle(mit::encode_register_read(1, mit::Register::kVelocityRange, true), &vmax));
+  EXPECT_FALSE(dialogue.receive(vmax));
+  EXPECT_TRUE(dialogue.receive(pmax));
+  EXPECT_FALSE(dialogue.receive(vmax));  // its question leaves in the next cycle
+  dialogue.close_cycle();
+  EXPECT_TRUE(dialogue.receive(vmax));
 }
 
 TEST(ConfigureTest, AStepIsTriedFourTimes) {

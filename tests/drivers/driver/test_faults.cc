@@ -129,14 +129,14 @@ TEST(ReplyLostTest, TwoAreBridgedTheThirdHoldsTheOthers) {
   EXPECT_NEAR(torque_sent(arm, 1), 0.3, 5e-3);
   // When it is back for 50 ms it is held as well, where it is then; the fault stays.
   arm.motors[1].silent = false;
-  arm.set_angle(1, 0.01);
+  arm.set_angle(1, 0.31);  // drive angle -0.01
   for (int i = 0; i < 50; ++i) {
     arm.cycle_with(kAskOn);
     EXPECT_EQ(raw_command(arm.motors[1].last()).kp, 0);
   }
   arm.cycle_with(kAskOn);
   EXPECT_EQ(raw_command(arm.motors[1].last()).kp, kKp50);
-  EXPECT_NEAR(-12.5 + raw_command(arm.motors[1].last()).p * 25.0 / 65535.0, 0.3 - 0.01, 5e-4);
+  EXPECT_NEAR(-12.5 + raw_command(arm.motors[1].last()).p * 25.0 / 65535.0, -0.01, 5e-4);
   EXPECT_EQ(arm.state->drive_state, kHold);
   EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
 }
