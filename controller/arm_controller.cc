@@ -14,6 +14,8 @@ namespace {
 
 using namespace controller;
 
+constexpr std::int64_t kLongestStep = 3;  // periods
+
 /// What the torque cycle is to do in a mode.
 enum class Activity { kRest, kHold, kLaw, kStop };
 
@@ -42,7 +44,9 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
 
 struct ArmController::Impl {
   Impl(const LoadedRobot& robot, const ArmControllerOptions& given)
-      : options(given), supervisor(robot.robot.size(), given.oldest_joint_cycles), cycle(controllable(robot), given.law) {
+      : options(given),
+        supervisor(robot.robot.size(), given.bridged_cycles),
+        cycle(controllable(robot), given.law) {
     answer.controller = options.controller;
     answer.num_joints = static_cast<std::int16_t>(robot.robot.size());
     status.controller = options.controller;
@@ -97,7 +101,9 @@ void ArmController::Impl::follow_mode() noexcept {
 }
 
 void ArmController::Impl::control(std::int64_t missed) noexcept {
-  if (!cycle.control(static_cast<double>(missed + 1) * period_s)) {
+  // After a longer gap the goal goes on from where it was, not from where it would be.
+  const std::int64_t periods = std::min(missed, kLongestStep - 1) + 1;
+  if (!cycle.control(static_cast<double>(periods) * period_s)) {
     supervisor.raise(Event::kTorqueInvalid);
     follow_mode();
   }

@@ -22,8 +22,8 @@ struct ArmControllerOptions {
   std::int64_t controller =
       1;  ///< names this run; random in realtime, from the seed in lock step; never 0
   std::string law = "cartesian_impedance";  ///< the law ACTIVE starts with
-  int oldest_joint_cycles = 2;  ///< a joint silent for longer: FAULT
-  bool measure_time = true;                 ///< false in lock step: no clock is read
+  int bridged_cycles = 2;    ///< without a state or a joint's answer; one more: FAULT
+  bool measure_time = true;  ///< false in lock step: no clock is read
 };
 
 class ArmController {

@@ -79,8 +79,9 @@ void run(const Arguments& given) {
   options.controller = given.controller.value_or(lockstep ? 1 : random_id());
   options.measure_time = !lockstep;
   if (!lockstep && robot.robot.on_virtual_buses()) {
-    // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the controller.
-    options.oldest_joint_cycles = static_cast<int>(kVirtualBridge_s * robot.robot.rate_hz);
+    // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the
+    // controller.
+    options.bridged_cycles = static_cast<int>(kVirtualBridge_s * robot.robot.rate_hz);
   }
   ArmController controller(robot, options);
   if (scenario) controller.set_timeline(&scenario->timeline);

@@ -47,9 +47,10 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   judgement.usable = usable(state, joints_);
   if (!judgement.usable) return judgement;
   judgement.fresh = true;
+  judgement.silent = judgement.missed > bridged_;
   for (int i = 0; i < joints_; ++i) {
     if ((state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0) judgement.fresh = false;
-    if (!(state.age_cycles[i] <= oldest_joint_)) judgement.joint_silent = true;
+    if (!(state.age_cycles[i] <= bridged_)) judgement.silent = true;
   }
   return judgement;
 }

@@ -7,20 +7,20 @@
 namespace limber::controller {
 
 struct StateJudgement {
-  bool repeated = false;      ///< its number was seen before in this session: nothing may advance
-  bool first = false;         ///< the first state of all
-  bool new_session = false;   ///< another run of the driver
-  bool usable = false;        ///< this arm's joint count, all numbers finite, sensible period
-  bool fresh = false;         ///< usable, and every joint has answered in this cycle
-  bool joint_silent = false;  ///< a joint has not answered for longer than is bridged
-  std::int64_t missed = 0;    ///< states between the last one and this one
+  bool repeated = false;     ///< its number was seen before in this session: nothing may advance
+  bool first = false;        ///< the first state of all
+  bool new_session = false;  ///< another run of the driver
+  bool usable = false;       ///< this arm's joint count, all numbers finite, sensible period
+  bool fresh = false;        ///< usable, and every joint has answered in this cycle
+  std::int64_t missed = 0;   ///< states between the last one and this one
+  bool silent = false;  ///< states, or a joint's answers, are missing for longer than is bridged
 };
 
 /// Follows the stream by session and number. All members may be called in the cycle.
 class StateJudge {
  public:
-  /// `oldest_joint`: for so many cycles a joint may be silent; the driver has its own opinion.
-  explicit StateJudge(int joints, int oldest_joint = 2) : joints_(joints), oldest_joint_(oldest_joint) {}
+  /// So many cycles in a row without a state, or without a joint's answer, are bridged.
+  StateJudge(int joints, int bridged_cycles) : joints_(joints), bridged_(bridged_cycles) {}
   StateJudgement judge(const joint_state_t& state) noexcept;
 
   std::int64_t received() const noexcept { return received_; }
@@ -28,7 +28,7 @@ class StateJudge {
 
  private:
   int joints_;
-  int oldest_joint_;
+  int bridged_;
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
   std::int64_t received_ = 0;

@@ -38,7 +38,7 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   }
   time_ns_ = state.time_ns;
   drive_state_ = state.drive_state;
-  if (judgement.missed > kMostMissedStates || judgement.joint_silent) raise(Event::kStateLost);
+  if (judgement.silent) raise(Event::kStateLost);
   count_steady(judgement);
   watch_drives();
   if (mode_ == Mode::kSoftStop && time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);

@@ -15,11 +15,10 @@ namespace limber::controller {
 class Supervisor {
  public:
   static constexpr int kSteadyStates = 100;
-  static constexpr std::int64_t kMostMissedStates = 3;
   static constexpr std::int64_t kDrivesOnWithin_ns = 2'000'000'000;
   static constexpr std::int64_t kSoftStop_ns = 300'000'000;
 
-  explicit Supervisor(int joints, int oldest_joint = 2) : judge_(joints, oldest_joint) {}
+  Supervisor(int joints, int bridged_cycles) : judge_(joints, bridged_cycles) {}
 
   /// Each state once, before anything else. Nothing happens if the state is a repetition.
   StateJudgement on_state(const joint_state_t& state) noexcept;

@@ -48,7 +48,7 @@ void ArmDriver::Impl::apply(DriveEvent event, int joint) noexcept {
   const DriveState from = state();
   if (!machine.apply(event, joint)) return;
   cycles_in_state = 0;
-  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].enter(state(), from, tau_gravity[i]);
+  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].enter(state(), tau_gravity[i]);
   if (in(DriveState::kOn) && from == DriveState::kEnabling) {
     tau.fill(0.0);
     tau_present.fill(0.0);

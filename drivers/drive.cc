@@ -9,14 +9,13 @@ Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycl
       configure_(joint.drive, fd),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles) {}
 
-void Drive::enter(DriveState state, DriveState from, double gravity) noexcept {
+void Drive::enter(DriveState state, double gravity) noexcept {
   switch (state) {
     case DriveState::kConfiguring:
       configure_.start();
       link_.forget_angle();
       break;
     case DriveState::kOff:
-      if (from == DriveState::kConfiguring) link_.forget_angle();
       watch_.reset();
       break;
     case DriveState::kEnabling:
@@ -73,6 +72,8 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
     }
     return;
   }
+  // An arm that nobody drives may swing as it likes, and whoever drives it next needs its angle.
+  if (state == DriveState::kOff) link_.forget_angle();
   if (!link_.receive(frame)) {
     ++invalid_;
     return;

@@ -18,7 +18,7 @@ class Drive {
   Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles);
 
   /// The arm's state changed; `gravity` is what holds this joint, from the last accepted command.
-  void enter(DriveState state, DriveState from, double gravity) noexcept;
+  void enter(DriveState state, double gravity) noexcept;
 
   /// This cycle's one frame. `tau` counts in ON, `settling` in HOLD (the first 100 ms).
   CanFrame next_frame(DriveState state, double tau, bool settling) noexcept;

@@ -46,7 +46,7 @@ enum class DriveEvent : std::int8_t {
   kOverrun,
   kHoldAsked,  ///< by the operator or the process
   kReplyLost,  ///< a joint is silent or its encoder not plausible
-  kAllSilent,
+  kAllSilent,  ///< no drive speaks, or none is enabled any more
   kBusLost,
   kDriveError,
   kPositionTrip,

@@ -103,8 +103,8 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
     buses_.push_back(open_can_bus(bus.can, bus.fd));
     bus_pointers_.push_back(buses_.back().get());
   }
-  driver_ = std::make_unique<ArmDriver>(robot_, bus_pointers_,
-                                        ArmDriverOptions{session_, options_.lockstep, bridged_cycles_});
+  driver_ = std::make_unique<ArmDriver>(
+      robot_, bus_pointers_, ArmDriverOptions{session_, options_.lockstep, bridged_cycles_});
 }
 
 void DriverProcess::say_start() const {

@@ -78,7 +78,7 @@ class JointLink {
 
   JointConfig joint_;
   bool fd_;
-  int longest_gap_;  ///< cycles
+  int longest_gap_;         ///< cycles
   double jump_per_cycle_;   ///< rad
   double jump_resolution_;  ///< rad
   double torque_count_;     ///< N m

@@ -1,10 +1,10 @@
-// Watchdog on one joint's replies: b cycles without one are bridged (two on a wire). One more in a row is
-// too much, and so is the tenth within 2/b seconds.
+// Watchdog on one joint's replies: b cycles without one are bridged (two on a wire). One more in a
+// row is too much, and so are 5 b within a second.
 #pragma once
 
 #include <cstdint>
 
-#include "drivers/gate/event_window.h"
+#include "drivers/loss_window.h"
 
 namespace limber {
 
@@ -12,15 +12,13 @@ namespace limber {
 class ReplyWatch {
  public:
   ReplyWatch(int cycles_per_second, int bridged_cycles)
-      : cycles_per_second_(cycles_per_second),
-        bridged_(bridged_cycles),
-        span_(2 * cycles_per_second / bridged_cycles) {}
+      : cycles_per_second_(cycles_per_second), bridged_(bridged_cycles), losses_(bridged_cycles) {}
 
   /// Once a cycle, when it is over.
   void close_cycle(bool answered, std::int64_t cycle) noexcept {
     missing_ = answered ? 0 : missing_ + 1;
     answered_ = answered ? answered_ + 1 : 0;
-    const bool often = !answered && losses_.add(cycle, span_);
+    const bool often = !answered && losses_.add(cycle, cycles_per_second_);
     if (often || missing_ > bridged_) lost_ = true;
   }
 
@@ -39,11 +37,10 @@ class ReplyWatch {
  private:
   int cycles_per_second_;
   int bridged_;
-  int span_;
   std::int64_t missing_ = 0;
   std::int64_t answered_ = 0;
   bool lost_ = false;
-  EventWindow<10> losses_;
+  LossWindow losses_;
 };
 
 }  // namespace limber

@@ -69,6 +69,8 @@ std::int64_t ArmDriver::Impl::cycles_all_silent() const noexcept {
 
 void ArmDriver::Impl::supervise_motion() noexcept {
   if (!in(DriveState::kOn) && !in(DriveState::kHold) && !in(DriveState::kDamp)) return;
+  // Their power failed, or their watchdogs acted: there is nothing left that could hold or brake.
+  if (all_drives(&Drive::disabled)) apply(DriveEvent::kAllSilent);
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const int joint = static_cast<int>(i);
     if (!drives[i].link().enabled()) apply(DriveEvent::kDriveError, joint);

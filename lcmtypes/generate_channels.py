@@ -1,10 +1,18 @@
 """Writes channels.h from channels.yaml: generate_channels.py channels.yaml OUT.h"""
+
 import sys
+from pathlib import Path
 
 import yaml
 
-table = yaml.safe_load(open(sys.argv[1], encoding="utf-8"))
-out = ["// Generated from lcmtypes/channels.yaml. Do not edit.", "#pragma once", "", "namespace limber::channels {", ""]
+table = yaml.safe_load(Path(sys.argv[1]).read_text(encoding="utf-8"))
+out = [
+    "// Generated from lcmtypes/channels.yaml. Do not edit.",
+    "#pragma once",
+    "",
+    "namespace limber::channels {",
+    "",
+]
 for plane, url in table["planes"].items():
     out.append(f'inline constexpr const char* k{plane.capitalize()}PlaneUrl = "{url}";')
 out.append("")
@@ -12,11 +20,14 @@ for key, row in table["channels"].items():
     if "name" in row:
         continue  # the user-plane copy has the same name
     const = "k" + "".join(part.capitalize() for part in key.split("_"))
-    out.append(f'inline constexpr const char* {const} = "{key}";  // {row["type"]}, from {row["from"]}, {row["rate"]}')
+    comment = f'{row["type"]}, from {row["from"]}, {row["rate"]}'
+    out.append(f'inline constexpr const char* {const} = "{key}";  // {comment}')
 out.append("")
 for key, row in table["channels"].items():
     if row["rate"].startswith("cycle/"):
         const = "k" + "".join(part.capitalize() for part in key.split("_")) + "Every"
-        out.append(f"inline constexpr int {const} = {int(row['rate'].removeprefix('cycle/'))};  // cycles")
+        out.append(
+            f"inline constexpr int {const} = {int(row['rate'].removeprefix('cycle/'))};  // cycles"
+        )
 out += ["", "}  // namespace limber::channels", ""]
-open(sys.argv[2], "w", encoding="utf-8").write("\n".join(out))
+Path(sys.argv[2]).write_text("\n".join(out), encoding="utf-8")

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<std::string> names(const std::map<std::string, int>& lines) {
   std::vector<std::string> list;
+  list.reserve(lines.size());
   for (const auto& [name, line] : lines) list.push_back(name);
   return list;
 }

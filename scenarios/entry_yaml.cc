@@ -19,9 +19,7 @@ const std::vector<std::string> kModes = {"idle", "hold",        "active",
                                          "stop", "acknowledge", "release"};  // REQUEST_* order
 
 ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind, EntryContext* context) {
-  if (kind == "mode")
-    return std::get<mode_request_t>(
-        mode_at(0.0, index_of(yaml.word("mode", kModes), kModes)).message);
+  if (kind == "mode") return mode_request(index_of(yaml.word("mode", kModes), kModes));
   if (kind == "gains") {
     read_gains_entry(yaml.map("gains"), context->robot.robot, &context->gains);
     return context->gains;
@@ -35,11 +33,11 @@ ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind, Entry
 
 }  // namespace
 
-TimedMessage mode_at(double time_s, std::int8_t request) {
+mode_request_t mode_request(int request) {
   mode_request_t message{};
   message.client = kScenarioClient;
-  message.request = request;
-  return {std::llround(time_s * 1e9), message};
+  message.request = static_cast<std::int8_t>(request);
+  return message;
 }
 
 TimedMessage read_entry(const YamlMap& yaml, EntryContext* context) {

@@ -20,6 +20,6 @@ struct EntryContext {
 TimedMessage read_entry(const YamlMap& yaml, EntryContext* context);
 
 /// A request on behalf of the scenario.
-TimedMessage mode_at(double time_s, std::int8_t request);
+mode_request_t mode_request(int request);
 
 }  // namespace limber

@@ -62,7 +62,7 @@ void read_joint_values(const YamlMap& yaml, const std::string& key, int n, Range
 
 std::string read_law(const YamlMap& yaml) {
   if (!yaml.has("law")) return "";
-  const std::string law = yaml.text("law");
+  std::string law = yaml.text("law");
   const bool name = law.size() <= 64 && std::all_of(law.begin(), law.end(), [](char c) {
                       return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
                     });

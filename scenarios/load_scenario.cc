@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* kFormat = "limber-scenario/1";
 // Requests of a file that makes none: time to see the drives answer, then time to hold still.
-constexpr double kHoldAt_s = 0.3;
-constexpr double kActiveAt_s = 0.8;
+constexpr std::int64_t kHoldAt_ns = 300'000'000;
+constexpr std::int64_t kActiveAt_ns = 800'000'000;
 
 std::vector<double> read_start(const YamlMap& yaml, const Robot& robot) {
   std::vector<double> start;
@@ -62,8 +62,8 @@ std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& 
   }
   complaints.throw_if_any();
   if (!asks_for_mode) {
-    timeline.push_back(mode_at(kHoldAt_s, mode_request_t::REQUEST_HOLD));
-    timeline.push_back(mode_at(kActiveAt_s, mode_request_t::REQUEST_ACTIVE));
+    timeline.push_back({kHoldAt_ns, mode_request(mode_request_t::REQUEST_HOLD)});
+    timeline.push_back({kActiveAt_ns, mode_request(mode_request_t::REQUEST_ACTIVE)});
   }
   std::stable_sort(timeline.begin(), timeline.end(),
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
@@ -77,7 +77,7 @@ std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& 
 std::string scenario_robot(const std::string& path) {
   const YamlMap yaml = YamlMap::from_file(path);
   yaml.word("format", {kFormat});
-  const std::string robot = yaml.text("robot");
+  std::string robot = yaml.text("robot");
   const bool is_name = robot.find('/') == std::string::npos && !robot.starts_with('.');
   if (is_name || robot.starts_with('/')) return robot;
   return (std::filesystem::path(path).parent_path() / robot).lexically_normal();

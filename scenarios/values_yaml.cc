@@ -7,8 +7,8 @@
 
 namespace limber {
 
-std::int8_t index_of(const std::string& word, const std::vector<std::string>& words) {
-  return static_cast<std::int8_t>(std::find(words.begin(), words.end(), word) - words.begin());
+int index_of(const std::string& word, const std::vector<std::string>& words) {
+  return static_cast<int>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
 void read_three(const YamlMap& yaml, const std::string& key, Range range, double* values) {

@@ -1,7 +1,6 @@
 // Values that several entries of a scenario have in common.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,7 @@ void read_three(const YamlMap& yaml, const std::string& key, Range range, double
 void normalise(const YamlMap& yaml, const std::string& key, double* values, int size);
 
 /// Position of a word that is in the list.
-std::int8_t index_of(const std::string& word, const std::vector<std::string>& words);
+int index_of(const std::string& word, const std::vector<std::string>& words);
 
 /// One number a joint, within the joints' limits.
 void read_joint_pose(const YamlMap& yaml, const std::string& key, const Robot& robot, double* q);

@@ -78,7 +78,7 @@ scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
   event.kind = scenario_event_t::EVENT_FAULT;
   event.normal[2] = 1.0;
   event.joint = index_of(yaml.word("joint", names), names);
-  event.fault = index_of(yaml.word("kind", kFaults), kFaults);
+  event.fault = static_cast<std::int8_t>(index_of(yaml.word("kind", kFaults), kFaults));
   event.duration_s = yaml.number_or("for_s", {0.0, 600.0}, 0.0);  // 0: for ever
   yaml.finish();
   return event;

@@ -75,7 +75,7 @@ joint_state_t good_state(std::int64_t seq) {
 }
 
 TEST(StateJudge, KnowsRepetitionsGapsAndSessions) {
-  StateJudge judge(2);
+  StateJudge judge(2, 2);
   EXPECT_TRUE(judge.judge(good_state(10)).first);
   EXPECT_EQ(judge.judge(good_state(11)).missed, 0);
   EXPECT_TRUE(judge.judge(good_state(11)).repeated);
@@ -91,17 +91,17 @@ TEST(StateJudge, KnowsRepetitionsGapsAndSessions) {
 }
 
 TEST(StateJudge, LooksAtThisArmsJointsOnly) {
-  StateJudge judge(2);
+  StateJudge judge(2, 2);
   joint_state_t state = good_state(0);
   state.q[2] = std::numeric_limits<double>::quiet_NaN();
   state.age_cycles[2] = 1000;
   const StateJudgement judgement = judge.judge(state);
-  EXPECT_TRUE(judgement.usable && judgement.fresh && !judgement.joint_silent);
+  EXPECT_TRUE(judgement.usable && judgement.fresh && !judgement.silent);
 }
 
 class Supervision : public ::testing::Test {
  protected:
-  Supervision() : supervisor(2) {}
+  Supervision() : supervisor(2, 2) {}
 
   void states(int count, std::int8_t drive_state) {
     for (int i = 0; i < count; ++i) {

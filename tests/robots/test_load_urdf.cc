@@ -226,11 +226,13 @@ TEST(LoadUrdf, GravityIsTurnedIntoABaseThatIsTilted) {
                            joint("b", "revolute", "one", "two", "xyz='0.3 0 0'", "1 0 0") +
                            body("two", "1", "xyz='0.1 0.1 0'");
   const std::string tilted =
-      bare("root") + joint("m", "fixed", "root", "base", "xyz='1 2 3' rpy='0.4 -0.7 1.1'", "") +
-      bare("base") + rest;
+      bare("root") + joint("n", "fixed", "root", "plate", "rpy='0.9 0 0'", "") + bare("plate") +
+      joint("m", "fixed", "plate", "base", "xyz='1 2 3' rpy='0.4 -0.7 1.1'", "") + bare("base") +
+      rest;
   const LoadedRobot from_base = load(tilted, "base", "two");
   const LoadedRobot from_root = load(tilted, "root", "two");
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitZ()) *
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(0.9, Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitZ()) *
                              Eigen::AngleAxisd(-0.7, Eigen::Vector3d::UnitY()) *
                              Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()))
                                 .toRotationMatrix();

@@ -110,6 +110,8 @@ const Mutation kJoints[] = {
     {"SignTwo", "sign: -1", "sign: 2", "out of range"},
     {"OffsetBeyondDrive", "offset_rad: 0.7", "offset_rad: 11", "drive's position range is +-12.5",
      -5},
+    {"OffsetBeyondDriveOtherEnd", "offset_rad: 0.7", "offset_rad: -11", "angles from -13 to -9",
+     -5},
     {"ContinuousWithoutLimits", "    position_max_rad: 3\n", "", "drive's position range", -5},
     {"HomeOutside", "home_rad: 0.5", "home_rad: 2.2", "2.2 is outside the limits -2 to 2"},
     {"HomeInOtherUnits", "home_m: 0.1", "home_rad: 0.1", "'home_m' is missing", -4},

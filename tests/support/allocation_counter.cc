@@ -2,7 +2,8 @@
 
 #include <cstddef>
 
-// glibc's own entry points, under the names it exports for replacements of malloc. operator new ends in malloc.
+// glibc's own entry points, under the names it exports for replacements of malloc. operator new
+// ends in malloc.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);

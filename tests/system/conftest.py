@@ -10,7 +10,11 @@ from stack import Stack
 def pytest_configure(config):
     """Refuse to run where other LCM programs could hear us or disturb us."""
     interfaces = [name for _, name in socket.if_nameindex()]
-    others = [name for name in interfaces if name != "lo" and not name.startswith(("vcan", "vxcan", "can"))]
+    others = [
+        name
+        for name in interfaces
+        if name != "lo" and not name.startswith(("vcan", "vxcan", "can"))
+    ]
     if others:
         pytest.exit(
             "system tests need a private network: run them with `./limber test`, or\n"

@@ -1,4 +1,4 @@
-"""Starts the real processes and listens to what they say. Every test gets a private network (see conftest.py)."""
+"""Starts the real processes and listens to what they say; see conftest.py for their network."""
 
 from __future__ import annotations
 
@@ -86,9 +86,12 @@ class Stack:
     def start(self, name: str, *arguments: str, tag: str | None = None) -> subprocess.Popen:
         tag = tag or name
         self.starts[tag] += 1
-        log = open(self.directory / f"{tag}-{self.starts[tag]}.log", "w", encoding="utf-8")
+        path = self.directory / f"{tag}-{self.starts[tag]}.log"
         command = [str(BIN / f"limber-{name}"), "--robot", self.robot, *arguments]
-        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        with open(path, "w", encoding="utf-8") as log:
+            process = subprocess.Popen(
+                command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
+            )
         self.processes[tag] = process
         return process
 
@@ -133,7 +136,9 @@ class Stack:
         while time.monotonic() < end:
             for tag, process in self.processes.items():
                 if process.poll() not in (None, -signal.SIGKILL):
-                    raise AssertionError(f"{tag} ended by itself with {process.returncode}:\n{self.log(tag)}")
+                    raise AssertionError(
+                        f"{tag} ended by itself with {process.returncode}:\n{self.log(tag)}"
+                    )
             if condition():
                 return
             time.sleep(0.01)
@@ -150,7 +155,9 @@ class Stack:
         if status is not None:
             lines.append(f"controller: mode {status.mode} reason {status.reason}")
         if state is not None:
-            lines.append(f"driver: state {state.drive_state} fault {state.fault} joint {state.fault_joint}")
+            lines.append(
+                f"driver: state {state.drive_state} fault {state.fault} joint {state.fault_joint}"
+            )
         return "\n".join(lines + [f"--- {tag}\n{self.log(tag)}" for tag in self.processes])
 
     def bring_to(self, mode: int) -> None:

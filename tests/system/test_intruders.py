@@ -1,10 +1,11 @@
-"""Commands that are not the bound controller's fresh answer are refused and counted, and the arm does not notice."""
+"""Only the bound controller's fresh answers are obeyed; all else is refused and counted."""
 
 import math
 import time
 
 import lcm
 import numpy as np
+
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.driver_status_t import driver_status_t as Driver
 from limber.lcmtypes.joint_state_t import joint_state_t as State
@@ -32,7 +33,11 @@ def test_second_controller(stack):
     active(stack)
     before = np.array(stack.truth.q)
     stack.start("controller", tag="second")
-    stack.until(lambda: refused(stack, Driver.VERDICT_CONTROLLER) > 100, 10, "the second controller to be refused")
+    stack.until(
+        lambda: refused(stack, Driver.VERDICT_CONTROLLER) > 100,
+        10,
+        "the second controller to be refused",
+    )
     bound = stack.user.latest("JOINT_TORQUE").controller
     assert bound != 0
     assert stack.state.drive_state == State.DRIVE_ON
@@ -49,7 +54,10 @@ def test_replayed_commands(stack):
         arm.lcm.publish("JOINT_TORQUE", data)
         time.sleep(0.0005)
     stack.until(
-        lambda: refused(stack, Driver.VERDICT_REPLAYED) + refused(stack, Driver.VERDICT_STALE) >= replayed + 400,
+        lambda: (
+            refused(stack, Driver.VERDICT_REPLAYED) + refused(stack, Driver.VERDICT_STALE)
+            >= replayed + 400
+        ),
         10,
         "replayed commands to be counted",
     )
@@ -89,7 +97,11 @@ def test_wrong_session(stack):
     for _ in range(100):
         arm.publish("JOINT_TORQUE", forge(stack, session=12345))
         time.sleep(0.002)
-    stack.until(lambda: refused(stack, Driver.VERDICT_SESSION) >= count + 90, 10, "the wrong session to be counted")
+    stack.until(
+        lambda: refused(stack, Driver.VERDICT_SESSION) >= count + 90,
+        10,
+        "the wrong session to be counted",
+    )
     still_obeyed(stack, before)
 
 

@@ -302,6 +302,12 @@ def test_refusals_losses_and_faults_fail_the_run(tmp_path, still):
     assert summary.find("faults").value == "REPLY_LOST"
     assert not summary.passed
 
+    stopped = records("controller_status_t", 5, mode=6, reason=1)
+    channels = {"SIM_TRUTH": truth, "JOINT_STATE": state_of(truth), "CONTROLLER_STATUS": stopped}
+    summary = measure(Log(write_log(tmp_path / "c.lcmlog", channels)), still, "lockstep")[0]
+    assert summary.find("faults").value == "STATE_LOST"
+    assert not summary.passed
+
     gap = np.delete(truth, slice(1000, 1004))
     log = Log(write_log(tmp_path / "g.lcmlog", {"SIM_TRUTH": gap, "JOINT_STATE": state_of(truth)}))
     summary = measure(log, still, "lockstep")[0]

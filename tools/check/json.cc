@@ -32,12 +32,14 @@ std::string list(const std::vector<std::string>& values) {
 
 std::string numbers(const std::vector<double>& values) {
   std::vector<std::string> written;
+  written.reserve(values.size());
   for (const double value : values) written.push_back(number(value));
   return list(written);
 }
 
 std::string texts(const std::vector<std::string>& values) {
   std::vector<std::string> written;
+  written.reserve(values.size());
   for (const std::string& value : values) written.push_back(text(value));
   return list(written);
 }

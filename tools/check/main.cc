@@ -94,26 +94,30 @@ void add_options(CLI::App* app, Arguments* arguments) {
     command->add_flag("--json", arguments->as_json, "print one JSON object");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"Checks robots, URDFs and scenarios. Exit status 0: fine, 2: refused."};
   Arguments arguments;
   add_options(&app, &arguments);
   try {
     app.parse(argc, argv);
+    std::fputs(check(app, arguments).c_str(), stdout);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    std::fputs(check(app, arguments).c_str(), stdout);
   } catch (const ConfigError& error) {
     if (arguments.as_json) std::fputs(refusal_json(error.what()).c_str(), stdout);
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "limber-check: %s\n", error.what());
     return 3;
   }
-  return 0;
 }

@@ -15,7 +15,7 @@ def health_results(log: Log, scenario: Scenario, recorder_lost: dict[str, int]) 
     results.append(_lost(log, recorder_lost, skipped={"JOINT_TORQUE"} if realtime else set()))
     if len(driver):
         results.extend(_driver(driver[-1], scenario))
-    results.append(_faults(state, scenario))
+    results.append(_faults(state, log.read("CONTROLLER_STATUS"), scenario))
     return results
 
 
@@ -41,13 +41,14 @@ def _driver(status: np.void, scenario: Scenario) -> list[Result]:
         Result("cycles without an answer", int(status["commands_missing"])),
         at_most("commands refused", sum(refused.values()), "", 0, why),
     ]
-    if not scenario.faults:
-        results.append(at_most("replies lost on the bus", replies, "", 0))
+    lost = "replies lost on the bus"
     if status["lockstep"]:
-        return results
+        judged = Result(lost, replies) if scenario.faults else at_most(lost, replies, "", 0)
+        return [*results, judged]
     note = f"of {cycles}; started more than a tenth of a period late"
     return [
         *results,
+        Result(lost, replies),
         Result("late cycles", int(status["late_cycles"]), note=note),
         Result("overruns", int(status["overrun_cycles"]), note="took longer than the period"),
         Result("lateness, median", float(status["lateness_p50_ns"]) * 1e-3, "µs"),
@@ -58,9 +59,15 @@ def _driver(status: np.void, scenario: Scenario) -> list[Result]:
     ]
 
 
-def _faults(state: np.ndarray, scenario: Scenario) -> Result:
-    """Faults that a scenario or the operator asked for are told, not judged."""
-    names = messages.constants("joint_state_t", "FAULT_")
-    seen = [names.get(int(value), str(value)) for value in np.unique(state["fault"]) if value]
+def _faults(state: np.ndarray, status: np.ndarray, scenario: Scenario) -> Result:
+    """The driver's and the controller's. What the scenario or an operator wanted is not judged."""
+    seen = _names("joint_state_t", "FAULT_", state["fault"])
+    in_fault = status["mode"] == messages.message_class("controller_status_t").MODE_FAULT
+    seen += _names("controller_status_t", "REASON_", status["reason"][in_fault])
     passed = None if scenario.faults or seen == ["REQUESTED"] else not seen
     return Result("faults", ", ".join(seen) or "none", asked="none", passed=passed)
+
+
+def _names(type_name: str, prefix: str, values: np.ndarray) -> list[str]:
+    names = messages.constants(type_name, prefix)
+    return [names.get(int(value), str(value)) for value in np.unique(values) if value]

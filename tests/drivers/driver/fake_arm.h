@@ -153,7 +153,7 @@ inline Robot test_robot(int n, int num_buses = 1) {
 /// Driver and fake motors on in-memory buses, and the shortest controller there is.
 class FakeArm {
  public:
-  explicit FakeArm(const Robot& from, bool lockstep = false) : robot(from) {
+  explicit FakeArm(const Robot& from, bool lockstep = false, int bridged_cycles = 2) : robot(from) {
     std::vector<CanBus*> ends;
     for (std::size_t b = 0; b < robot.buses.size(); ++b) {
       memory.push_back(std::make_unique<MemoryBus>());
@@ -162,7 +162,8 @@ class FakeArm {
       ends.push_back(driver_ends.back().get());
     }
     for (const JointConfig& joint : robot.joints) motors.emplace_back(joint.drive);
-    driver = std::make_unique<ArmDriver>(robot, ends, ArmDriverOptions{kSession, lockstep});
+    driver = std::make_unique<ArmDriver>(robot, ends,
+                                         ArmDriverOptions{kSession, lockstep, bridged_cycles});
     driver->fill_status(&status);
     command.session = kSession;
     command.controller = kController;

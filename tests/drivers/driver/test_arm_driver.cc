@@ -77,12 +77,27 @@ TEST(EnablingTest, ADriveThatDoesNotComeUpMakesAllOfThemOff) {
   }
 }
 
-TEST(EnablingTest, NothingIsEnabledOutsideItsLimitsOrUnheard) {
-  FakeArm arm(test_robot(2));
-  arm.set_angle(0, 2.1);
-  ASSERT_TRUE(arm.run_until(kOff, kKeep));
-  EXPECT_FALSE(arm.run_until(kEnabling, kAskOn, 20));
-  EXPECT_NE(arm.state->joint_flags[0] & joint_state_t::JOINT_OUT_OF_RANGE, 0);
+TEST(EnablingTest, NothingIsEnabledOutsideItsLimitsOrInMotionOrUnheard) {
+  FakeArm outside(test_robot(2));
+  outside.set_angle(0, 2.1);
+  ASSERT_TRUE(outside.run_until(kOff, kKeep));
+  EXPECT_FALSE(outside.run_until(kEnabling, kAskOn, 20));
+  EXPECT_NE(outside.state->joint_flags[0] & joint_state_t::JOINT_OUT_OF_RANGE, 0);
+
+  FakeArm moving(test_robot(2));
+  moving.set_speed(1, 6.0);
+  ASSERT_TRUE(moving.run_until(kOff, kKeep));
+  EXPECT_FALSE(moving.run_until(kEnabling, kAskOn, 20));
+  moving.set_speed(1, 5.0);
+  EXPECT_TRUE(moving.run_until(kEnabling, kAskOn, 2));
+
+  FakeArm unheard(test_robot(2));
+  ASSERT_TRUE(unheard.run_until(kOff, kKeep));
+  unheard.motors[1].silent = true;
+  unheard.cycle_with(kAskOn);
+  unheard.motors[1].silent = false;
+  unheard.cycle_with(kKeep);
+  EXPECT_EQ(unheard.state->drive_state, kOff);
 }
 
 TEST(EnablingTest, LostFramesDelayButDoNotSkipSteps) {
@@ -173,7 +188,7 @@ TEST(FollowingTest, TorqueWhileOffIsJudgedButNotSent) {
 }
 
 TEST(FollowingTest, FirstTorqueAfterEnablingStartsAtZero) {
-  FakeArm arm(test_robot(1));
+  FakeArm arm(test_robot(2));
   ASSERT_TRUE(arm.run_until(kOff, kKeep));
   arm.command.tau[0] = 3.0;  // asked for long before the drive is on
   int verdict = kAccepted;
@@ -184,8 +199,18 @@ TEST(FollowingTest, FirstTorqueAfterEnablingStartsAtZero) {
   EXPECT_EQ(verdict, driver_status_t::VERDICT_RATE + 0);
   arm.half_cycle();
   EXPECT_NEAR(arm.motors[0].torque_of(raw_command(arm.motors[0].last()).t), 0.0, 5e-3);
-  arm.command.tau[0] = 0.5;
+  arm.command.tau[0] = -0.5;
+  arm.command.tau[1] = 0.5;
   EXPECT_EQ(arm.answer_state(), kAccepted);
+}
+
+TEST(FollowingTest, AWholeStepIsFreeInTheCycleThatTurnsOn) {
+  FakeArm arm(test_robot(2));
+  ASSERT_TRUE(arm.run_until(kOff, kKeep));
+  arm.command.tau[0] = -0.5;
+  arm.command.tau[1] = 0.5;
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(arm.cycle_with(kAskOn), kAccepted);
+  EXPECT_EQ(arm.state->drive_state, kOn);
 }
 
 TEST(FollowingTest, TwoAnswersInOneCycleDoNotMakeTwoSteps) {
@@ -252,7 +277,7 @@ TEST(ObedienceTest, RecordedCommandsOfAnotherRunDoNothing) {
   const auto end = memory.attach();
   second.driver =
       std::make_unique<ArmDriver>(second.robot, std::vector{second.driver_ends[0].get()},
-                                  ArmDriverOptions{FakeArm::kSession + 1, false});
+                                  ArmDriverOptions{.session = FakeArm::kSession + 1});
   for (const joint_torque_t& old : log) {
     second.half_cycle();
     EXPECT_EQ(second.driver->accept(old), driver_status_t::VERDICT_SESSION + 0);

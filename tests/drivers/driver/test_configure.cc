@@ -167,11 +167,23 @@ TEST(ConfigureTest, AStateBeforeTheFirstReplyIsMarkedUnknown) {
   EXPECT_EQ(arm.state->age_cycles[0], 0);
 }
 
+TEST(ConfigureTest, AnArmThatMovesMeanwhileIsFoundWhereItIs) {
+  FakeArm arm(test_robot(1));
+  for (int i = 0; i < 20; ++i) {
+    arm.set_angle(0, 0.006 * i);  // 6 rad/s: faster than the joint's limit, slower than impossible
+    arm.half_cycle();
+  }
+  EXPECT_EQ(arm.state->drive_state, kOff);
+  EXPECT_EQ(arm.state->age_cycles[0], 0);
+  EXPECT_NEAR(arm.state->q[0], 0.006 * 19, 4e-4);
+  EXPECT_EQ(arm.read_status().replies_invalid[0], 0);
+}
+
 TEST(ConfigureTest, SetUpThatCannotWorkIsRefused) {
   const auto start = [](const Robot& robot, std::size_t buses, std::int64_t session = 1) {
     MemoryBus memory;
     const auto end = memory.attach();
-    ArmDriver driver(robot, std::vector<CanBus*>(buses, end.get()), {session, false});
+    ArmDriver driver(robot, std::vector<CanBus*>(buses, end.get()), {.session = session});
   };
   EXPECT_NO_THROW(start(test_robot(2), 1));
   EXPECT_THROW(start(test_robot(2), 2), ConfigError);

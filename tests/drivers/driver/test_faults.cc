@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/can/faulty_bus.h"
+#include "drivers/loss_window.h"
 #include "tests/drivers/driver/fake_arm.h"
 
 namespace limber {
@@ -218,6 +219,40 @@ TEST(ReplyLostTest, ForeignFramesAreCounted) {
   EXPECT_EQ(arm.state->drive_state, kOn);
 }
 
+// On a virtual bus, whose pauses are those of a scheduler, more is bridged.
+TEST(ToleranceTest, AsManyCyclesAsWantedAreBridgedAndNotOneMore) {
+  for (int bridged : {2, 3, 7, 50}) {
+    Robot robot = test_robot(2);
+    for (JointConfig& joint : robot.joints) joint.drive.watchdog_s = 0.1;
+    FakeArm arm(robot, false, bridged);
+    ASSERT_TRUE(arm.switch_on());
+    arm.motors[0].silent = true;
+    for (int i = 0; i < bridged; ++i) arm.cycle_with(kAskOn);
+    EXPECT_EQ(arm.state->drive_state, kOn) << bridged;
+    arm.motors[0].silent = false;
+    arm.cycle_with(kAskOn);
+    EXPECT_EQ(arm.state->age_cycles[0], 0);
+    for (int i = 0; i < bridged; ++i) arm.half_cycle();
+    EXPECT_EQ(arm.state->drive_state, kOn) << bridged;
+    arm.cycle_with(kAskOn);
+    arm.motors[0].silent = true;
+    for (int i = 0; i < bridged + 1; ++i) arm.cycle_with(kAskOn);
+    EXPECT_EQ(arm.state->drive_state, kHold) << bridged;
+    EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
+  }
+}
+
+TEST(ToleranceTest, FiveTimesAsManyWithinASecondAreTooMany) {
+  LossWindow wire(2);
+  LossWindow scheduler(50);
+  int wire_losses = 0;
+  int scheduler_losses = 0;
+  for (std::int64_t cycle = 0; !wire.add(3 * cycle, 1000); ++cycle) ++wire_losses;
+  for (std::int64_t cycle = 0; !scheduler.add(3 * cycle, 1000); ++cycle) ++scheduler_losses;
+  EXPECT_EQ(wire_losses + 1, 10);
+  EXPECT_EQ(scheduler_losses + 1, 250);
+}
+
 TEST(EncoderTest, OneGlitchIsRejectedAStepIsALoss) {
   FakeArm arm = loaded_arm(2);
   arm.set_angle(0, 0.5);
@@ -249,6 +284,26 @@ TEST(DriveErrorTest, EveryErrorHoldsTheOthersAndIsNotTalkedOver) {
     EXPECT_EQ(raw_command(arm.motors[0].last()).kp, kKp50);
     EXPECT_EQ(arm.state->drive_state, kHold);
   }
+}
+
+TEST(DriveErrorTest, WhenNoDriveIsEnabledAnyMoreThereIsNothingToHold) {
+  FakeArm arm = loaded_arm(2);
+  for (testing::FakeMotor& motor : arm.motors) motor.error = 0xD;
+  arm.cycle_with(kAskOn);
+  EXPECT_EQ(arm.state->drive_state, kFault);
+}
+
+TEST(EncoderTest, AnArmThatIsOffMaySwing) {
+  FakeArm arm(test_robot(2));
+  ASSERT_TRUE(arm.run_until(kOff, joint_torque_t::REQUEST_KEEP));
+  for (int i = 0; i < 100; ++i) {
+    const double q = 0.1 * (i % 20);  // 100 rad/s, and back at once
+    arm.set_angle(0, q);
+    arm.cycle_with(joint_torque_t::REQUEST_KEEP);
+    EXPECT_NEAR(arm.state->q[0], q, 4e-4);
+    EXPECT_EQ(arm.state->drive_state, kOff);
+  }
+  EXPECT_EQ(arm.read_status().replies_invalid[0], 0);
 }
 
 TEST(MotionTest, OutsideTheLimitsHolds) {
@@ -303,7 +358,7 @@ struct FaultyArm : FakeArm {
     bus = std::make_unique<FaultyBus>(driver_ends[0].get(), std::move(faults), 1);
     std::vector<CanBus*> ends{bus.get()};
     for (std::size_t b = 1; b < driver_ends.size(); ++b) ends.push_back(driver_ends[b].get());
-    driver = std::make_unique<ArmDriver>(from, ends, ArmDriverOptions{kSession, false});
+    driver = std::make_unique<ArmDriver>(from, ends, ArmDriverOptions{.session = kSession});
   }
   std::unique_ptr<FaultyBus> bus;
 };

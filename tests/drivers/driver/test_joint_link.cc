@@ -18,6 +18,8 @@ constexpr double kTorqueCount = 20.0 / 4095.0;  // range +-10 N m
 constexpr double kAngleCount = 25.0 / 65535.0;  // range +-12.5 rad
 constexpr double kSpeedCount = 60.0 / 4095.0;   // range +-30 rad/s
 
+constexpr int kBridged = 2;  // cycles
+
 JointConfig plain_joint() { return testing::test_robot(1).joints[0]; }
 /// Counts the other way round, zero at 0.3 rad of the drive.
 JointConfig reversed_joint() { return testing::test_robot(2).joints[1]; }
@@ -37,7 +39,7 @@ int count_of_angle(double drive_angle) {  // as a truncating drive does it
 }
 
 TEST(JointLinkTest, TorqueFrameByteByByte) {
-  JointLink link(plain_joint(), true, 1e-3);
+  JointLink link(plain_joint(), true, 1e-3, kBridged);
   // -1 N m: (10 - 1) / 20 * 4095 = 1842.75, rounded 1843 = 0x733. Angle 0: 32767.5, rounded 0x8000;
   // speed 0: 2047.5, rounded 0x800; no gains.
   const CanFrame frame = link.torque(-1.0);
@@ -50,7 +52,7 @@ TEST(JointLinkTest, TorqueFrameByteByByte) {
 }
 
 TEST(JointLinkTest, SignAndOffsetLiveAtTheBusEdge) {
-  JointLink link(reversed_joint(), true, 1e-3);
+  JointLink link(reversed_joint(), true, 1e-3, kBridged);
   // Drive at 0.8 rad, 1.5 rad/s, 2 N m: the joint is at -(0.8 - 0.3), and turns and pulls
   // backwards.
   ASSERT_TRUE(
@@ -71,7 +73,7 @@ TEST(JointLinkTest, SignAndOffsetLiveAtTheBusEdge) {
 }
 
 TEST(JointLinkTest, HalfACountMakesTruncatedRepliesRightOnAverage) {
-  JointLink link(plain_joint(), true, 1e-3);
+  JointLink link(plain_joint(), true, 1e-3, kBridged);
   double error = 0.0;
   const int samples = 997;
   for (int i = 0; i < samples; ++i) {
@@ -89,7 +91,7 @@ TEST(JointLinkTest, HalfACountMakesTruncatedRepliesRightOnAverage) {
 TEST(JointLinkTest, MeanTorqueIsExactAlthoughEachFrameIsNot) {
   for (double wanted : {0.0, 0.001, -0.0007, 0.0024, 1.2345, -3.21, 7.99}) {
     for (const JointConfig& joint : {plain_joint(), reversed_joint()}) {
-      JointLink link(joint, true, 1e-3);
+      JointLink link(joint, true, 1e-3, kBridged);
       double sum = 0.0;
       const int cycles = 2000;
       for (int i = 0; i < cycles; ++i) {
@@ -105,7 +107,7 @@ TEST(JointLinkTest, MeanTorqueIsExactAlthoughEachFrameIsNot) {
 }
 
 TEST(JointLinkTest, RoundingNeverCarriesATorqueOverTheLimit) {
-  JointLink link(plain_joint(), true, 1e-3);  // limit 8 N m; the range reaches 10
+  JointLink link(plain_joint(), true, 1e-3, kBridged);  // limit 8 N m; the range reaches 10
   for (double wanted : {8.0, -8.0, 7.9999, -7.9999, 8.5, -1e9}) {
     for (int i = 0; i < 50; ++i) {
       const double sent = -10.0 + raw_command(link.torque(wanted)).t * kTorqueCount;
@@ -123,7 +125,7 @@ TEST(JointLinkTest, WhatIsNotFiniteBecomesAStateRequest) {
   for (double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     for (const JointCommand& command : {JointCommand{0, 0, 0, bad}, JointCommand{bad, 1, 1, 0},
                                         JointCommand{0, bad, 0, 0}, JointCommand{0, 0, bad, 0}}) {
-      JointLink link(plain_joint(), true, 1e-3);
+      JointLink link(plain_joint(), true, 1e-3, kBridged);
       const CanFrame frame = link.command(command);
       EXPECT_EQ(frame.id, 0x7FFU);
       EXPECT_EQ(frame.data[2], 0xCC);
@@ -135,7 +137,7 @@ TEST(JointLinkTest, WhatIsNotFiniteBecomesAStateRequest) {
 
 TEST(JointLinkTest, TorqueAppliedCountsTheDriveSideSpringAndDamper) {
   for (const JointConfig& joint : {plain_joint(), reversed_joint()}) {
-    JointLink link(joint, true, 1e-3);
+    JointLink link(joint, true, 1e-3, kBridged);
     const double sign = joint.drive.sign;
     const int id = static_cast<int>(joint.drive.command_id);
     const CanFrame frame = link.command({0.5, 50.0, 2.0, 1.0});
@@ -149,7 +151,7 @@ TEST(JointLinkTest, TorqueAppliedCountsTheDriveSideSpringAndDamper) {
 }
 
 TEST(JointLinkTest, NoTorqueIsAppliedByRequestsOrToDisabledDrives) {
-  JointLink link(plain_joint(), true, 1e-3);
+  JointLink link(plain_joint(), true, 1e-3, kBridged);
   (void)link.torque(3.0);
   ASSERT_TRUE(link.receive(state_reply(1, 0, 32767, 2047, 2047)));
   EXPECT_EQ(link.tau_applied(), 0.0);
@@ -162,7 +164,7 @@ TEST(JointLinkTest, NoTorqueIsAppliedByRequestsOrToDisabledDrives) {
 }
 
 TEST(JointLinkTest, AnotherMotorsNumberAndSecondRepliesAreRefused) {
-  JointLink link(plain_joint(), true, 1e-3);
+  JointLink link(plain_joint(), true, 1e-3, kBridged);
   EXPECT_FALSE(link.receive(state_reply(2, 1, 32767, 2047, 2047)));
   EXPECT_FALSE(link.ever_answered());
   EXPECT_TRUE(link.receive(state_reply(1, 1, 32767, 2047, 2047)));
@@ -185,7 +187,7 @@ TEST(JointLinkTest, AnglesThatCannotBeAreRefused) {
       const int cycles = std::min(gap, 3);
       const int most = static_cast<int>(cycles * 7.5e-3 / kAngleCount + 2.0);
       for (int jump : {most, most + 1}) {
-        JointLink link(plain_joint(), true, 1e-3);
+        JointLink link(plain_joint(), true, 1e-3, kBridged);
         link.begin_cycle();
         ASSERT_TRUE(link.receive(state_reply(1, 1, 32767, 2047, 2047)));
         for (int i = 0; i < gap; ++i) link.begin_cycle();
@@ -204,7 +206,7 @@ TEST(JointLinkTest, AnglesThatCannotBeAreRefused) {
 TEST(JointLinkTest, PositionTripLies20MilliradiansOutside) {
   for (double sign : {1.0, -1.0}) {
     for (double beyond : {0.0, 0.019, 0.021}) {
-      JointLink link(plain_joint(), true, 1e-3);
+      JointLink link(plain_joint(), true, 1e-3, kBridged);
       EXPECT_FALSE(link.out_of_range());  // not before anything is known
       ASSERT_TRUE(
           link.receive(state_reply(1, 1, count_of_angle(sign * (2.0 + beyond)), 2047, 2047)));
@@ -215,7 +217,7 @@ TEST(JointLinkTest, PositionTripLies20MilliradiansOutside) {
 
 TEST(JointLinkTest, EveryStatusButEnabledAndDisabledIsAnError) {
   for (int error = 0; error < 16; ++error) {
-    JointLink link(plain_joint(), true, 1e-3);
+    JointLink link(plain_joint(), true, 1e-3, kBridged);
     EXPECT_FALSE(link.drive_error());
     ASSERT_TRUE(link.receive(state_reply(1, error, 32767, 2047, 2047)));
     EXPECT_EQ(link.enabled(), error == 1);
@@ -224,7 +226,7 @@ TEST(JointLinkTest, EveryStatusButEnabledAndDisabledIsAnError) {
 }
 
 TEST(JointLinkTest, AgeCountsCyclesSinceTheLastReply) {
-  JointLink link(plain_joint(), true, 1e-3);
+  JointLink link(plain_joint(), true, 1e-3, kBridged);
   link.begin_cycle();
   EXPECT_EQ(link.age_cycles(), JointLink::kNever);
   ASSERT_TRUE(link.receive(state_reply(1, 1, 32767, 2047, 2047)));

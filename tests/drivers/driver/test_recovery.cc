@@ -125,16 +125,22 @@ TEST(RecoveryTest, ARestartedControllerHasToWaitAndToAcknowledge) {
   EXPECT_EQ(arm.state->drive_state, kOn);
 }
 
-TEST(RecoveryTest, TheCauseMustBeGone) {
-  for (int cause = 0; cause < 3; ++cause) {
+TEST(RecoveryTest, AnAcknowledgementDoesNothingAsLongAsTheCauseIsThere) {
+  enum Cause { kSilent, kDriveError, kOutside, kFast };
+  for (Cause cause : {kSilent, kDriveError, kOutside, kFast}) {
     FakeArm arm = held_arm();
-    if (cause == 0) arm.motors[1].silent = true;
-    if (cause == 1) arm.motors[1].error = 0xB;
-    if (cause == 2) arm.set_speed(1, 5.4);  // below the trip...
-    if (cause == 2) arm.set_speed(1, 5.6);
-    for (int i = 0; i < 10; ++i) arm.cycle_with(kAcknowledge);
-    EXPECT_EQ(arm.state->drive_state, cause == 2 ? kDamp : kHold);
-    EXPECT_NE(arm.state->fault, joint_state_t::FAULT_NONE + 0);
+    if (cause == kSilent) arm.motors[1].silent = true;
+    if (cause == kDriveError) arm.motors[1].error = 0xB;
+    if (cause == kFast) arm.set_speed(1, 5.6);
+    for (double q = 0.3; cause == kOutside && q < 2.1; q += 0.005) {
+      arm.set_angle(1, q);
+      arm.cycle_with(kKeep);
+    }
+    for (int i = 0; i < 10; ++i) {
+      arm.cycle_with(kAcknowledge);
+      EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_CONTROLLER_LOST + 0) << cause;  // the first
+    }
+    EXPECT_EQ(arm.state->drive_state, cause == kFast ? kDamp : kHold);
   }
 }
 
