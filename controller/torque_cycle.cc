@@ -37,11 +37,12 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       blend_(model_.size()),
       limits_(robot.robot),
       null_limit_(kNullShare * limits_.torque_limit()),
+      none_(VectorJ::Zero(model_.size())),
       law_(model_.size()),
-      tau_null_(VectorJ::Zero(model_.size())),
-      tau_gravity_(VectorJ::Zero(model_.size())),
-      tau_coriolis_(VectorJ::Zero(model_.size())),
-      gravity_(VectorJ::Zero(model_.size())) {
+      tau_null_(none_),
+      tau_gravity_(none_),
+      tau_coriolis_(none_),
+      gravity_(none_) {
   for (const LawEntry& entry : laws()) {
     const bool possible = refuse_law(entry, sensors_) == nullptr;
     laws_.push_back(possible ? entry.make(robot) : nullptr);
@@ -92,10 +93,12 @@ bool TorqueCycle::control(double dt_s) noexcept {
   blend_.advance(dt_s, state_.v);
 
   const Composition add = entry().composition;
-  VectorJ tau = law_torque();
-  if (add.null_space) tau += null_space();
-  if (add.gravity) tau += tau_gravity_ = terms_.g;
-  if (add.coriolis) tau += tau_coriolis_ = terms_.Cv;
+  law_.reset();
+  laws_[static_cast<std::size_t>(running_)]->compute(inputs(), &law_);
+  tau_null_ = add.null_space ? null_space() : none_;
+  tau_gravity_ = add.gravity ? terms_.g : none_;
+  tau_coriolis_ = add.coriolis ? terms_.Cv : none_;
+  VectorJ tau = law_.tau() + tau_null_ + tau_gravity_ + tau_coriolis_;
 
   limits_active_ = law_.limits | limits_.shape(state_, terms_, &tau);
   if (!tau.allFinite()) return false;
@@ -107,21 +110,11 @@ bool TorqueCycle::control(double dt_s) noexcept {
   return true;
 }
 
-VectorJ TorqueCycle::law_torque() noexcept {
-  tau_null_.setZero();
-  tau_gravity_.setZero();
-  tau_coriolis_.setZero();
-  law_.reset();
-  laws_[static_cast<std::size_t>(running_)]->compute(inputs(), &law_);
-  return law_.tau();
-}
-
 VectorJ TorqueCycle::null_space() noexcept {
   const TaskRows rows(gains_.now().K_x);
   if (!(rows == rows_)) switched_ = true;  // the task lost or gained a direction
   rows_ = rows;
-  tau_null_ = null_space_torque(state_, terms_, goals_.goal(), gains_.now(), rows, null_limit_);
-  return tau_null_;
+  return null_space_torque(state_, terms_, goals_.goal(), gains_.now(), rows, null_limit_);
 }
 
 void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {

@@ -57,7 +57,6 @@ class TorqueCycle {
 
  private:
   void run(int law, bool from_here) noexcept;
-  VectorJ law_torque() noexcept;
   VectorJ null_space() noexcept;
   void describe_parts(controller_status_t* status) const noexcept;
   LawInputs inputs() const noexcept { return {state_, terms_, goals_.goal(), gains_.now()}; }
@@ -80,6 +79,7 @@ class TorqueCycle {
   bool switched_ = false;
   JointLimits limits_;
   VectorJ null_limit_;
+  VectorJ none_;
 
   LawOutput law_;
   VectorJ tau_null_;

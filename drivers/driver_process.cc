@@ -283,6 +283,14 @@ void DriverProcess::publish_state(const joint_state_t& state) {
   arm_plane_->publish(channels::kJointState, state);
   user_plane_->publish(channels::kJointState, state);
   reporter_->note(state);
+  tell_configuration_problem(state);
+}
+
+void DriverProcess::tell_configuration_problem(const joint_state_t& state) {
+  const bool wrong = state.fault == joint_state_t::FAULT_CONFIGURATION;
+  // Nothing is enabled then: the cycle may take the time for a line.
+  if (wrong && !told_) spdlog::error("{}", driver_->configuration_problem());
+  told_ = wrong;
 }
 
 void DriverProcess::publish_status() {

@@ -63,6 +63,7 @@ class DriverProcess {
 
   void on_torque(const joint_torque_t& command);
   void publish_state(const joint_state_t& state);
+  void tell_configuration_problem(const joint_state_t& state);
   void publish_status();
   void say_end() const;
 
@@ -89,6 +90,7 @@ class DriverProcess {
   const joint_state_t* published_ = nullptr;
   std::int64_t published_ns_ = 0;
   bool answered_ = false;  ///< the present state
+  bool told_ = false;      ///< what is wrong with the configuration
   driver_status_t status_{};
 };
 

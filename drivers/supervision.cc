@@ -69,14 +69,15 @@ std::int64_t ArmDriver::Impl::cycles_all_silent() const noexcept {
 
 void ArmDriver::Impl::supervise_motion() noexcept {
   if (!in(DriveState::kOn) && !in(DriveState::kHold) && !in(DriveState::kDamp)) return;
-  // Their power failed, or their watchdogs acted: there is nothing left that could hold or brake.
-  if (all_drives(&Drive::disabled)) apply(DriveEvent::kAllSilent);
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const int joint = static_cast<int>(i);
     if (!drives[i].link().enabled()) apply(DriveEvent::kDriveError, joint);
     if (drives[i].link().out_of_range()) apply(DriveEvent::kPositionTrip, joint);
     if (drives[i].too_fast()) apply(DriveEvent::kVelocityTrip, joint);
   }
+  // The drives' power failed, or their watchdogs acted: there is nothing left that could hold or
+  // brake.
+  if (all_drives(&Drive::disabled)) apply(DriveEvent::kAllSilent);
 }
 
 }  // namespace limber

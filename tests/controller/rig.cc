@@ -5,18 +5,19 @@
 namespace limber::testing {
 namespace {
 
-ArmControllerOptions options_for(const std::string& law) {
+ArmControllerOptions options_for(const std::string& law, int bridged_cycles) {
   ArmControllerOptions options;
   options.controller = 3;
   options.law = law;
+  options.bridged_cycles = bridged_cycles;
   options.measure_time = false;
   return options;
 }
 
 }  // namespace
 
-Rig::Rig(const LoadedRobot& given, const std::string& law)
-    : robot(given), controller(robot, options_for(law)), plant(robot) {
+Rig::Rig(const LoadedRobot& given, const std::string& law, int bridged_cycles)
+    : robot(given), controller(robot, options_for(law, bridged_cycles)), plant(robot) {
   const int n = robot.robot.size();
   plant.q.setConstant(0.4);
   state.seq = -1;

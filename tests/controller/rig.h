@@ -13,7 +13,8 @@ inline constexpr std::int64_t kClient = 7;
 /// follow the controller's requests after one cycle. Drives that are not on leave the arm braked.
 class Rig {
  public:
-  explicit Rig(const LoadedRobot& robot, const std::string& law = "cartesian_impedance");
+  explicit Rig(const LoadedRobot& robot, const std::string& law = "cartesian_impedance",
+               int bridged_cycles = 2);
 
   /// One cycle; returns the answer.
   const joint_torque_t& step();

@@ -228,6 +228,15 @@ TEST(ArmController, TimelineActsByArmTime) {
   rig.run(2.0);
   EXPECT_NEAR(rig.controller.status().p_BD[0] - x, 0.02, 1e-4);
   EXPECT_EQ(rig.controller.status().requests_refused, 0);
+
+  rig.ask(mode_request_t::REQUEST_STOP);
+  rig.run(0.4);
+  rig.ask(mode_request_t::REQUEST_IDLE, kScenarioClient);
+  rig.run(0.1);
+  ++rig.state.session;  // the driver starts again, and so does the timeline
+  rig.state.seq = -1;
+  rig.run(0.3);
+  EXPECT_EQ(rig.mode(), +Status::MODE_HOLD);
 }
 
 TEST(ArmController, WhatCannotBeControlledIsRefusedAtTheStart) {

@@ -143,6 +143,42 @@ TEST(Trouble, FaultIsLeftByAcknowledgeOnlyAndTheDrivesKeepHolding) {
   EXPECT_EQ(rig.state.drive_state, +joint_state_t::DRIVE_ON);
 }
 
+// Where long gaps are bridged (virtual buses), the goal does not leap over them.
+TEST(Trouble, GoalGoesOnAfterAGapFromWhereItWas) {
+  Rig rig(arm(), "cartesian_impedance", 60);
+  rig.to_active();
+  compliance_goal_t goal = rig.goal();
+  goal.offset[0] = 0.2;
+  ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
+  rig.run(0.7);
+  const double before = rig.controller.status().p_BD[0];
+  rig.state.seq += 59;
+  rig.step();
+  EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
+  EXPECT_EQ(rig.controller.status().states_lost, 59);
+  const double step = rig.controller.status().p_BD[0] - before;
+  EXPECT_GT(step, 0.5e-3);
+  EXPECT_LT(step, 0.8e-3) << "three periods at a quarter of a metre per second";
+  rig.state.seq += 61;
+  rig.step();
+  EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
+}
+
+// What the drives were sent is what the gate counts from.
+TEST(Trouble, StepsAreCountedFromWhatTheDrivesWereSent) {
+  Rig rig(arm());
+  rig.to_active();
+  ++rig.state.seq;
+  rig.state.time_ns += 1'000'000;
+  VectorJ sent = rig.tau();
+  sent[1] += 5.0;
+  for (int i = 0; i < 7; ++i) rig.state.tau_applied[i] = sent[i];
+  const joint_torque_t& answer = rig.controller.step(rig.state);
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_LE(std::abs(answer.tau[i] - sent[i]), 0.8 * kGateStep + 1e-12) << "joint " << i;
+  }
+}
+
 TEST(Trouble, NewSessionAtRestStartsOver) {
   Rig rig(arm());
   rig.run(0.12);

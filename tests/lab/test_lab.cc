@@ -66,10 +66,10 @@ TEST(Lab, EveryStateIsAnsweredAndObeyed) {
     ASSERT_EQ(stage.lab.state().seq, cycle);
     ASSERT_EQ(stage.lab.state().time_ns, cycle * 1'000'000LL);
     ASSERT_EQ(stage.lab.torque().state_seq, cycle);
-    ASSERT_EQ(stage.lab.verdict(), driver_status_t::VERDICT_ACCEPTED) << cycle;
+    ASSERT_EQ(stage.lab.verdict(), int{driver_status_t::VERDICT_ACCEPTED}) << cycle;
   }
-  EXPECT_EQ(stage.lab.state().drive_state, joint_state_t::DRIVE_ON);
-  EXPECT_EQ(stage.lab.state().fault, joint_state_t::FAULT_NONE);
+  EXPECT_EQ(stage.lab.state().drive_state, int{joint_state_t::DRIVE_ON});
+  EXPECT_EQ(stage.lab.state().fault, int{joint_state_t::FAULT_NONE});
   EXPECT_EQ(stage.lab.driver_status().commands_missing, 0);
 }
 

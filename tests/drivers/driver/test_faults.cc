@@ -291,6 +291,7 @@ TEST(DriveErrorTest, WhenNoDriveIsEnabledAnyMoreThereIsNothingToHold) {
   for (testing::FakeMotor& motor : arm.motors) motor.error = 0xD;
   arm.cycle_with(kAskOn);
   EXPECT_EQ(arm.state->drive_state, kFault);
+  EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_DRIVE_ERROR + 0);
 }
 
 TEST(EncoderTest, AnArmThatIsOffMaySwing) {

@@ -191,16 +191,16 @@ TEST_F(TorqueGateTest, ALimitThatIsNoNumberLetsNothingPass) {
 TEST_F(TorqueGateTest, FirstFailureNamesTheVerdict) {
   using Change = std::function<void(joint_torque_t&)>;
   const std::vector<std::pair<int, Change>> flaws = {
-      {Status::VERDICT_SIZE, [](auto& c) { c.num_joints = 4; }},
-      {Status::VERDICT_SESSION, [](auto& c) { c.session = 1; }},
-      {Status::VERDICT_CONTROLLER, [](auto& c) { c.controller = 6; }},
-      {Status::VERDICT_REPLAYED, [](auto& c) { c.state_seq = 99; }},
-      {Status::VERDICT_STALE, [](auto& c) { c.state_seq = 101; }},
-      {Status::VERDICT_NOT_FINITE, [](auto& c) { c.tau_gravity[0] = kNan; }},
-      {Status::VERDICT_REQUEST, [](auto& c) { c.request = 9; }},
-      {Status::VERDICT_NOT_ON, [](auto& c) { c.request = joint_torque_t::REQUEST_HOLD; }},
-      {Status::VERDICT_TORQUE, [](auto& c) { c.tau_gravity[1] = 21.0; }},
-      {Status::VERDICT_RATE, [](auto& c) { c.tau[2] = 1.0; }},
+      {+Status::VERDICT_SIZE, [](auto& c) { c.num_joints = 4; }},
+      {+Status::VERDICT_SESSION, [](auto& c) { c.session = 1; }},
+      {+Status::VERDICT_CONTROLLER, [](auto& c) { c.controller = 6; }},
+      {+Status::VERDICT_REPLAYED, [](auto& c) { c.state_seq = 99; }},
+      {+Status::VERDICT_STALE, [](auto& c) { c.state_seq = 101; }},
+      {+Status::VERDICT_NOT_FINITE, [](auto& c) { c.tau_gravity[0] = kNan; }},
+      {+Status::VERDICT_REQUEST, [](auto& c) { c.request = 9; }},
+      {+Status::VERDICT_NOT_ON, [](auto& c) { c.request = joint_torque_t::REQUEST_HOLD; }},
+      {+Status::VERDICT_TORQUE, [](auto& c) { c.tau_gravity[1] = 21.0; }},
+      {+Status::VERDICT_RATE, [](auto& c) { c.tau[2] = 1.0; }},
   };
   situation_.powered = false;  // makes NOT_ON possible; RATE looks at `followed` alone
   std::set<int> seen;
