@@ -173,6 +173,14 @@ class Stack:
             time.sleep(0.1)
         assert self.mode == mode, f"mode {mode} not reached\n{self.describe()}"
 
+    def acknowledge(self) -> None:
+        """Until the fault is gone: an operator is refused as long as its cause is there."""
+        end = time.monotonic() + 20
+        while self.mode != controller_status_t.MODE_IDLE and time.monotonic() < end:
+            self.request(mode_request_t.REQUEST_ACKNOWLEDGE)
+            time.sleep(0.1)
+        assert self.mode == controller_status_t.MODE_IDLE, self.describe()
+
     def close(self) -> None:
         for process in self.processes.values():
             if process.poll() is None:

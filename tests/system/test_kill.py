@@ -7,7 +7,6 @@ import pytest
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
-from limber.lcmtypes.mode_request_t import mode_request_t as Mode
 
 DEGREE = np.pi / 180
 FALLING_rad_per_s = (
@@ -77,8 +76,7 @@ def test_driver_dies(stack):
     assert stack.mode in (Status.MODE_FAULT, Status.MODE_INIT, Status.MODE_IDLE), (
         "no motion without being asked"
     )
-    stack.request(Mode.REQUEST_ACKNOWLEDGE)
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 10, "IDLE after acknowledging")
+    stack.acknowledge()
     held_at = positions(stack.truth)
     stack.bring_to(Status.MODE_HOLD)
     time.sleep(1.5)
@@ -105,13 +103,7 @@ def test_simulator_dies(stack):
     assert max(np.abs(truth.tau_motor).max() for truth in fresh) < 0.2, (
         "no torque on an arm nobody has acknowledged"
     )
-    stack.request(Mode.REQUEST_ACKNOWLEDGE)
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 10, "IDLE after acknowledging")
-    stack.until(
-        lambda: stack.state.drive_state in (State.DRIVE_OFF, State.DRIVE_HOLD),
-        10,
-        "drives to be ready",
-    )
+    stack.acknowledge()
     stack.bring_to(Status.MODE_HOLD)
     stack.until(lambda: stack.state.drive_state == State.DRIVE_ON, 10, "drives on")
 
@@ -125,7 +117,6 @@ def test_dies_before_anything_moves(stack, name):
     time.sleep(0.5)
     stack.start(name)
     time.sleep(1.0)
-    stack.request(Mode.REQUEST_ACKNOWLEDGE)
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 10, "IDLE again")
+    stack.acknowledge()
     stack.bring_to(Status.MODE_HOLD)
     stack.until(lambda: stack.state.drive_state == State.DRIVE_ON, 10, "drives on")

@@ -1,7 +1,9 @@
 """Shipped scenarios end to end, as a user starts them: exit status, summary, log, picture."""
 
 import json
+import signal
 import subprocess
+import time
 
 import pytest
 
@@ -85,9 +87,14 @@ def test_plain_lcm_logger_hears_a_run(tmp_path):
     )
     try:
         done = limber("run", "scenarios/quick.yaml", "--realtime", "--out", str(tmp_path / "out"))
+        time.sleep(1.0)  # the logger writes to disk now and then
     finally:
-        logger.terminate()
-        logger.wait(timeout=10)
+        logger.send_signal(signal.SIGINT)
+        try:
+            logger.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            logger.kill()
+            logger.wait()
     import lcm
 
     channels = {event.channel for event in lcm.EventLog(str(log))}

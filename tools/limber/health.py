@@ -60,7 +60,11 @@ def _driver(status: np.void, scenario: Scenario) -> list[Result]:
 
 
 def _faults(state: np.ndarray, status: np.ndarray, scenario: Scenario) -> Result:
-    """The driver's and the controller's. What the scenario or an operator wanted is not judged."""
+    """The driver's and the controller's, until the scenario is over and the drives are shut down.
+    What the scenario or an operator wanted is not judged.
+    """
+    end_ns = scenario.duration_s * 1e9
+    state, status = state[state["time_ns"] < end_ns], status[status["time_ns"] < end_ns]
     seen = _names("joint_state_t", "FAULT_", state["fault"])
     in_fault = status["mode"] == messages.message_class("controller_status_t").MODE_FAULT
     seen += _names("controller_status_t", "REASON_", status["reason"][in_fault])
