@@ -109,9 +109,9 @@ def _commands(scenario: Scenario, folder: Path, options: RunOptions) -> dict[str
     if options.lockstep:
         duration = ["--cycles", str(round(scenario.duration_s * scenario.robot.rate_hz))]
     commands = {"limber-record": ["--out", str(folder / LOG_NAME)]}
+    pace = "--lockstep" if options.lockstep else "--realtime"  # whatever the scenario says
     if options.with_simulator:
-        commands["limber-sim"] = ["--scenario", path, *buses, *lockstep]
-    pace = "--lockstep" if options.lockstep else "--realtime"
+        commands["limber-sim"] = ["--scenario", path, *buses, pace]
     commands["limber-controller"] = ["--scenario", path, "--robot", robot, pace]
     commands["limber-driver"] = ["--robot", robot, *buses, *lockstep, *duration]
     return {name: [str(program(name)), *words] for name, words in commands.items()}
