@@ -74,7 +74,7 @@ class ActiveController {
     const VectorJ q = home();
     for (int i = 0; i < q.size(); ++i) {
       state_.q[i] = state_.theta[i] = q[i];
-      state_.joint_flags[i] = joint_state_t::JOINT_FRESH | joint_state_t::JOINT_ENABLED;
+      state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED;
     }
     ask_at(200, mode_request_t::REQUEST_HOLD);
     ask_at(1500, mode_request_t::REQUEST_ACTIVE);

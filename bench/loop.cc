@@ -100,7 +100,7 @@ class FakeDriver {
     state_.drive_state = joint_state_t::DRIVE_OFF;
     for (int i = 0; i < robot.robot.size(); ++i) {
       state_.q[i] = state_.theta[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
-      state_.joint_flags[i] = joint_state_t::JOINT_FRESH | joint_state_t::JOINT_ENABLED;
+      state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED;
     }
     arm_.subscribe<joint_torque_t>(channels::kJointTorque, 10,
                                    [this](const joint_torque_t& torque) {
