@@ -106,7 +106,8 @@ struct Robot {
 
   int size() const { return static_cast<int>(joints.size()); }
 
-  /// Every bus is limber's own user-space one: as punctual as this machine's scheduler, not as a wire.
+  /// Every bus is limber's own user-space one: as punctual as this machine's scheduler, not as a
+  /// wire.
   bool on_virtual_buses() const {
     for (const BusConfig& bus : buses) {
       if (bus.can.rfind("virtual:", 0) != 0) return false;
