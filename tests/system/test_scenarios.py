@@ -61,6 +61,9 @@ def test_demo_in_lock_step(tmp_path):
     assert (out / "run.lcmlog").stat().st_size > 10_000_000
 
 
+@pytest.mark.flaky(
+    reruns=2
+)  # a pause of this machine longer than the driver bridges is not our fault
 @pytest.mark.parametrize("unprivileged", [False, True])
 def test_demo_in_real_time(tmp_path, unprivileged):
     """Sixty seconds at 1 kHz; how late the cycles were is reported, never judged here."""
