@@ -17,6 +17,7 @@ namespace {
 
 using namespace limber;
 
+// Longer than the 50 ms that the driver bridges on virtual buses: the driver decides first.
 constexpr double kVirtualBridge_s = 0.06;
 
 volatile bool stop = false;

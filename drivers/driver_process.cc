@@ -26,7 +26,6 @@ constexpr double kShutDownPatience_s = 1.0;
 // milliseconds now and then; a wire is not. What would be a cut cable there is a hiccup here.
 constexpr double kVirtualBridge_s = 0.05;
 constexpr double kVirtualWatchdog_s = 0.1;
-constexpr int kBridgedCycles = 2;
 
 Robot load(const DriverProcessOptions& options) {
   Robot robot = load_robot(options.robot).robot;
@@ -49,10 +48,11 @@ Robot load(const DriverProcessOptions& options) {
 
 /// The tolerances of a realtime run on virtual buses: the drives' watchdogs wait longer, too.
 int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
-  if (options.lockstep || !robot->on_virtual_buses()) return kBridgedCycles;
+  const int on_a_wire = ArmDriverOptions().bridged_cycles;
+  if (options.lockstep || !robot->on_virtual_buses()) return on_a_wire;
   for (JointConfig& joint : robot->joints)
     joint.drive.watchdog_s = std::max(joint.drive.watchdog_s, kVirtualWatchdog_s);
-  return std::max(kBridgedCycles, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
+  return std::max(on_a_wire, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
 }
 
 std::int64_t random_session() {
