@@ -29,10 +29,13 @@ Matrix root(const Matrix& K) noexcept {
   return V * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * V.transpose();
 }
 
+// The sum of products of positive matrices need not be positive: what would drive is cut off.
 template <typename Matrix>
 Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
   const Matrix product = root(M) * root(K);
-  return ratio * (product + product.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(product + product.transpose());
+  const Matrix& V = eigen.eigenvectors();
+  return ratio * V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
 }
 
 // M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
@@ -45,6 +48,21 @@ Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexc
   cholesky.matrixL().solveInPlace(S);
   const Matrix L = cholesky.matrixL();
   return 2.0 * ratio * L * root(S) * L.transpose();
+}
+
+template <typename Matrix>
+Matrix designed(DampingDesign design, const Matrix& M, const Matrix& K, double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation:
+      return doubly_diagonalised<Matrix>(M, K, ratio);
+    case DampingDesign::kFactorisation:
+      return factorised<Matrix>(M, K, ratio);
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<Matrix>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return Matrix::Zero(K.rows(), K.cols());
 }
 
 // L with G = L L^T over the directions within reach, and its pseudo-inverse transposed.
@@ -64,17 +82,12 @@ struct Reach {
 
 MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
                       double ratio) noexcept {
-  switch (design) {
-    case DampingDesign::kDoubleDiagonalisation:
-      return doubly_diagonalised<MatrixJ>(M, K, ratio);
-    case DampingDesign::kFactorisation:
-      return factorised<MatrixJ>(M, K, ratio);
-    case DampingDesign::kWithoutInertia:
-      return 2.0 * ratio * root<MatrixJ>(K);
-    case DampingDesign::kGiven:
-      break;
-  }
-  return MatrixJ::Zero(K.rows(), K.cols());
+  return designed<MatrixJ>(design, M, K, ratio);
+}
+
+Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
+                        double ratio) noexcept {
+  return designed<Matrix6>(design, M_d, K, ratio);
 }
 
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
@@ -96,10 +109,6 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
       break;
   }
   return Matrix6::Zero();
-}
-
-Matrix6 inertia_damping(const Matrix6& M_d, const Matrix6& K, double ratio) noexcept {
-  return doubly_diagonalised<Matrix6>(M_d, K, ratio);
 }
 
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {

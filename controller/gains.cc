@@ -104,9 +104,14 @@ void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept {
 }
 
 void GainRamp::start(const Gains& gains, double duration_s) noexcept {
+  const LawSettings before = now_.settings;
+  now_.settings = gains.settings;
+  now_.M_x = gains.M_x;
+  now_.M_q = gains.M_q;
+  if (before.damping != DampingDesign::kGiven) now_.D_x = gains.D_x;
+  if (before.joint_damping != DampingDesign::kGiven) now_.D_q = gains.D_q;
   from_ = now_;
   to_ = gains;
-  now_.settings = gains.settings;
   elapsed_s_ = 0.0;
   duration_s_ = std::max(duration_s, kShortestRamp_s);
 }
@@ -122,10 +127,10 @@ void GainRamp::advance(double dt_s) noexcept {
   const auto mix = [this, s](auto Gains::*part) {
     now_.*part = (1.0 - s) * (from_.*part) + s * (to_.*part);
   };
-  for (auto part : {&Gains::K_x, &Gains::D_x, &Gains::M_x}) mix(part);
+  for (auto part : {&Gains::K_x, &Gains::D_x}) mix(part);
   for (auto part : {&Gains::damping_ratio, &Gains::joint_damping_ratio}) mix(part);
-  for (auto part : {&Gains::K_q, &Gains::D_q, &Gains::M_q, &Gains::K_acc, &Gains::D_acc,
-                    &Gains::K_null, &Gains::D_null}) {
+  for (auto part :
+       {&Gains::K_q, &Gains::D_q, &Gains::K_acc, &Gains::D_acc, &Gains::K_null, &Gains::D_null}) {
     mix(part);
   }
 }

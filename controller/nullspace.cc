@@ -19,9 +19,12 @@ Matrix6J TaskRows::of(Matrix6J J) const noexcept {
   return J;
 }
 
+TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept {
+  return tip_mobility(rows.of(terms.J), rows.of(terms.Minv_JT.transpose()).transpose());
+}
+
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
-  const MatrixJ6 Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
-  const TipMobility mobility = tip_mobility(rows.of(terms.J), Minv_JT);
+  const TipMobility mobility = task_mobility(terms, rows);
   if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
   return damped_tip_inertia(mobility, mobility.threshold(lost_share));
 }

@@ -27,6 +27,9 @@ struct TaskRows {
 /// lost.
 inline constexpr double kLostShare = 1e-4;
 
+/// Of the task's rows alone; zero out of them. In the cycle.
+TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept;
+
 /// Tip inertia Lambda = (J_t M^-1 J_t^T)^-1 over the task's rows, 6 x 6 with zeros elsewhere, kg
 /// and kg m^2; M with rotors. Damped near singularities, see damped_tip_inertia(). In the cycle.
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows,

@@ -70,6 +70,7 @@ const char* refuse_tip_matrices(const Message& message) noexcept {
     return "M_x: the diagonal must be within -1e3..1e3 kg and -1e2..1e2 kg m^2";
   }
   if (!is_symmetric(M, kFloatRounding)) return "M_x is not symmetric";
+  if (!(M.cwiseAbs().maxCoeff() <= 1e3)) return "M_x must be within -1e3..1e3";
   return nullptr;
 }
 

@@ -51,6 +51,11 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
     const bool possible = refuse_law(entry, sensors_) == nullptr;
     laws_.push_back(possible ? entry.make(robot) : nullptr);
   }
+  const LawEntry& selected = laws()[static_cast<std::size_t>(selected_)];
+  if (selected.refuse == nullptr) return;
+  if (const char* reason = selected.refuse(gains_.now(), model_.size())) {
+    throw ConfigError(law + ": with the gains of robot.yaml: " + reason);
+  }
 }
 
 bool TorqueCycle::due(Term term) const noexcept {
@@ -80,16 +85,11 @@ void TorqueCycle::measure(const joint_state_t& message) noexcept {
 }
 
 void TorqueCycle::run(int law, bool from_here) noexcept {
-  const bool joints = follows_joints(entry().follows);
   running_ = law;
   switched_ = true;
   if (from_here) {
     goals_.reset(terms_.X_BT, state_.q);
     inverse_kinematics_.reset(state_.q);
-  } else if (!joints && follows_joints(entry().follows)) {
-    inverse_kinematics_.reset(state_.q);  // a goal at the tip, followed by the joints from now on
-  } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
-    goals_.follow_tip(goal_.X_BD);
   }
   match_goals();
   refresh_gains();
@@ -97,7 +97,9 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
 }
 
 const char* TorqueCycle::set_goal(const compliance_goal_t& message) noexcept {
-  const bool to_tip = message.kind != compliance_goal_t::GOAL_JOINT;
+  const bool to_tip = message.kind == compliance_goal_t::GOAL_WRENCH
+                          ? goals_.at_tip()
+                          : message.kind != compliance_goal_t::GOAL_JOINT;
   if (const char* reason = goals_.refuse(message, entry().follows)) return reason;
   if (follows_joints(entry().follows) && to_tip != goals_.at_tip()) {
     // The other kind of goal starts from where this one is.
@@ -124,7 +126,10 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
     if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
   }
 
-  if (asked_.settings != gains_.now().settings) switched_ = true;
+  const Gains& now = gains_.now();
+  if (asked_.settings != now.settings || asked_.M_x != now.M_x || asked_.M_q != now.M_q) {
+    switched_ = true;
+  }
   gains_.start(asked_, message.ramp_s);
   selected_ = law;
   // A law that follows the same kind of goal goes on with it.
