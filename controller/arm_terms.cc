@@ -140,4 +140,23 @@ Pose ArmModel::tip_pose(const VectorJ& q) noexcept {
   return pose_of(frame);
 }
 
+void ArmModel::inertia(const VectorJ& q, MatrixJ* M) noexcept {
+  solvers_->q.data = q;
+  solvers_->dynamics.JntToMass(solvers_->q, solvers_->M);
+  *M = solvers_->M.data;
+}
+
+void ArmModel::gravity(const VectorJ& q, VectorJ* g) noexcept {
+  solvers_->q.data = q;
+  solvers_->dynamics.JntToGravity(solvers_->q, solvers_->vector);
+  *g = solvers_->vector.data;
+}
+
+void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
+  terms->X_BT = tip_pose(q);
+  solvers_->jacobian.JntToJac(solvers_->q, solvers_->J);
+  terms->J = solvers_->J.data;
+  gravity(q, &terms->g);
+}
+
 }  // namespace limber::controller

@@ -47,6 +47,13 @@ class ArmModel {
   void evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;
   /// The tip's pose alone. May be called in the cycle.
   Pose tip_pose(const VectorJ& q) noexcept;
+  /// M alone, without rotors. May be called in the cycle.
+  void inertia(const VectorJ& q, MatrixJ* M) noexcept;
+  /// g alone. May be called in the cycle.
+  void gravity(const VectorJ& q, VectorJ* g) noexcept;
+  /// What torques at rest depend on, X_BT, J and g; the other terms stay as they are. May be called
+  /// in the cycle.
+  void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
   struct Solvers;

@@ -1,0 +1,22 @@
+#include "controller/observers/coriolis_transpose.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr double kStep = 1e-5;  // rad or m along v
+
+}  // namespace
+
+VectorJ coriolis_transpose(ArmModel* model, const ArmTerms& terms, const VectorJ& q,
+                           const VectorJ& v) noexcept {
+  const double speed = v.norm();
+  if (!(speed > 0.0)) return -terms.Cv;
+  const VectorJ step = (kStep / speed) * v;
+  MatrixJ ahead(v.size(), v.size());
+  MatrixJ behind(v.size(), v.size());
+  model->inertia(q + step, &ahead);
+  model->inertia(q - step, &behind);
+  return (0.5 * speed / kStep) * (ahead - behind) * v - terms.Cv;
+}
+
+}  // namespace limber::controller
