@@ -6,10 +6,11 @@
 //            frames), D14 = overload bits, D15 D16 = 0
 //   value    force = count / 50 N, torque = count / 2000 N m as delivered (model dependent)
 //
-// Identifiers as delivered: request 100, replies 1 and 2; 1 Mbit/s. Source: Robotous, RFT Series
-// Installation and Operation Manual, rev. 1.8, sections 3.4 to 3.7, and the overload bits of the
-// vendor's sample code. The series also streams by itself (0x0B); limber asks, so that a
-// measurement belongs to its cycle.
+// Identifiers as delivered: request 100, replies 1 and 2; 1 Mbit/s. Sources: Robotous, RFT Series
+// Installation and Operation Manual, rev. 1.8, sections 3.2 to 3.4 (commands, packets,
+// identifiers); the vendor's sample code for the CAN interface, rev. 1.2 (byte order, divisors,
+// overload bits). The series also streams by itself (0x0B); limber asks, so that a measurement
+// belongs to its cycle.
 #pragma once
 
 #include <array>

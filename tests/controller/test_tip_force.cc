@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "controller/laws/registry.h"
 #include "controller/observers/tip_force.h"
 #include "tests/support/allocation_counter.h"
 
@@ -157,6 +158,14 @@ TEST_F(TipForceTest, NanDoesNotPass) {
     EXPECT_FALSE(force.valid()) << i;
     EXPECT_EQ(force.F_ext(), Vector6::Zero()) << i;
   }
+}
+
+TEST_F(TipForceTest, TheRegistryKnowsIt) {
+  EXPECT_EQ(sensors_of(robot) & sensors::kTipForceSensor, 0U);  // no joints
+  robot.joints.resize(1);
+  EXPECT_NE(sensors_of(robot) & sensors::kTipForceSensor, 0U);
+  robot.has_tip_sensor = false;
+  EXPECT_EQ(sensors_of(robot) & sensors::kTipForceSensor, 0U);
 }
 
 TEST_F(TipForceTest, NeverAllocates) {

@@ -9,6 +9,7 @@
 #include "drivers/protocols/robotous_rft.h"
 #include "sim/nodes/tip_sensor_node.h"
 #include "sim/tip_load.h"
+#include "sim/world_event.h"
 #include "tests/sim/test_arms.h"
 
 namespace limber::sim {
@@ -245,6 +246,20 @@ TEST(TipSensorNode, NoiseFollowsSeedAndTimeAlone) {
   EXPECT_EQ(ask(&asked_often).F, F);
   EXPECT_EQ(ask(&asked_once).F, F);
   EXPECT_NE(ask(&other).F, F);
+}
+
+TEST(TipSensorFault, IsTakenOnlyWhereThereIsASensorAndOnlySilence) {
+  scenario_event_t event{};
+  event.kind = scenario_event_t::EVENT_FAULT;
+  event.joint = scenario_event_t::NODE_TIP_SENSOR;
+  event.duration_s = 0.5;
+  NodeFault fault;
+  EXPECT_FALSE(read_fault(event, 2, false, &fault));
+  ASSERT_TRUE(read_fault(event, 2, true, &fault));
+  EXPECT_EQ(fault.joint, int{scenario_event_t::NODE_TIP_SENSOR});
+  EXPECT_EQ(fault.duration_ns, 500'000'000);
+  event.fault = scenario_event_t::FAULT_FROZEN_ENCODER;
+  EXPECT_FALSE(read_fault(event, 2, true, &fault));
 }
 
 TEST(TipSensorNode, FallsSilentForATime) {
