@@ -39,7 +39,9 @@ int find_law(const std::string& name) noexcept {
 }
 
 unsigned sensors_of(const Robot& robot) noexcept {
-  return robot.size() > 0 ? sensors::kLinkEncoder | sensors::kMotorEncoder : 0U;
+  if (robot.size() == 0) return 0U;
+  return sensors::kLinkEncoder | sensors::kMotorEncoder |
+         (robot.has_tip_sensor ? sensors::kTipForceSensor : 0U);
 }
 
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
