@@ -19,7 +19,7 @@ InverseKinematics::InverseKinematics(const LoadedRobot& robot)
 
 void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
   const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
-  const Matrix6J J = rows.of(error.A * model_.jacobian(q_));
+  const Matrix6J J = rows.of(Matrix6J(error.A * model_.jacobian(q_)));
   VectorJ step = -damped_inverse(J, kSigma_0, kLambdaMax).inverse * error.e;
   const double longest = step.cwiseAbs().maxCoeff();
   if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;

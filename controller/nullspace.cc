@@ -19,8 +19,15 @@ Matrix6J TaskRows::of(Matrix6J J) const noexcept {
   return J;
 }
 
+Vector6 TaskRows::of(Vector6 F) const noexcept {
+  for (int i = 0; i < 6; ++i) {
+    if (!stiff[i]) F[i] = 0.0;
+  }
+  return F;
+}
+
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
-  const MatrixJ6 Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
+  const MatrixJ6 Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
   const TipMobility mobility = tip_mobility(rows.of(terms.J), Minv_JT);
   if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
   return damped_tip_inertia(mobility, mobility.threshold(lost_share));
@@ -33,7 +40,8 @@ MatrixJ null_space_projector(const ArmTerms& terms, const TaskRows& rows, Projec
   if (projector == Projector::kNone) return N;
   const Matrix6J J = rows.of(terms.J);
   MatrixJ6 Minv_JT = J.transpose();  // unit inertia
-  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
+  if (projector == Projector::kDynamic)
+    Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
   const TipMobility mobility = tip_mobility(J, Minv_JT);
   if (!(mobility.s[5] > 0.0)) return N;  // no task
   const Matrix6 inertia = damped_tip_inertia(mobility, mobility.threshold(lost_share));

@@ -19,6 +19,7 @@ struct TaskRows {
   int count() const noexcept;
   /// M with the rows that are not stiff set to zero.
   Matrix6J of(Matrix6J J) const noexcept;
+  Vector6 of(Vector6 F) const noexcept;
 
   bool stiff[6];
 };

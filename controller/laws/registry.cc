@@ -15,7 +15,8 @@
   LAW(pd_plus)               \
   LAW(joint_impedance)       \
   LAW(opspace_impedance)     \
-  LAW(accel_feedback)
+  LAW(accel_feedback)        \
+  LAW(admittance)
 
 namespace limber::controller {
 
