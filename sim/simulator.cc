@@ -11,7 +11,7 @@
 #include "sim/arm_plant.h"
 #include "sim/force_model.h"
 #include "sim/inbox.h"
-#include "sim/nodes/damiao_node.h"
+#include "sim/nodes/motor_node.h"
 #include "sim/tick_count.h"
 #include "sim/truth.h"
 #include "sim/world_event.h"
@@ -90,7 +90,7 @@ struct Simulator::Impl {
 
   std::unique_ptr<sim::ArmPlant> plant;
   sim::ForceModel forces;
-  std::vector<sim::DamiaoNode> nodes;
+  std::vector<std::unique_ptr<sim::MotorNode>> nodes;
   std::vector<int> node_bus;
   std::vector<sim::Inbox> inboxes;
   sim::TickCount ticks;
@@ -131,7 +131,7 @@ Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buse
   for (CanBus* bus : buses) inboxes.emplace_back(bus);
   for (const JointConfig& joint : robot.robot.joints) {
     node_bus.push_back(joint.drive.bus);
-    nodes.emplace_back(joint, robot.robot.buses[joint.drive.bus].fd);
+    nodes.push_back(sim::make_motor_node(joint, robot.robot.buses[joint.drive.bus].fd));
   }
   for (int i = 0; stand && i < robot.robot.size(); ++i) {
     forces.stands[i] = sim::Stand(robot.robot.joints[i], plant->q()[i]);
@@ -171,7 +171,7 @@ bool Simulator::Impl::poll() noexcept {
 void Simulator::Impl::on_frame(int bus, const CanFrame& frame) noexcept {
   CanFrame reply;
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
-    if (node_bus[i] == bus && nodes[i].receive(frame, reading(i), sim_time(steps), &reply)) {
+    if (node_bus[i] == bus && nodes[i]->receive(frame, reading(i), sim_time(steps), &reply)) {
       inboxes[bus].bus()->send(reply);
     }
   }
@@ -198,7 +198,7 @@ bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
 }
 
 void Simulator::Impl::advance_step() noexcept {
-  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i].law();
+  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i]->law();
   const std::int64_t now = sim_time(steps);
   const std::int64_t next = sim_time(steps + 1);
   if (stand) update_stand(now);
@@ -206,13 +206,12 @@ void Simulator::Impl::advance_step() noexcept {
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant->step(&forces, step_s, now + (next - now) / 2);
   ++steps;
-  for (sim::DamiaoNode& node : nodes) node.update(next);
+  for (const auto& node : nodes) node->update(next);
 }
 
 void Simulator::Impl::update_stand(std::int64_t now_ns) noexcept {
-  const bool enabled = std::all_of(nodes.begin(), nodes.end(), [](const sim::DamiaoNode& node) {
-    return node.state() == mit::DriveError::kEnabled;
-  });
+  const bool enabled =
+      std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node->enabled(); });
   const double left = stand_fade.left(now_ns, enabled);
   for (std::size_t i = 0; i < nodes.size(); ++i) forces.stands[i].set_left(left);
   stand = left > 0.0;
@@ -235,7 +234,7 @@ void Simulator::Impl::clear_world() noexcept {
   forces.environment.wall = sim::Wall();
   forces.environment.pushes.clear();
   plant->set_payload(0.0, Eigen::Vector3d::Zero());
-  for (sim::DamiaoNode& node : nodes) node.clear_faults();
+  for (const auto& node : nodes) node->clear_faults();
 }
 
 bool Simulator::Impl::push(const push_t& message) noexcept {
@@ -258,7 +257,7 @@ bool Simulator::Impl::event(const scenario_event_t& message) noexcept {
       if (!sim::read_fault(message, plant->arm().size(), &fault)) return false;
       const std::int64_t now = sim_time(steps);
       constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
-      nodes[fault.joint].inject(
+      nodes[fault.joint]->inject(
           fault.fault, reading(fault.joint),
           fault.duration_ns > kForEver - now ? kForEver : now + fault.duration_ns);
       return true;

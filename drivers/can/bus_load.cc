@@ -6,8 +6,6 @@
 namespace limber {
 namespace {
 
-constexpr int kCommandBytes = 8;
-constexpr int kReplyBytes = 8;
 constexpr int kTrailerBits =
     13;  // CRC delimiter, acknowledge slot and delimiter, end of frame, gap
 constexpr int kFdStuffCountBits = 4;  // three bits of count and their parity
@@ -93,8 +91,9 @@ double busy_time_s(const Robot& robot, int bus) noexcept {
   double busy_s = 0.0;
   for (const JointConfig& joint : robot.joints) {
     if (joint.drive.bus != bus) continue;
-    busy_s +=
-        time_s(kCommandBytes, joint.drive.command_id) + time_s(kReplyBytes, joint.drive.reply_id);
+    const DriveConfig& drive = joint.drive;
+    busy_s += time_s(drive.command_bytes, drive.command_id);
+    busy_s += time_s(drive.reply_bytes, drive.reply_id);
   }
   return busy_s;
 }
