@@ -130,7 +130,7 @@ void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noex
     return;
   }
   const auto drive = std::find_if(drives.begin(), drives.end(), [&](const Drive& candidate) {
-    return candidate.bus() == bus && candidate.reply_id() == frame.id && !frame.extended;
+    return candidate.bus() == bus && has_id(frame, candidate.link().joint().drive.reply_id);
   });
   if (drive == drives.end()) {
     end.count_foreign();
