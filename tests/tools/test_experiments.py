@@ -100,8 +100,12 @@ def test_a_failure_does_not_leave_the_success_of_before(write, experiment, tmp_p
 
 @pytest.mark.parametrize(
     ("body", "complaint"),
-    [("pass", "drew nothing"), ("return []", "at least one"), ("return [1]", "list of Check")]
-    + [(f"{DRAW}\n    return 2 * [Check('a', 1, 1, 'N', 0)]", "two checks are named 'a'")],
+    [
+        ("pass", "drew nothing"),
+        ("return []", "at least one"),
+        ("return [1]", "list of Check"),
+        (f"{DRAW}\n    return 2 * [Check('a', 1, 1, 'N', 0)]", "two checks are named 'a'"),
+    ],
 )
 def test_half_an_experiment_is_an_error(write, experiment, body, complaint):
     write("E01_half", body=body)
