@@ -1,5 +1,7 @@
 """Reduced plants: one mass, written so that each equation can be read, and exact where linear."""
 
+import math
+
 import numpy as np
 from scipy.linalg import expm
 
@@ -34,3 +36,21 @@ def with_delay(A: np.ndarray, B: np.ndarray, samples: int) -> tuple[np.ndarray, 
 def growth(A: np.ndarray) -> float:
     """Largest factor by which a motion of x⁺ = A x grows in one step: stable below 1."""
     return float(np.abs(np.linalg.eigvals(A)).max())
+
+
+def coulomb_step(
+    x: float, v: float, F: float, F_c: float, m: float, T: float
+) -> tuple[float, float]:
+    """m ẍ = F - F_c sign(ẋ) over T with F held, exactly: the mass may stop and stick or turn."""
+    left = T
+    while left > 0.0:
+        if v == 0.0 and abs(F) <= F_c:
+            return x, 0.0
+        direction = math.copysign(1.0, v if v != 0.0 else F)
+        a = (F - F_c * direction) / m
+        stops = -v / a if v * a < 0.0 else math.inf
+        step = min(left, stops)
+        x += v * step + a * step**2 / 2
+        v = 0.0 if stops <= left else v + a * step
+        left -= step
+    return x, v
