@@ -44,7 +44,7 @@ def page(
 ) -> str:
     parts = {
         "SUMMARY": _summary(experiments, results),
-        "CLAIMS": _claims(sections, claims, results),
+        "CLAIMS": _claims(sections, claims, results) + _others(claims, experiments, results),
         "DETAILS": _details(sections, experiments, results),
     }
     filled = (ASSETS / "report.html").read_text(encoding="utf-8")
@@ -72,6 +72,21 @@ def _claims(sections: dict[str, str], claims: list[Claim], results: dict[str, Me
         rows.append(f'<tr class="section"><th colspan="3">{text(section)} {text(title)}</th></tr>')
         rows += [_claim(claim, results) for claim in claims if claim.section == section]
     return "\n".join(rows)
+
+
+def _others(
+    claims: list[Claim], experiments: list[Experiment], results: dict[str, Measured]
+) -> str:
+    """What was measured on top of the lecture's claims."""
+    named = {key for claim in claims for key in claim.shown_by}
+    rows = [
+        f"<tr><td>{text(item.claim)}.</td><td></td>"
+        f"<td>{_evidence(item.id, '', results[item.id])}</td></tr>"
+        for item in experiments
+        if item.id in results and item.id not in named
+    ]
+    title = '<tr class="section"><th colspan="3">Not in the lecture, but needed</th></tr>'
+    return "\n".join([title, *rows]) if rows else ""
 
 
 def _claim(claim: Claim, results: dict[str, Measured]) -> str:
@@ -112,7 +127,7 @@ def _detail(experiment: Experiment, result: Measured) -> str:
     title, section = text(experiment.title), text(experiment.section)
     return (
         f'<section id="{experiment.id}"><h2>{experiment.id} {title}</h2>'
-        f'<p class="claim">Lecture, section {section}: {text(experiment.claim)}.</p>'
+        f'<p class="claim">Section {section}: {text(experiment.claim)}.</p>'
         f'<img alt="{title}" src="data:image/png;base64,{image}">'
         f'<p class="plant">Measured on: {text(experiment.plant)}. '
         f"{result.good} of {len(result.rows)} numbers within tolerance.</p>"
