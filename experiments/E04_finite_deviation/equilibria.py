@@ -1,31 +1,54 @@
 """Where a form of Eq. 7 comes to rest under a force, and beyond which force it does not."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from limber.errors import RunError
 from limber.experiments import planar2r as arm
 from limber.experiments.context import Context
 
-from .laws import ALONG, P_D, Form, asked, closed, name
+from .laws import ALONG, P_D, Form, asked, closed
 
 STEP = 1e-5  # rad, of differences
 
 
-def equilibrium(context: Context, form: Form, force: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """Newton on τ(q) + Jᵀ F = 0 with differences of the controller's torques."""
-    q = start
+@dataclass(frozen=True)
+class Task:
+    """A form of Eq. 7 under a force on the tip, N, and where to start looking."""
+
+    form: Form
+    force: np.ndarray
+    start: np.ndarray
+
+
+def rests(context: Context, tasks: list[Task]) -> list[np.ndarray]:
+    """Newton on τ(q) + Jᵀ F = 0 for all tasks at once; NaN where it does not settle."""
+    poses = [task.start for task in tasks]
+    moving = list(range(len(tasks)))
     for _ in range(12):
-        axes = np.vstack([np.zeros(2), STEP * np.eye(2), -STEP * np.eye(2)])
-        tau = asked(context, [(form, q + axis) for axis in axes])
-        total = [t + arm.jacobian(q + a).T @ force for t, a in zip(tau, axes, strict=True)]
+        steps = newton_steps(context, [(tasks[i], poses[i]) for i in moving])
+        for i, step in zip(moving, steps, strict=True):
+            poses[i] = poses[i] - step
+        sizes = [np.abs(step).max() for step in steps]
+        moving = [i for i, size in zip(moving, sizes, strict=True) if size > 1e-9]
+        if not moving:
+            return poses
+    return [q if i not in moving else q * np.nan for i, q in enumerate(poses)]
+
+
+def newton_steps(context: Context, at: list[tuple[Task, np.ndarray]]) -> list[np.ndarray]:
+    """With differences of the controller's torques. A step beyond half a radian is no step: NaN."""
+    axes = np.vstack([np.zeros(2), STEP * np.eye(2), -STEP * np.eye(2)])
+    points = [(task, q + axis) for task, q in at for axis in axes]
+    torques = asked(context, [(task.form, q) for task, q in points])
+    pushed = [arm.jacobian(q).T @ task.force for task, q in points]
+    totals = (torques + np.array(pushed)).reshape(len(at), len(axes), 2)
+    steps = []
+    for total in totals:
         slope = np.column_stack([total[1] - total[3], total[2] - total[4]]) / (2 * STEP)
-        step = np.linalg.solve(slope, total[0])
-        if not np.all(np.isfinite(step)) or np.abs(step).max() > 0.5:
-            break
-        q = q - step
-        if np.abs(step).max() < 1e-9:
-            return q
-    raise RunError(f"{name(form)} finds no rest under {np.linalg.norm(force):.3g} N")
+        step = np.linalg.lstsq(slope, total[0], rcond=None)[0]
+        steps.append(step if np.abs(step).max() < 0.5 else step * np.nan)
+    return steps
 
 
 def carried(context: Context, form: Form, beyond: float) -> np.ndarray:
@@ -35,22 +58,13 @@ def carried(context: Context, form: Form, beyond: float) -> np.ndarray:
     q, load, step = arm.inverse(P_D), 0.0, beyond / 12
     found = [(0.0, 0.0)]
     while step > beyond * 5e-3:
-        try:
-            q = equilibrium(context, form, (load + step) * ALONG, q)
-        except (RunError, np.linalg.LinAlgError):
+        (next_q,) = rests(context, [Task(form, (load + step) * ALONG, q)])
+        if np.isnan(next_q).any():
             step /= 2
             continue
-        load += step
+        q, load = next_q, load + step
         found.append((float((arm.tip(q) - P_D) @ ALONG), load))
     return np.array(found)
-
-
-def rest(context: Context, form: Form, load: float) -> np.ndarray:
-    """The rest that grows out of the target with the load."""
-    q = arm.inverse(P_D)
-    for part in np.linspace(0.25, 1.0, 4):
-        q = equilibrium(context, form, part * load * ALONG, q)
-    return q
 
 
 def closed_curve(form: Form, reach: float) -> np.ndarray:

@@ -6,7 +6,7 @@ from limber.experiments import planar2r as arm
 from limber.experiments.check import Check
 from limber.experiments.context import Context
 
-from .equilibria import carried, closed_curve, equilibrium, rest
+from .equilibria import Task, carried, closed_curve, rests
 from .laws import ALONG, CONSERVATIVE, DIRECT, ORDERS, P_D, Form, K, asked, closed, force_at, name
 
 PUSH_N = 0.05
@@ -68,28 +68,27 @@ def incremental(context: Context) -> list[Check]:
     """At 10 cm: J⁻ᵀ(K_q - K_G)J⁻¹, K_q the tangent of the form, against ±0.05 N put on top."""
     q = arm.inverse(P_D + 0.1 * ALONG)
     inverse = np.linalg.inv(arm.jacobian(q))
+    external = {form: -force_at(q, closed(form, q)) for form in FORMS}
+    measured = felt_stiffness(context, external, q)
     found = []
     for form in FORMS:
-        external = -force_at(q, closed(form, q))
         tangent = -arm.derivative(lambda x, form=form: closed(form, x), q)
-        felt = inverse.T @ (tangent - arm.geometric(q, external)) @ inverse
-        measured = felt_stiffness(context, form, q, external)
+        felt = inverse.T @ (tangent - arm.geometric(q, external[form])) @ inverse
         title = f"stiffness felt at 10 cm along the deviation, {name(form)}"
-        along = float(ALONG @ felt @ ALONG), float(ALONG @ measured @ ALONG)
+        along = float(ALONG @ felt @ ALONG), float(ALONG @ measured[form] @ ALONG)
         found.append(Check(title, *along, "N/m", 0.02))
     return found
 
 
-def felt_stiffness(context: Context, form: Form, q: np.ndarray, external: np.ndarray) -> np.ndarray:
-    """Pushes the resting arm by ±0.05 N along each axis, and solves for where it comes to rest."""
-    moved = []
-    for axis in np.eye(2):
-        ends = [
-            arm.tip(equilibrium(context, form, external + push * axis, q))
-            for push in (PUSH_N, -PUSH_N)
-        ]
-        moved.append(ends[0] - ends[1])
-    return 2 * PUSH_N * np.linalg.inv(np.column_stack(moved))
+def felt_stiffness(
+    context: Context, external: dict[Form, np.ndarray], q: np.ndarray
+) -> dict[Form, np.ndarray]:
+    """Pushes the resting arm by a little along both axes, and solves for where it comes to rest."""
+    pushes = PUSH_N * np.vstack([np.eye(2), -np.eye(2)])
+    tasks = [Task(form, force + push, q) for form, force in external.items() for push in pushes]
+    tips = np.array([arm.tip(pose) for pose in rests(context, tasks)]).reshape(-1, 4, 2)
+    moved = (tips[:, :2] - tips[:, 2:]) / (2 * PUSH_N)
+    return {form: np.linalg.inv(m.T) for form, m in zip(external, moved, strict=True)}
 
 
 def circle_work(context: Context) -> list[Check]:
@@ -135,7 +134,8 @@ def limit_load(context: Context) -> list[Check]:
     predicted = float(closed_curve(form, 0.15)[:, 1].max())
     measured = float(carried(context, form, 1.2 * predicted)[-1, 1])
     twice = 2 * predicted
-    away = np.linalg.norm(arm.tip(rest(context, DIRECT, twice)) - P_D)
+    (pose,) = rests(context, [Task(DIRECT, twice * ALONG, arm.inverse(P_D + 0.1 * ALONG))])
+    away = float(np.linalg.norm(arm.tip(pose) - P_D))
     return [
         Check("limit load of full at current", predicted, measured, "N", 0.05),
         Check("deviation of the direct law under twice that", twice / K[0, 0], away, "m", 1e-6),
