@@ -65,9 +65,10 @@ def draw(context: Context) -> None:
         ax.plot(sweep, points, **MEASURED, color=BLUE, label="frequency sweep")
         for m, color in ((0.002, ORANGE), (0.01, GREEN), (2.0, AMBER)):
             limits = [wall.stiffest(T, m, b, value) * 1e-3 for value in B]
-            name = f"held by a hand of {m * 1e3:g} g: stable below"
+            name = f"stable below, with a mass of {m * 1e3:g} g"
             ax.plot(B, limits, "--", color=color, label=name)
-            ax.plot(0, free_mass_limit(m) * 1e-3, "s", color=color)
+            label = "formula for B = 0" if m == 2.0 else None
+            ax.plot(0, free_mass_limit(m) * 1e-3, "s", color=color, label=label)
         ax.annotate("safe with every passive partner", (0, 3.2), ha="center", color=BLACK)
         ax.set_ylim(0, 25)
         ax.set_xlabel("damping of the virtual wall, B (N s/m)")

@@ -26,6 +26,7 @@ claims:
   - {section: "1", claim: c1, verdict: holds, because: b1, shown_by: {E01: ""}}
   - {section: "2", claim: c2, verdict: does not hold, because: b2, shown_by: {E02: a num}}
   - {section: "2", claim: c3, verdict: holds with limits, because: b3, shown_by: {E77: ""}}
+  - {section: "2", claim: c4, verdict: holds, because: b4, shown_by: {E01: "", E77: ""}}
 """
 
 
@@ -155,7 +156,7 @@ def test_the_report_holds_everything_itself(write, experiment, tmp_path):
     assert page.count("data:image/png;base64,") == 2
     assert "Title &lt;b&gt;" in page
     verdicts = re.findall(r'<span class="[a-z-]+">([^<]*)</span>', page)
-    assert verdicts == ["holds", "not confirmed", "not yet measured"]
+    assert verdicts == ["holds", "not confirmed", "not yet measured", "partly measured"]
 
 
 def test_a_report_of_nothing_is_refused(write, experiment):

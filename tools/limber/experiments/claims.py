@@ -11,7 +11,7 @@ from limber.experiments.run import ABOUT, RESULT
 from limber.robot import read_yaml
 
 VERDICTS = ("holds", "holds with limits", "does not hold")
-NOT_MEASURED, NOT_CONFIRMED = "not yet measured", "not confirmed"
+NOT_MEASURED, PARTLY, NOT_CONFIRMED = "not yet measured", "partly measured", "not confirmed"
 
 
 @dataclass(frozen=True)
@@ -77,11 +77,13 @@ def load_results(out: Path, experiments: list[Experiment]) -> dict[str, Measured
 
 
 def verdict(claim: Claim, results: dict[str, Measured]) -> str:
-    """The claim's own verdict stands as long as nothing measured contradicts it."""
+    """The claim's own verdict stands when all of its experiments have been run and agree."""
     there = [results[key] for key in claim.shown_by if key in results]
     if not there:
         return NOT_MEASURED
-    return claim.verdict if all(result.passed for result in there) else NOT_CONFIRMED
+    if not all(result.passed for result in there):
+        return NOT_CONFIRMED
+    return claim.verdict if len(there) == len(claim.shown_by) else PARTLY
 
 
 def shown(rows: list[dict[str, Any]], start: str) -> dict[str, Any]:

@@ -86,7 +86,13 @@ def table(rows: list[dict], title: str) -> Table:
 
 
 def number(value: float | None, unit: str) -> str:
-    return f"{value:.4g} {unit}".strip() if value is not None else "not a number"
+    """Four digits; 209 600 rather than 2.096e+05."""
+    if value is None:
+        return "not a number"
+    rounded = float(f"{value:.4g}")
+    large = 1e4 <= abs(rounded) < 1e7
+    digits = f"{rounded:,.0f}".replace(",", "\u202f") if large else f"{value:.4g}"
+    return f"{digits} {unit}".strip()
 
 
 def tolerance(row: dict) -> str:
