@@ -34,7 +34,7 @@ def name(form: Form) -> str:
 
 def asked(context: Context, pairs: list[tuple[Form, np.ndarray]]) -> np.ndarray:
     """Torques of the controller's laws, one row a pair of form and pose."""
-    rest = {"v": [0.0, 0.0], "p_d": P_D, "Kx": K, "Dx": np.zeros((2, 2)), "bias": "none"}
+    rest = {"v": [0.0, 0.0], "p_d": P_D, "Kx": K, "Dx": np.eye(2), "bias": "none"}
     cases = []
     for form, q in pairs:
         if form == DIRECT:

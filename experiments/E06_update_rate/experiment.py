@@ -85,7 +85,7 @@ def torque_errors(context: Context, holds: np.ndarray) -> tuple[list[float], lis
             v=[0.0, 0.0],
             p_d=TARGET,
             Kx=K,
-            Dx=np.zeros((2, 2)),
+            Dx=np.eye(2),
             bias="none",
             mode="log",
             F_ff=[0.0, 0.0],

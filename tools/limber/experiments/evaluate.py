@@ -14,7 +14,8 @@ TIMEOUT_S = 300.0
 
 def case(law: str, robot: str = "", **inputs: Any) -> dict[str, Any]:
     """One question: the law by its name, the robot's name where it needs one, SI units."""
-    return {"law": law, "robot": robot, "in": {key: _plain(value) for key, value in inputs.items()}}
+    arm = {"robot": robot} if robot else {}
+    return {"law": law, **arm, "in": {key: _plain(value) for key, value in inputs.items()}}
 
 
 def evaluate(cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
