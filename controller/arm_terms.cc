@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 #include <string>
@@ -62,22 +63,33 @@ struct ArmModel::Solvers {
         jacobian(chain),
         jacobian_rate(chain),
         dynamics(chain, gravity),
+        newton_euler(chain, gravity),
         q(chain.getNrOfJoints()),
         qv(chain.getNrOfJoints()),
         vector(chain.getNrOfJoints()),
         J(chain.getNrOfJoints()),
-        M(chain.getNrOfJoints()) {}
+        a(chain.getNrOfJoints()),
+        M(chain.getNrOfJoints()),
+        no_wrench(chain.getNrOfSegments(), KDL::Wrench::Zero()) {}
 
   KDL::Chain chain;  // the solvers keep references to it
   KDL::ChainFkSolverPos_recursive position;
   KDL::ChainJntToJacSolver jacobian;
   KDL::ChainJntToJacDotSolver jacobian_rate;
   KDL::ChainDynParam dynamics;
+  KDL::ChainIdSolver_RNE newton_euler;
   KDL::JntArray q;
   KDL::JntArrayVel qv;
   KDL::JntArray vector;
   KDL::Jacobian J;
+  KDL::JntArray a;
   KDL::JntSpaceInertiaMatrix M;
+  KDL::Wrenches no_wrench;
+  int error = 0;  // the first KDL reported
+
+  void note(int code) noexcept {
+    if (error == 0) error = code;
+  }
 };
 
 ArmModel::ArmModel(const KDL::Chain& chain, const double gravity[3],
@@ -86,11 +98,13 @@ ArmModel::ArmModel(const KDL::Chain& chain, const double gravity[3],
       rotor_inertia_(Eigen::Map<const Eigen::VectorXd>(rotor_inertia.data(), size_)),
       solvers_(std::make_unique<Solvers>(chain, KDL::Vector(gravity[0], gravity[1], gravity[2]))) {
   ArmTerms probe(size_);
+  const VectorJ zero = VectorJ::Zero(size_);
+  evaluate(zero, zero, &probe);
+  inverse_dynamics(zero, zero, zero);
   // KDL's error codes come from sizes and structure alone: right here, right for ever.
-  const int error = evaluate_kdl(VectorJ::Zero(size_), VectorJ::Zero(size_), &probe);
-  if (error != KDL::SolverI::E_NOERROR) {
-    throw ConfigError("the kinematic chain cannot be solved (KDL error " + std::to_string(error) +
-                      ")");
+  if (solvers_->error != KDL::SolverI::E_NOERROR) {
+    throw ConfigError("the kinematic chain cannot be solved (KDL error " +
+                      std::to_string(solvers_->error) + ")");
   }
 }
 
@@ -99,45 +113,87 @@ ArmModel::ArmModel(const LoadedRobot& robot)
 
 ArmModel::~ArmModel() = default;
 
-int ArmModel::evaluate_kdl(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.qv.q.data = q;
-  s.qv.qdot.data = v;
-
-  KDL::Frame frame;
-  int error = s.position.JntToCart(s.q, frame);
-  terms->X_BT = pose_of(frame);
-  if (error == 0) error = s.jacobian.JntToJac(s.q, s.J);
-  terms->J = s.J.data;
-  KDL::Twist jdot_v;
-  if (error == 0) error = s.jacobian_rate.JntToJacDot(s.qv, jdot_v);
-  terms->Jdot_v = six(jdot_v);
-
-  if (error == 0) error = s.dynamics.JntToMass(s.q, s.M);
-  terms->M = s.M.data;
-  if (error == 0) error = s.dynamics.JntToCoriolis(s.q, s.qv.qdot, s.vector);
-  terms->Cv = s.vector.data;
-  if (error == 0) error = s.dynamics.JntToGravity(s.q, s.vector);
-  terms->g = s.vector.data;
-  return error;
+void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept {
+  evaluate(q, v, TermsDue{}, terms);
 }
 
-void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept {
-  evaluate_kdl(q, v, terms);
+void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
+                        ArmTerms* terms) noexcept {
+  Solvers& s = *solvers_;
+  terms->X_BT = tip_pose(q);
+  if (due.jacobian) {
+    terms->J = jacobian(q);
+    s.qv.q.data = q;
+    s.qv.qdot.data = v;
+    KDL::Twist jdot_v;
+    s.note(s.jacobian_rate.JntToJacDot(s.qv, jdot_v));
+    terms->Jdot_v = six(jdot_v);
+  }
   terms->V_BT.noalias() = terms->J * v;
-  terms->B = rotor_inertia_;
-  terms->M_total = terms->M;
-  terms->M_total.diagonal() += terms->B;
-  terms->Minv_JT = terms->J.transpose();
-  terms->M_total.llt().solveInPlace(terms->Minv_JT);
+  if (due.inertia) {
+    terms->M = mass(q);
+    terms->B = rotor_inertia_;
+    terms->M_total = terms->M;
+    terms->M_total.diagonal() += terms->B;
+  }
+  if (due.inertia || due.jacobian) {
+    terms->Minv_JT = terms->J.transpose();
+    terms->M_total.llt().solveInPlace(terms->Minv_JT);
+  }
+  if (due.coriolis) terms->Cv = coriolis(q, v);
+  terms->g = gravity(q);
 }
 
 Pose ArmModel::tip_pose(const VectorJ& q) noexcept {
-  solvers_->q.data = q;
+  Solvers& s = *solvers_;
+  s.q.data = q;
   KDL::Frame frame;
-  solvers_->position.JntToCart(solvers_->q, frame);
+  s.note(s.position.JntToCart(s.q, frame));
   return pose_of(frame);
+}
+
+Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.note(s.jacobian.JntToJac(s.q, s.J));
+  return s.J.data;
+}
+
+MatrixJ ArmModel::mass(const VectorJ& q) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.note(s.dynamics.JntToMass(s.q, s.M));
+  return s.M.data;
+}
+
+VectorJ ArmModel::coriolis(const VectorJ& q, const VectorJ& v) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.qv.qdot.data = v;
+  s.note(s.dynamics.JntToCoriolis(s.q, s.qv.qdot, s.vector));
+  return s.vector.data;
+}
+
+VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.qv.qdot.data = v;
+  s.a.data = a;
+  s.note(s.newton_euler.CartToJnt(s.q, s.qv.qdot, s.a, s.no_wrench, s.vector));
+  return s.vector.data + rotor_inertia_.cwiseProduct(a);
+}
+
+VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.note(s.dynamics.JntToGravity(s.q, s.vector));
+  return s.vector.data;
+}
+
+void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
+  terms->X_BT = tip_pose(q);
+  terms->J = jacobian(q);
+  terms->g = gravity(q);
 }
 
 }  // namespace limber::controller

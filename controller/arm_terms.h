@@ -30,6 +30,13 @@ struct ArmTerms {
   double kinetic_energy(const VectorJ& v) const noexcept { return 0.5 * v.dot(M_total * v); }
 };
 
+/// What is to be evaluated anew in a cycle.
+struct TermsDue {
+  bool jacobian = true;  ///< J, Jdot_v
+  bool inertia = true;   ///< M, M_total, Minv_JT
+  bool coriolis = true;  ///< Cv
+};
+
 /// Computes the terms; the only place that knows KDL's solvers.
 class ArmModel {
  public:
@@ -45,12 +52,26 @@ class ArmModel {
 
   /// All terms at (q, v), both of length size(). May be called in the cycle.
   void evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;
-  /// The tip's pose alone. May be called in the cycle.
+  /// Only what is due; the rest stays as it was evaluated last. The tip's pose, V_BT = J v and
+  /// gravity are always of this instant. May be called in the cycle.
+  void evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due, ArmTerms* terms) noexcept;
+
+  // Single terms, for laws that look at other states than the present one. All may be called in
+  // the cycle.
   Pose tip_pose(const VectorJ& q) noexcept;
+  Matrix6J jacobian(const VectorJ& q) noexcept;
+  MatrixJ mass(const VectorJ& q) noexcept;
+  /// C(q, v) v.
+  VectorJ coriolis(const VectorJ& q, const VectorJ& v) noexcept;
+  /// (M + diag(B)) a + C v + g by recursive Newton-Euler (Luh, Walker, Paul 1980).
+  VectorJ inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept;
+  /// Torque that holds the arm still, g.
+  VectorJ gravity(const VectorJ& q) noexcept;
+  /// What torques at rest depend on, X_BT, J and g; the other terms stay as they are.
+  void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
   struct Solvers;
-  int evaluate_kdl(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;
 
   int size_;
   VectorJ rotor_inertia_;

@@ -22,31 +22,92 @@ double fade(double stiffness, double end) noexcept {
   return left * left;
 }
 
-}  // namespace
-
-MatrixJ joint_damping(const MatrixJ& M, const VectorJ& K, double ratio) noexcept {
-  const Eigen::LLT<MatrixJ> cholesky(M);
-  // S = A A^T with A = L^-1 sqrt(K)
-  MatrixJ A = K.cwiseSqrt().asDiagonal().toDenseMatrix();
-  cholesky.matrixL().solveInPlace(A);
-  const MatrixJ S = A * A.transpose();
-  const Eigen::SelfAdjointEigenSolver<MatrixJ> eigen(S);
-  const MatrixJ LU = cholesky.matrixL() * eigen.eigenvectors();
-  const VectorJ modal = 2.0 * ratio * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return LU * modal.asDiagonal() * LU.transpose();
+template <typename Matrix>
+Matrix root(const Matrix& K) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(0.5 * (K + K.transpose()));
+  const Matrix& V = eigen.eigenvectors();
+  return V * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * V.transpose();
 }
 
-Matrix6 tip_damping(const TipMobility& mobility, const Matrix6& K, double ratio) noexcept {
-  const double threshold = mobility.threshold(kOutOfReach);
-  const Vector6 root = mobility.s.cwiseSqrt();
-  const Vector6 inverse_root = root.cwiseQuotient(mobility.s.cwiseMax(threshold));
-  const Matrix6 L = mobility.S.cwiseInverse().asDiagonal() * mobility.U * root.asDiagonal();
-  const Matrix6 S = L.transpose() * K * L;
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(0.5 * (S + S.transpose()));
-  const Matrix6 Q =
-      mobility.S.asDiagonal() * mobility.U * inverse_root.asDiagonal() * eigen.eigenvectors();
-  const Vector6 modal = 2.0 * ratio * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return Q * modal.asDiagonal() * Q.transpose();
+template <typename Matrix>
+Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
+  const Matrix product = root(M) * root(K);
+  return ratio * (product + product.transpose());
+}
+
+// M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
+template <typename Matrix>
+Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
+  const Eigen::LLT<Matrix> cholesky(M);
+  Matrix S = K;
+  cholesky.matrixL().solveInPlace(S);
+  S.transposeInPlace();
+  cholesky.matrixL().solveInPlace(S);
+  const Matrix L = cholesky.matrixL();
+  return 2.0 * ratio * L * root(S) * L.transpose();
+}
+
+// L with G = L L^T over the directions within reach, and its pseudo-inverse transposed.
+struct Reach {
+  explicit Reach(const TipMobility& mobility) noexcept {
+    const Vector6 root = mobility.s.cwiseSqrt();
+    const Vector6 inverse =
+        root.cwiseQuotient(mobility.s.cwiseMax(mobility.threshold(kOutOfReach)));
+    L = mobility.S.cwiseInverse().asDiagonal() * mobility.U * root.asDiagonal();
+    inverse_transpose = mobility.S.asDiagonal() * mobility.U * inverse.asDiagonal();
+  }
+  Matrix6 L;
+  Matrix6 inverse_transpose;
+};
+
+}  // namespace
+
+MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
+                      double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation:
+      return doubly_diagonalised<MatrixJ>(M, K, ratio);
+    case DampingDesign::kFactorisation:
+      return factorised<MatrixJ>(M, K, ratio);
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<MatrixJ>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return MatrixJ::Zero(K.rows(), K.cols());
+}
+
+Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
+                    double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation: {
+      const Reach reach(mobility);
+      const Matrix6 D = reach.inverse_transpose * root<Matrix6>(reach.L.transpose() * K * reach.L) *
+                        reach.inverse_transpose.transpose();
+      return 2.0 * ratio * D;
+    }
+    case DampingDesign::kFactorisation: {
+      const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
+      return factorised<Matrix6>(Lambda, K, ratio);
+    }
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<Matrix6>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return Matrix6::Zero();
+}
+
+Matrix6 inertia_damping(const Matrix6& M_d, const Matrix6& K, double ratio) noexcept {
+  return doubly_diagonalised<Matrix6>(M_d, K, ratio);
+}
+
+Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {
+  const Reach reach(mobility);
+  const Matrix6 S = reach.L.transpose() * K * reach.L;
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(0.5 * (S + S.transpose()),
+                                                     Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().cwiseMax(0.0);
 }
 
 Matrix6 tip_damping_floor(const Matrix6& K) noexcept {
@@ -62,10 +123,10 @@ Matrix6 tip_damping_floor(const Matrix6& K) noexcept {
   return directions * weight.asDiagonal() * directions.transpose();
 }
 
-VectorJ joint_damping_floor(const MatrixJ& M, const VectorJ& K) noexcept {
-  VectorJ floor = VectorJ::Zero(K.size());
-  for (Eigen::Index i = 0; i < K.size(); ++i) {
-    floor[i] = fade(K[i], kJointFloorFadesAt) * M(i, i) / kJointFloorTime_s;
+VectorJ joint_damping_floor(const MatrixJ& M, const MatrixJ& K) noexcept {
+  VectorJ floor = VectorJ::Zero(K.rows());
+  for (Eigen::Index i = 0; i < K.rows(); ++i) {
+    floor[i] = fade(K(i, i), kJointFloorFadesAt) * M(i, i) / kJointFloorTime_s;
   }
   return floor;
 }

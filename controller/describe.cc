@@ -24,17 +24,24 @@ void TorqueCycle::describe(controller_status_t* status) noexcept {
   status->law = static_cast<std::int8_t>(selected_);
   status->num_joints = static_cast<std::int8_t>(model_.size());
   status->limits = limits_active_;
-  // A law that follows joints has its goal at the tip too.
-  const Pose X_BD = entry().follows == Follows::kJointGoal ? model_.tip_pose(goals_.goal().q_d)
-                                                           : goals_.goal().X_BD;
-  write(terms_.X_BT, status->p_BT, status->quat_BT);
-  write(terms_.V_BT, status->V_BT);
-  write(X_BD, status->p_BD, status->quat_BD);
-  write(pose_error(terms_.X_BT, X_BD, gains_.now().orientation).e, status->e);
-  write(law_.F, status->F_law);
   status->kinetic_energy_J = terms_.kinetic_energy(state_.v);
   status->spring_energy_J = law_.spring_energy_J;
+  const LawSettings& settings = active_.settings;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    status->term_period_cycles[i] = static_cast<std::int16_t>(settings.period_cycles[i]);
+  }
+  status->contact = static_cast<std::int8_t>(settings.contact);
+  describe_tip(status);
   describe_parts(status);
+}
+
+void TorqueCycle::describe_tip(controller_status_t* status) const noexcept {
+  write(terms_.X_BT, status->p_BT, status->quat_BT);
+  write(terms_.V_BT, status->V_BT);
+  write(goal_.X_BD, status->p_BD, status->quat_BD);
+  write(pose_error(terms_.X_BT, goal_.X_BD, active_.settings.orientation).e, status->e);
+  write(law_.F, status->F_law);
+  write(estimates_.F_ext, status->F_ext);
 }
 
 void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
@@ -43,6 +50,7 @@ void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
   write(tau_null_, status->tau_null);
   write(tau_gravity_, status->tau_gravity);
   write(tau_coriolis_, status->tau_coriolis);
+  write(estimates_.tau_ext, status->tau_ext);
   write(limits_.previous(), status->tau_sent);
 }
 

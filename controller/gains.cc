@@ -1,122 +1,112 @@
 #include "controller/gains.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "common/config_error.h"
+#include "scenarios/gains_yaml.h"
 
 namespace limber::controller {
 namespace {
 
-constexpr double kMaxLinearStiffness = 1e5;   // N/m
-constexpr double kMaxAngularStiffness = 1e4;  // N m/rad, joints too
-constexpr double kMaxNullDamping = 1e3;       // N m s/rad
-constexpr double kMaxDampingRatio = 2.0;
-constexpr double kMaxRamp_s = 60.0;
-// What rounding may do to a matrix that was symmetric and positive semidefinite on paper.
-constexpr double kRounding = 1e-9;
+using RowMajor6f = Eigen::Matrix<float, 6, 6, Eigen::RowMajor>;
+using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-bool within(double x, double low, double high) noexcept { return x >= low && x <= high; }
-
-bool all_within(const double* values, int count, double high) noexcept {
-  return std::all_of(values, values + count, [high](double x) { return within(x, 0.0, high); });
+Matrix6 matrix(const double (&m)[6][6]) noexcept { return Eigen::Map<const RowMajor6>(&m[0][0]); }
+Matrix6 matrix(const float (&m)[6][6]) noexcept {
+  return Eigen::Map<const RowMajor6f>(&m[0][0]).cast<double>();
 }
 
-Matrix6 stiffness_of(const compliance_gains_t& message) noexcept {
-  Matrix6 K;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) K(row, column) = message.K_x[row][column];
-  }
-  return K;
+Matrix6 symmetric(const Matrix6& M) noexcept { return 0.5 * (M + M.transpose()); }
+
+template <typename T>
+void read_diagonal(const T (&values)[kMaxJoints], MatrixJ* M) noexcept {
+  M->setZero();
+  for (Eigen::Index i = 0; i < M->rows(); ++i) (*M)(i, i) = static_cast<double>(values[i]);
 }
 
-const char* refuse_stiffness(const Matrix6& K) noexcept {
-  if (!K.allFinite()) return "K_x is not finite";
-  for (int i = 0; i < 6; ++i) {
-    const double limit = i < 3 ? kMaxLinearStiffness : kMaxAngularStiffness;
-    if (!within(K(i, i), 0.0, limit)) {
-      return "K_x: the diagonal must be within 0..1e5 N/m and 0..1e4 N m/rad";
-    }
-  }
-  const double scale = K.cwiseAbs().maxCoeff();
-  if (!((K - K.transpose()).cwiseAbs().maxCoeff() <= kRounding * scale)) {
-    return "K_x is not symmetric";
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(K, Eigen::EigenvaluesOnly);
-  if (!(eigen.eigenvalues().minCoeff() >= -kRounding * scale)) {
-    return "K_x is not positive semidefinite";
-  }
-  return nullptr;
+double or_default(float value, double otherwise) noexcept {
+  return value > 0.0F ? static_cast<double>(value) : otherwise;
 }
 
-VectorJ vector_of(const std::vector<double>& values, const Robot& robot, const char* key) {
-  if (static_cast<int>(values.size()) != robot.size()) {
-    throw ConfigError(robot.name + ": gains." + key + ": " + std::to_string(values.size()) +
-                      " values; one for each of the " + std::to_string(robot.size()) +
-                      " joints is needed");
+LawSettings read_settings(const compliance_gains_t& message) noexcept {
+  LawSettings s;
+  s.orientation = static_cast<Orientation>(message.orientation);
+  s.frame = static_cast<GainFrame>(message.frame);
+  s.bias = static_cast<Bias>(message.bias);
+  s.damping = static_cast<DampingDesign>(message.damping);
+  s.joint_damping = static_cast<DampingDesign>(message.joint_damping);
+  s.stiffness_terms = static_cast<StiffnessTerms>(message.stiffness_terms);
+  s.stiffness_pose = static_cast<StiffnessPose>(message.stiffness_pose);
+  s.damping_partials = static_cast<DampingPartials>(message.damping_partials);
+  s.projector = static_cast<Projector>(message.projector);
+  s.contact = static_cast<ContactSource>(message.contact);
+  s.velocity = static_cast<VelocitySource>(message.velocity);
+  s.friction = static_cast<FrictionCompensation>(message.friction);
+  s.friction_share = static_cast<double>(message.friction_share);
+  s.inertia_feedforward = message.inertia_feedforward != 0;
+  s.follow_velocity = message.follow_velocity != 0;
+  s.literal_stiffness = message.literal_stiffness != 0;
+  s.velocity_cutoff_rad_per_s =
+      or_default(message.velocity_cutoff_rad_per_s, s.velocity_cutoff_rad_per_s);
+  s.velocity_acceleration_rad_per_s2 =
+      or_default(message.velocity_acceleration_rad_per_s2, s.velocity_acceleration_rad_per_s2);
+  s.acceleration_filter_s = or_default(message.acceleration_filter_s, s.acceleration_filter_s);
+  s.observer_gain_per_s = or_default(message.observer_gain_per_s, s.observer_gain_per_s);
+  s.tank_J = static_cast<double>(message.tank_J);
+  s.spring_force_N = or_default(message.spring_force_N, s.spring_force_N);
+  s.spring_moment_Nm = or_default(message.spring_moment_Nm, s.spring_moment_Nm);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    s.period_cycles[i] = std::max<int>(message.period_cycles[i], 1);
   }
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), robot.size());
+  return s;
 }
 
 }  // namespace
 
 Gains default_gains(const Robot& robot) {
-  Gains gains(robot.size());
+  const auto n = static_cast<std::size_t>(robot.size());
   const DefaultGains& given = robot.gains;
-  gains.K_x.diagonal() << Eigen::Vector3d::Constant(given.K_x_translation_N_per_m),
-      Eigen::Vector3d::Constant(given.K_x_rotation_Nm_per_rad);
-  gains.damping_ratio = given.damping_ratio;
-  gains.K_q = vector_of(given.K_q, robot, "K_q");
-  gains.joint_damping_ratio = given.joint_damping_ratio;
-  gains.K_null = vector_of(given.K_null, robot, "K_null");
-  gains.D_null = vector_of(given.D_null, robot, "D_null");
+  if (given.K_q.size() != n || given.K_null.size() != n || given.D_null.size() != n) {
+    throw ConfigError(robot.name +
+                      ": gains: K_q, K_null and D_null need one value for each of the " +
+                      std::to_string(n) + " joints");
+  }
+  Gains gains(robot.size());
+  read_gains(limber::default_gains(robot), &gains);
   return gains;
 }
 
-const char* refuse_gains(const compliance_gains_t& message, int joints) noexcept {
-  if (message.num_joints != joints) return "num_joints is not the number of joints of this arm";
-  if (message.orientation != compliance_gains_t::ORIENTATION_LOG &&
-      message.orientation != compliance_gains_t::ORIENTATION_QUAT) {
-    return "orientation must be ORIENTATION_LOG or ORIENTATION_QUAT";
-  }
-  if (!within(message.ramp_s, 0.0, kMaxRamp_s)) return "ramp_s must be within 0..60 s";
-  if (!within(message.damping_ratio, 0.0, kMaxDampingRatio)) {
-    return "damping_ratio must be within 0..2";
-  }
-  if (!within(message.joint_damping_ratio, 0.0, kMaxDampingRatio)) {
-    return "joint_damping_ratio must be within 0..2";
-  }
-  if (!all_within(message.K_q, joints, kMaxAngularStiffness)) {
-    return "K_q must be within 0..1e4 N m/rad";
-  }
-  if (!all_within(message.K_null, joints, kMaxAngularStiffness)) {
-    return "K_null must be within 0..1e4 N m/rad";
-  }
-  if (!all_within(message.D_null, joints, kMaxNullDamping)) {
-    return "D_null must be within 0..1e3 N m s/rad";
-  }
-  return refuse_stiffness(stiffness_of(message));
+void read_gains(const compliance_gains_t& message, Gains* gains) noexcept {
+  gains->settings = read_settings(message);
+  gains->K_x = symmetric(matrix(message.K_x));
+  gains->damping_ratio = message.damping_ratio;
+  gains->D_x = symmetric(matrix(message.D_x));
+  gains->M_x = symmetric(matrix(message.M_x));
+  read_diagonal(message.K_q, &gains->K_q);
+  gains->joint_damping_ratio = message.joint_damping_ratio;
+  read_diagonal(message.D_q, &gains->D_q);
+  read_diagonal(message.M_q, &gains->M_q);
+  read_diagonal(message.K_acc, &gains->K_acc);
+  gains->D_acc = 2.0 * gains->joint_damping_ratio * gains->K_acc.cwiseSqrt();
+  read_diagonal(message.K_null, &gains->K_null);
+  read_diagonal(message.D_null, &gains->D_null);
 }
 
-void read_gains(const compliance_gains_t& message, Gains* gains) noexcept {
-  const auto n = gains->K_q.size();
-  const Matrix6 K = stiffness_of(message);
-  gains->orientation = static_cast<Orientation>(message.orientation);
-  gains->K_x = 0.5 * (K + K.transpose());
-  gains->damping_ratio = message.damping_ratio;
-  gains->K_q = Eigen::Map<const Eigen::VectorXd>(message.K_q, n);
-  gains->joint_damping_ratio = message.joint_damping_ratio;
-  gains->K_null = Eigen::Map<const Eigen::VectorXd>(message.K_null, n);
-  gains->D_null = Eigen::Map<const Eigen::VectorXd>(message.D_null, n);
+void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept {
+  if (gains->settings.frame == GainFrame::kBase) return;
+  Matrix6 T = Matrix6::Zero();
+  T.topLeftCorner<3, 3>() = T.bottomRightCorner<3, 3>() = R_BD;
+  for (Matrix6* M : {&gains->K_x, &gains->D_x, &gains->M_x}) {
+    *M = symmetric(T * *M * T.transpose());
+  }
 }
 
 void GainRamp::start(const Gains& gains, double duration_s) noexcept {
   from_ = now_;
   to_ = gains;
-  now_.orientation = gains.orientation;
+  now_.settings = gains.settings;
   elapsed_s_ = 0.0;
   duration_s_ = std::max(duration_s, kShortestRamp_s);
 }
@@ -129,12 +119,15 @@ void GainRamp::advance(double dt_s) noexcept {
     return;
   }
   const double s = 0.5 - 0.5 * std::cos(std::numbers::pi * elapsed_s_ / duration_s_);
-  now_.K_x = (1.0 - s) * from_.K_x + s * to_.K_x;
-  now_.damping_ratio = (1.0 - s) * from_.damping_ratio + s * to_.damping_ratio;
-  now_.K_q = (1.0 - s) * from_.K_q + s * to_.K_q;
-  now_.joint_damping_ratio = (1.0 - s) * from_.joint_damping_ratio + s * to_.joint_damping_ratio;
-  now_.K_null = (1.0 - s) * from_.K_null + s * to_.K_null;
-  now_.D_null = (1.0 - s) * from_.D_null + s * to_.D_null;
+  const auto mix = [this, s](auto Gains::*part) {
+    now_.*part = (1.0 - s) * (from_.*part) + s * (to_.*part);
+  };
+  for (auto part : {&Gains::K_x, &Gains::D_x, &Gains::M_x}) mix(part);
+  for (auto part : {&Gains::damping_ratio, &Gains::joint_damping_ratio}) mix(part);
+  for (auto part : {&Gains::K_q, &Gains::D_q, &Gains::M_q, &Gains::K_acc, &Gains::D_acc,
+                    &Gains::K_null, &Gains::D_null}) {
+    mix(part);
+  }
 }
 
 }  // namespace limber::controller

@@ -1,26 +1,38 @@
-// How soft the arm shall be, checked.
+// How soft the arm shall be and by which law's options, checked.
 #pragma once
 
 #include <limber/compliance_gains_t.hpp>
 
 #include "common/types.h"
-#include "controller/pose_error.h"
+#include "controller/law_settings.h"
 #include "robots/robot.h"
 
 namespace limber::controller {
 
+/// Six-by-six matrices are [linear; angular]. A message gives joint matrices by their diagonals.
 struct Gains {
   explicit Gains(int joints)
-      : K_q(VectorJ::Zero(joints)), K_null(VectorJ::Zero(joints)), D_null(VectorJ::Zero(joints)) {}
+      : K_q(MatrixJ::Zero(joints, joints)),
+        D_q(K_q),
+        M_q(K_q),
+        K_acc(K_q),
+        D_acc(K_q),
+        K_null(K_q),
+        D_null(K_q) {}
 
-  Orientation orientation = Orientation::kLog;
-  Matrix6 K_x =
-      Matrix6::Zero();         ///< N/m, N/rad, N m/rad; base axes; symmetric, positive semidefinite
-  double damping_ratio = 0.7;  ///< of every Cartesian mode
-  VectorJ K_q;                 ///< N m/rad
+  Matrix6 K_x = Matrix6::Zero();  ///< N/m, N/rad, N m/rad; symmetric, positive semidefinite
+  double damping_ratio = 0.7;     ///< of every Cartesian mode
+  Matrix6 D_x = Matrix6::Zero();  ///< used if given: N s/m, N s/rad, N m s/rad; symmetric
+  Matrix6 M_x = Matrix6::Zero();  ///< kg, kg m, kg m^2; symmetric; zero: the arm's own
+  MatrixJ K_q;                    ///< N m/rad
   double joint_damping_ratio = 0.7;
-  VectorJ K_null;  ///< N m/rad
-  VectorJ D_null;  ///< N m s/rad
+  MatrixJ D_q;     ///< used if given: N m s/rad
+  MatrixJ M_q;     ///< kg m^2; zero: the arm's own diagonal
+  MatrixJ K_acc;   ///< 1/s^2
+  MatrixJ D_acc;   ///< 1/s
+  MatrixJ K_null;  ///< N m/rad
+  MatrixJ D_null;  ///< N m s/rad
+  LawSettings settings;
 };
 
 /// The gains of robot.yaml. Throws ConfigError if there are not as many as joints.
@@ -30,8 +42,12 @@ Gains default_gains(const Robot& robot);
 /// cycle.
 const char* refuse_gains(const compliance_gains_t& message, int joints) noexcept;
 
-/// The gains of a message that refuse_gains() found nothing wrong with.
+/// The gains of a message that refuse_gains() found nothing wrong with. In the cycle.
 void read_gains(const compliance_gains_t& message, Gains* gains) noexcept;
+
+/// K_x, D_x and M_x turned from the axes they are given in to base axes: T K T^T,
+/// T = blkdiag(R_BD, R_BD) for GainFrame::kGoal. In the cycle.
+void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept;
 
 /// Moves from one set of gains to another along a cosine, so that no torque jumps. Mixtures of
 /// allowed gains are allowed gains. May be called in the cycle.
@@ -39,8 +55,8 @@ class GainRamp {
  public:
   explicit GainRamp(const Gains& gains) : now_(gains), from_(gains), to_(gains) {}
 
-  /// From the present gains to `gains` in `duration_s`, at least kShortestRamp_s. The orientation
-  /// mode cannot be mixed: it changes at once.
+  /// From the present gains to `gains` in `duration_s`, at least kShortestRamp_s. The settings
+  /// cannot be mixed: they change at once.
   void start(const Gains& gains, double duration_s) noexcept;
   void advance(double dt_s) noexcept;
   const Gains& now() const noexcept { return now_; }

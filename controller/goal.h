@@ -6,8 +6,9 @@
 
 namespace limber::controller {
 
-/// What a law follows. Twists and accelerations as in ArmTerms: base axes, tip origin, linear
-/// first.
+/// What a law follows: a law for the tip has X_BD and its rates, a law for the joints has those and
+/// q_d with its rates, which belong together. Twists and accelerations as in ArmTerms: base axes,
+/// tip origin, linear first.
 struct Goal {
   explicit Goal(int joints)
       : q_d(VectorJ::Zero(joints)),

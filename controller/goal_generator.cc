@@ -69,35 +69,50 @@ const char* GoalGenerator::refuse(const compliance_goal_t& message,
     return "duration_s must be within 0..600 s";
   }
   if (follows == Follows::kNothing) return "the law follows no goal";
-  if (message.kind == compliance_goal_t::GOAL_JOINT) {
-    return follows == Follows::kJointGoal ? refuse_joints(message.q)
-                                          : "the law follows pose goals, not joint goals";
-  }
-  if (follows != Follows::kPoseGoal) return "the law follows joint goals, not pose goals";
-  if (message.use_posture != 0) {
-    if (const char* reason = refuse_joints(message.q)) return reason;
-  }
   const Vector6 F = six(message.F_ff);
   if (!(F.head<3>().norm() <= kMaxForce_N && F.tail<3>().norm() <= kMaxMoment_Nm)) {
     return "F_ff must be within 200 N and 50 N m";
   }
+  if (follows == Follows::kJointGoal && !F.isZero(0.0)) {
+    return "the law exerts no feed-forward wrench";
+  }
+  if (message.kind == compliance_goal_t::GOAL_JOINT) {
+    return follows == Follows::kPoseGoal ? "the law follows pose goals, not joint goals"
+                                         : refuse_joints(message.q);
+  }
+  if (message.use_posture != 0) {
+    if (const char* reason = refuse_joints(message.q)) return reason;
+  }
+  return refuse_tip(message);
+}
+
+const char* GoalGenerator::refuse_tip(const compliance_goal_t& message) const noexcept {
+  const Vector6 offset = six(message.offset);
   switch (message.kind) {
     case compliance_goal_t::GOAL_POSE:
       if (const char* reason = refuse_pose(message)) return reason;
       return Eigen::Map<const Eigen::Vector3d>(message.p_BD).norm() <= kFarthest_m
                  ? nullptr
                  : "the goal is more than 10 m from the base";
-    case compliance_goal_t::GOAL_OFFSET: {
-      const Vector6 offset = six(message.offset);
+    case compliance_goal_t::GOAL_OFFSET:
       if (!(offset.tail<3>().norm() <= EIGEN_PI)) return "the offset turns by more than pi";
       return (pose_.end().p + offset.head<3>()).norm() <= kFarthest_m
                  ? nullptr
                  : "the goal is more than 10 m from the base";
+    case compliance_goal_t::GOAL_CIRCLE: {
+      if (pose_.moving()) return "a circle starts from a goal at rest";
+      if (!(message.duration_s >= kShortestPeriod_s)) return "the period must be at least 0.2 s";
+      const double radius = offset.head<3>().norm();
+      if (!(radius > 0.0 && offset.tail<3>().norm() > 1e-6))
+        return "the circle has no centre or axis";
+      return 2.0 * EIGEN_PI * radius <= kFastestSpeed_m_per_s * message.duration_s
+                 ? nullptr
+                 : "the circle is faster than 1 m/s";
     }
     case compliance_goal_t::GOAL_WRENCH:
       return nullptr;
     default:
-      return "kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH";
+      return "kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH, GOAL_CIRCLE";
   }
 }
 
@@ -119,7 +134,18 @@ void GoalGenerator::start(const compliance_goal_t& message) noexcept {
   double T = std::max(message.duration_s, kShortestMotion_s);
 
   if (message.kind == compliance_goal_t::GOAL_JOINT) {
-    joints_.start(q, std::max(T, joint_time(joints_.x, q, share)));
+    at_tip_ = false;
+    T = std::max(T, joint_time(joints_.x, q, share));
+    joints_.start(q, T);
+    wrench_.start(six(message.F_ff), T);
+    return;
+  }
+  if (message.kind == compliance_goal_t::GOAL_CIRCLE) {
+    at_tip_ = true;
+    const Vector6 offset = six(message.offset);
+    pose_.circle(pose_.X_BD.p + offset.head<3>(), offset.tail<3>().normalized(),
+                 message.duration_s);
+    wrench_.start(six(message.F_ff), kShortestMotion_s);
     return;
   }
   const bool moves = message.kind != compliance_goal_t::GOAL_WRENCH;
@@ -129,7 +155,10 @@ void GoalGenerator::start(const compliance_goal_t& message) noexcept {
     T = std::max(T, joint_time(posture_.x, q, share));
     posture_.start(q, T);
   }
-  if (moves) pose_.start(end, T);
+  if (moves) {
+    at_tip_ = true;
+    pose_.start(end, T);
+  }
   wrench_.start(six(message.F_ff), T);
 }
 
@@ -153,6 +182,16 @@ double GoalGenerator::pose_time(const Pose& end, double speed, double turn) cons
 double GoalGenerator::joint_time(const VectorJ& from, const VectorJ& to,
                                  double share) const noexcept {
   return kPeak * ((to - from).cwiseAbs().cwiseQuotient(share * velocity_limit_)).maxCoeff();
+}
+
+void GoalGenerator::follow_tip(const Pose& X_BD) noexcept {
+  pose_.reset(X_BD);
+  copy();
+}
+
+void GoalGenerator::follow_joints(const VectorJ& q_d) noexcept {
+  joints_.reset(q_d);
+  copy();
 }
 
 void GoalGenerator::stop(double duration_s) noexcept {

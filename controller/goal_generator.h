@@ -33,12 +33,23 @@ class GoalGenerator {
 
   explicit GoalGenerator(const Robot& robot);
 
+  static constexpr double kShortestPeriod_s = 0.2;
+
   /// The goal is where the arm is, at rest; no feed-forward; posture as it is.
   void reset(const Pose& X_BT, const VectorJ& q) noexcept;
 
+  /// nullptr if a law of this kind may follow the goal, else why not.
+  const char* refuse(const compliance_goal_t& message, Follows follows) const noexcept;
   /// nullptr: accepted, else why not. GOAL_OFFSET counts from the end of the motion under way; a
   /// feed-forward wrench stays until the next goal, which replaces it.
   const char* set(const compliance_goal_t& message, Follows follows) noexcept;
+
+  /// True if the goal was last set at the tip, false if at the joints.
+  bool at_tip() const noexcept { return at_tip_; }
+  /// The goal at the tip that goes with one set at the joints, or the other way round: where the
+  /// other kind starts from.
+  void follow_tip(const Pose& X_BD) noexcept;
+  void follow_joints(const VectorJ& q_d) noexcept;
 
   /// Brings the goal to rest in `duration_s`, wherever it then is.
   void stop(double duration_s) noexcept;
@@ -47,7 +58,7 @@ class GoalGenerator {
   const Goal& goal() const noexcept { return goal_; }
 
  private:
-  const char* refuse(const compliance_goal_t& message, Follows follows) const noexcept;
+  const char* refuse_tip(const compliance_goal_t& message) const noexcept;
   const char* refuse_joints(const double* q) const noexcept;
   void start(const compliance_goal_t& message) noexcept;
   Pose end_of(const compliance_goal_t& message) const noexcept;
@@ -62,6 +73,7 @@ class GoalGenerator {
   QuinticMotion<VectorJ> joints_;
   QuinticMotion<VectorJ> posture_;
   QuinticMotion<Vector6> wrench_;
+  bool at_tip_ = true;
   Goal goal_;
 };
 

@@ -1,15 +1,46 @@
 #include "controller/interpolation.h"
 
+#include <numbers>
+
 #include "controller/rotation.h"
 
 namespace limber::controller {
 
+CircleMotion::CircleMotion(const Eigen::Vector3d& start, const Eigen::Vector3d& centre_at,
+                           const Eigen::Vector3d& about, double period) noexcept
+    : axis(about), period_s(period) {
+  const Eigen::Vector3d arm = start - centre_at;
+  radius = arm - axis * axis.dot(arm);
+  centre = start - radius;
+}
+
+void CircleMotion::at(double t, Eigen::Vector3d* x, Eigen::Vector3d* v,
+                      Eigen::Vector3d* a) const noexcept {
+  const double omega = 2.0 * std::numbers::pi / period_s;
+  const double s = t / period_s;
+  double angle = omega * (t - 0.5 * period_s);
+  double rate = omega;
+  double rate_rate = 0.0;
+  if (s < 1.0) {
+    const double s2 = s * s;
+    angle = omega * period_s * s2 * s2 * (2.5 - 3.0 * s + s2);
+    rate = omega * s2 * s * (10.0 - 15.0 * s + 6.0 * s2);
+    rate_rate = omega / period_s * 30.0 * s2 * (1.0 - 2.0 * s + s2);
+  }
+  const Eigen::Vector3d r = exp_rotation(angle * axis) * radius;
+  *x = centre + r;
+  *v = rate * axis.cross(r);
+  *a = rate_rate * axis.cross(r) - rate * rate * r;
+}
+
 PoseMotion::PoseMotion()
     : position_(Eigen::Vector3d::Zero()),
       rotation_(Eigen::Vector3d::Zero()),
-      base_(Eigen::Quaterniond::Identity()) {}
+      base_(Eigen::Quaterniond::Identity()),
+      circle_(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), 1.0) {}
 
 void PoseMotion::reset(const Pose& rest) noexcept {
+  circling_ = false;
   position_.reset(rest.p);
   rotation_.reset(Eigen::Vector3d::Zero());
   base_ = rest.Q.normalized();
@@ -17,6 +48,7 @@ void PoseMotion::reset(const Pose& rest) noexcept {
 }
 
 void PoseMotion::start(const Pose& end, double T) noexcept {
+  circling_ = false;
   // The same motion, written as a rotation vector from the new end: J_l r' = omega and its rate.
   base_ = end.Q.normalized();
   rotation_.x = log_rotation(X_BD.Q * base_.conjugate());
@@ -28,14 +60,27 @@ void PoseMotion::start(const Pose& end, double T) noexcept {
   position_.start(end.p, T);
 }
 
+void PoseMotion::circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis,
+                        double period_s) noexcept {
+  circle_ = CircleMotion(position_.x, centre, axis, period_s);
+  circling_ = true;
+  circling_s_ = 0.0;
+}
+
 void PoseMotion::stop(double T) noexcept {
+  circling_ = false;
   position_.stop(T);
   rotation_.stop(T);
 }
 
 void PoseMotion::advance(double dt) noexcept {
   if (!moving()) return;
-  position_.advance(dt);
+  if (circling_) {
+    circling_s_ += dt;
+    circle_.at(circling_s_, &position_.x, &position_.v, &position_.a);
+  } else {
+    position_.advance(dt);
+  }
   rotation_.advance(dt);
   update();
 }

@@ -72,6 +72,21 @@ class QuinticMotion {
   double elapsed_ = 0.0;
 };
 
+/// A circle from rest: the rate of turn rises smoothly (minimum jerk) over the first period.
+struct CircleMotion {
+  /// Through `start`, about `axis` (unit) at `centre`, one turn in `period_s`.
+  CircleMotion(const Eigen::Vector3d& start, const Eigen::Vector3d& centre,
+               const Eigen::Vector3d& axis, double period_s) noexcept;
+
+  /// Position, velocity and acceleration `t` seconds after the start.
+  void at(double t, Eigen::Vector3d* x, Eigen::Vector3d* v, Eigen::Vector3d* a) const noexcept;
+
+  Eigen::Vector3d centre;
+  Eigen::Vector3d axis;
+  Eigen::Vector3d radius;  ///< from the centre to the start, normal to the axis
+  double period_s;
+};
+
 /// The same for a pose: position along the polynomial; rotation R(t) = Exp(r(t)) R1 with the
 /// rotation vector r along the polynomial to zero. From rest this is the geodesic, the shortest
 /// turn about one fixed axis.
@@ -81,9 +96,11 @@ class PoseMotion {
 
   void reset(const Pose& rest) noexcept;
   void start(const Pose& end, double T) noexcept;
+  /// Round and round, without turning, until start() or stop().
+  void circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double period_s) noexcept;
   void stop(double T) noexcept;
   void advance(double dt) noexcept;
-  bool moving() const noexcept { return position_.moving(); }
+  bool moving() const noexcept { return circling_ || position_.moving(); }
 
   /// Where the motion ends.
   Pose end() const noexcept;
@@ -98,6 +115,9 @@ class PoseMotion {
   QuinticMotion<Eigen::Vector3d> position_;
   QuinticMotion<Eigen::Vector3d> rotation_;  // r: from the base orientation to the present one
   Eigen::Quaterniond base_;
+  CircleMotion circle_;
+  double circling_s_ = 0.0;
+  bool circling_ = false;
 };
 
 }  // namespace limber::controller

@@ -6,6 +6,7 @@
 #include "common/types.h"
 #include "controller/arm_state.h"
 #include "controller/arm_terms.h"
+#include "controller/torque_limiter.h"
 #include "robots/robot.h"
 
 namespace limber::controller {
@@ -36,8 +37,8 @@ class JointLimits {
   /// that acted. In the cycle.
   std::int32_t clamp(double period_s, VectorJ* tau) noexcept;
 
-  const VectorJ& torque_limit() const noexcept { return torque_; }
-  const VectorJ& previous() const noexcept { return previous_; }
+  const VectorJ& torque_limit() const noexcept { return limiter_.torque(); }
+  const VectorJ& previous() const noexcept { return limiter_.previous(); }
 
  private:
   bool scale_for_velocity(const ArmState& state, const VectorJ& g, VectorJ* tau) const noexcept;
@@ -47,9 +48,8 @@ class JointLimits {
   VectorJ position_max_;
   VectorJ wall_;  // width of the soft wall, rad or m
   VectorJ velocity_;
-  VectorJ torque_;
   VectorJ torque_rate_;
-  VectorJ previous_;
+  TorqueLimiter limiter_;
 };
 
 }  // namespace limber::controller

@@ -1,41 +1,53 @@
 #include "controller/nullspace.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace limber::controller {
-namespace {
-
-// Directions whose apparent inertia is more than ten thousand times the lightest one's are being
-// lost.
-constexpr double kLostShare = 1e-4;
-
-}  // namespace
-
 TaskRows::TaskRows(const Matrix6& K_x) noexcept {
   for (int i = 0; i < 6; ++i) stiff[i] = K_x.row(i).cwiseAbs().maxCoeff() > 0.0;
 }
 
-VectorJ project_to_null_space(const ArmTerms& terms, const TaskRows& rows,
-                              const VectorJ& tau_0) noexcept {
-  Matrix6J J = terms.J;
-  MatrixJ6 Minv_JT = terms.Minv_JT;
+int TaskRows::count() const noexcept {
+  return static_cast<int>(std::count(std::begin(stiff), std::end(stiff), true));
+}
+
+Matrix6J TaskRows::of(Matrix6J J) const noexcept {
   for (int i = 0; i < 6; ++i) {
-    if (rows.stiff[i]) continue;
-    J.row(i).setZero();
-    Minv_JT.col(i).setZero();
+    if (!stiff[i]) J.row(i).setZero();
   }
+  return J;
+}
+
+Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
+  const MatrixJ6 Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
+  const TipMobility mobility = tip_mobility(rows.of(terms.J), Minv_JT);
+  if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
+  return damped_tip_inertia(mobility, mobility.threshold(lost_share));
+}
+
+MatrixJ null_space_projector(const ArmTerms& terms, const TaskRows& rows, Projector projector,
+                             double lost_share) noexcept {
+  const auto n = terms.J.cols();
+  MatrixJ N = MatrixJ::Identity(n, n);
+  if (projector == Projector::kNone) return N;
+  const Matrix6J J = rows.of(terms.J);
+  MatrixJ6 Minv_JT = J.transpose();  // unit inertia
+  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
   const TipMobility mobility = tip_mobility(J, Minv_JT);
-  if (!(mobility.s[5] > 0.0)) return tau_0;  // no task
-  const Matrix6 inertia = damped_tip_inertia(mobility, mobility.threshold(kLostShare));
-  const Vector6 F = inertia * (Minv_JT.transpose() * tau_0);
-  return tau_0 - J.transpose() * F;
+  if (!(mobility.s[5] > 0.0)) return N;  // no task
+  const Matrix6 inertia = damped_tip_inertia(mobility, mobility.threshold(lost_share));
+  N.noalias() -= J.transpose() * (inertia * Minv_JT.transpose());
+  return N;
 }
 
 VectorJ null_space_torque(const ArmState& state, const ArmTerms& terms, const Goal& goal,
                           const Gains& gains, const TaskRows& rows,
                           const VectorJ& torque_limit) noexcept {
-  VectorJ tau_0 =
-      -gains.K_null.cwiseProduct(state.q - goal.q_null) - gains.D_null.cwiseProduct(state.v);
+  VectorJ tau_0 = -gains.K_null * (state.q - goal.q_null) - gains.D_null * state.v;
   tau_0 = tau_0.cwiseMax(-torque_limit).cwiseMin(torque_limit);
-  return project_to_null_space(terms, rows, tau_0);
+  const LawSettings& s = gains.settings;
+  return null_space_projector(terms, rows, s.projector, s.lost_share) * tau_0;
 }
 
 }  // namespace limber::controller

@@ -16,19 +16,34 @@ struct TaskRows {
   explicit TaskRows(const Matrix6& K_x) noexcept;
   bool operator==(const TaskRows&) const = default;
 
+  int count() const noexcept;
+  /// M with the rows that are not stiff set to zero.
+  Matrix6J of(Matrix6J J) const noexcept;
+
   bool stiff[6];
 };
 
-/// tau_0 less the part of it that would move the tip along the task's rows:
-///   N tau_0,  N = I - J_t^T Lambda J_t M^-1      (Khatib 1987),
-/// J_t the task's rows of J, M with rotors, Lambda damped near singularities (there the projector
-/// opens and closes gradually). J_t M^-1 N tau_0 = 0 elsewhere. Zero if nothing is left over.
-VectorJ project_to_null_space(const ArmTerms& terms, const TaskRows& rows,
-                              const VectorJ& tau_0) noexcept;
+/// Directions whose apparent inertia is more than ten thousand times the lightest one's are being
+/// lost.
+inline constexpr double kLostShare = 1e-4;
+
+/// Tip inertia Lambda = (J_t M^-1 J_t^T)^-1 over the task's rows, 6 x 6 with zeros elsewhere, kg
+/// and kg m^2; M with rotors. Damped near singularities, see damped_tip_inertia(). In the cycle.
+Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows,
+                     double lost_share = kLostShare) noexcept;
+
+/// N, n x n, the part of a joint torque that does not act on the task's rows J_t of J:
+///   dynamic    N = I - J_t^T Lambda J_t M^-1 (Khatib 1987): J_t M^-1 N = 0, the tip does not move
+///   kinematic  N = I - J_t^T (J_t^+)^T: no static force at the tip, but it accelerates
+///   none       N = I
+/// M with rotors. Near singularities the inverses are damped and the projector opens and closes
+/// gradually. Zero if nothing is left over. May be called in the cycle.
+MatrixJ null_space_projector(const ArmTerms& terms, const TaskRows& rows, Projector projector,
+                             double lost_share = kLostShare) noexcept;
 
 /// N (-K_null (q - q_null) - D_null v). Not the gradient of an energy: keep D_null > 0. Each
 /// component before the projection is limited to `torque_limit`, so that a posture far away does
-/// not take the torque the task needs. Both may be called in the cycle.
+/// not take the torque the task needs. May be called in the cycle.
 VectorJ null_space_torque(const ArmState& state, const ArmTerms& terms, const Goal& goal,
                           const Gains& gains, const TaskRows& rows,
                           const VectorJ& torque_limit) noexcept;

@@ -32,4 +32,18 @@ TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
 /// so that it stays finite and continuous through a singularity. May be called in the cycle.
 Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexcept;
 
+/// Damped pseudo-inverse of J (Nakamura, Hanafusa 1986), n x 6:
+///   J^T (J J^T + lambda^2 I)^-1,  lambda^2 = lambda_max^2 (1 - (sigma_min / sigma_0)^2)
+/// below sigma_min < sigma_0, else lambda = 0; |inverse| <= 1 / (2 lambda). sigma_min is the least
+/// singular value among as many as rows and columns allow; rows that are zero are left out. Rows
+/// are not scaled here.
+struct DampedInverse {
+  double sigma_min;
+  double lambda;
+  MatrixJ6 inverse;
+};
+
+/// May be called in the cycle.
+DampedInverse damped_inverse(const Matrix6J& J, double sigma_0, double lambda_max) noexcept;
+
 }  // namespace limber::controller

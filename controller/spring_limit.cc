@@ -18,9 +18,9 @@ double energy_at(double force, const Eigen::Matrix3d& K) noexcept {
 
 }  // namespace
 
-SpringLimit::SpringLimit(const Matrix6& K) noexcept
-    : U_max_(std::min(energy_at(kMaxForce_N, K.topLeftCorner<3, 3>()),
-                      energy_at(kMaxMoment_Nm, K.bottomRightCorner<3, 3>()))) {}
+SpringLimit::SpringLimit(const Matrix6& K, double force_N, double moment_Nm) noexcept
+    : U_max_(std::min(energy_at(force_N, K.topLeftCorner<3, 3>()),
+                      energy_at(moment_Nm, K.bottomRightCorner<3, 3>()))) {}
 
 LimitedSpring SpringLimit::apply(double U) const noexcept {
   if (!(U > U_max_)) return {1.0, U};

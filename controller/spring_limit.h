@@ -10,8 +10,8 @@ struct LimitedSpring {
   double energy_J;  ///< the potential whose gradient that is
 };
 
-/// From the stored energy U = e^T K e / 2 on where the wrench could first exceed kMaxForce_N or
-/// kMaxMoment_Nm, the spring's potential grows with the square root of U instead:
+/// From the stored energy U = e^T K e / 2 on where the wrench could first exceed `force_N` or
+/// `moment_Nm`, the spring's potential grows with the square root of U instead:
 ///   H = U                     for U <= U_max
 ///   H = 2 sqrt(U U_max) - U_max  above;       h = dH/dU = sqrt(U_max / U).
 /// H is a function of U alone, so the limited spring still has a potential, whatever K is. With
@@ -19,10 +19,7 @@ struct LimitedSpring {
 /// softer. The moment may reach pi / 2 times its bound where A turns it.
 class SpringLimit {
  public:
-  static constexpr double kMaxForce_N = 100.0;
-  static constexpr double kMaxMoment_Nm = 30.0;
-
-  explicit SpringLimit(const Matrix6& K) noexcept;
+  SpringLimit(const Matrix6& K, double force_N, double moment_Nm) noexcept;
   /// `U` in J. May be called in the cycle.
   LimitedSpring apply(double U) const noexcept;
 

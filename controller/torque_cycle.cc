@@ -27,12 +27,16 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       state_(model_.size()),
       terms_(model_.size()),
       sensors_(sensors_of(robot.robot)),
-      hold_(checked_law("joint_impedance", sensors_)),
+      hold_(checked_law("joint_pd", sensors_)),
       selected_(checked_law(law, sensors_)),
       running_(hold_),
       goals_(robot.robot),
+      goal_(model_.size()),
+      inverse_kinematics_(robot),
       gains_(default_gains(robot.robot)),
+      active_(gains_.now()),
       asked_(gains_.now()),
+      estimates_(model_.size()),
       rows_(gains_.now().K_x),
       blend_(model_.size()),
       limits_(robot.robot),
@@ -49,21 +53,62 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
   }
 }
 
+bool TorqueCycle::due(Term term) const noexcept {
+  return cycles_ % gains_.now().settings.period_cycles[static_cast<std::size_t>(term)] == 0;
+}
+
+LawInputs TorqueCycle::inputs(double dt_s) const noexcept {
+  return {.state = state_,
+          .terms = terms_,
+          .goal = goal_,
+          .gains = active_,
+          .estimates = estimates_,
+          .dt_s = dt_s,
+          .stiffness_due = due(Term::kStiffness),
+          .damping_due = due(Term::kDamping)};
+}
+
 void TorqueCycle::measure(const joint_state_t& message) noexcept {
+  ++cycles_;
   read_arm_state(message, &state_);
-  model_.evaluate(state_.q, state_.v, &terms_);
+  const TermsDue terms{.jacobian = due(Term::kJacobian) || cycles_ == 1,
+                       .inertia = due(Term::kInertia) || cycles_ == 1,
+                       .coriolis = due(Term::kCoriolis) || cycles_ == 1};
+  model_.evaluate(state_.q, state_.v, terms, &terms_);
   if (!terms_.g.allFinite()) return;
   gravity_ = terms_.g.cwiseMax(-limits_.torque_limit()).cwiseMin(limits_.torque_limit());
 }
 
 void TorqueCycle::run(int law, bool from_here) noexcept {
+  const bool joints = follows_joints(entry().follows);
   running_ = law;
   switched_ = true;
-  if (from_here) goals_.reset(terms_.X_BT, state_.q);
-  laws_[static_cast<std::size_t>(law)]->start(inputs());
+  if (from_here) {
+    goals_.reset(terms_.X_BT, state_.q);
+    inverse_kinematics_.reset(state_.q);
+  } else if (!joints && follows_joints(entry().follows)) {
+    inverse_kinematics_.reset(state_.q);  // a goal at the tip, followed by the joints from now on
+  } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
+    goals_.follow_tip(goal_.X_BD);
+  }
+  match_goals();
+  refresh_gains();
+  laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
 }
 
 const char* TorqueCycle::set_goal(const compliance_goal_t& message) noexcept {
+  const bool to_tip = message.kind != compliance_goal_t::GOAL_JOINT;
+  if (const char* reason = goals_.refuse(message, entry().follows)) return reason;
+  if (follows_joints(entry().follows) && to_tip != goals_.at_tip()) {
+    // The other kind of goal starts from where this one is.
+    switched_ = true;
+    if (to_tip) {
+      goals_.follow_tip(goal_.X_BD);
+      inverse_kinematics_.reset(goal_.q_d);
+    } else {
+      goals_.follow_joints(goal_.q_d);
+    }
+  }
   return goals_.set(message, entry().follows);
 }
 
@@ -73,14 +118,35 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
   if (law < 0) return "no control law has this name";
   const LawEntry& wanted = laws()[static_cast<std::size_t>(law)];
   if (const char* reason = refuse_law(wanted, sensors_)) return reason;
-
   read_gains(message, &asked_);
-  if (asked_.orientation != gains_.now().orientation) switched_ = true;
+  if (const char* reason = refuse_settings(asked_.settings, sensors_)) return reason;
+  if (wanted.refuse != nullptr) {
+    if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
+  }
+
+  if (asked_.settings != gains_.now().settings) switched_ = true;
   gains_.start(asked_, message.ramp_s);
   selected_ = law;
   // A law that follows the same kind of goal goes on with it.
-  if (active && law != running_) run(law, wanted.follows != entry().follows);
+  if (active && law != running_) run(law, !same_goal(wanted.follows, entry().follows));
   return nullptr;
+}
+
+// A law for the joints gets both: the goal at the tip and the joints that go with it.
+void TorqueCycle::match_goals() noexcept {
+  goal_ = goals_.goal();
+  if (!follows_joints(entry().follows)) return;
+  if (goals_.at_tip()) {
+    inverse_kinematics_.track(TaskRows(active_.K_x), state_.period_s, &goal_);
+  } else {
+    goal_.X_BD = model_.tip_pose(goal_.q_d);
+    goal_.V_BD = model_.jacobian(goal_.q_d) * goal_.v_d;
+  }
+}
+
+void TorqueCycle::refresh_gains() noexcept {
+  active_ = gains_.now();
+  turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
 }
 
 bool TorqueCycle::control(double dt_s) noexcept {
@@ -91,10 +157,12 @@ bool TorqueCycle::control(double dt_s) noexcept {
   goals_.advance(dt_s);
   gains_.advance(dt_s);
   blend_.advance(dt_s, state_.v);
+  match_goals();
+  refresh_gains();
 
-  const Composition add = entry().composition;
+  const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
-  laws_[static_cast<std::size_t>(running_)]->compute(inputs(), &law_);
+  laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
   tau_coriolis_ = add.coriolis ? terms_.Cv : none_;
@@ -111,10 +179,10 @@ bool TorqueCycle::control(double dt_s) noexcept {
 }
 
 VectorJ TorqueCycle::null_space() noexcept {
-  const TaskRows rows(gains_.now().K_x);
+  const TaskRows rows(active_.K_x);
   if (!(rows == rows_)) switched_ = true;  // the task lost or gained a direction
   rows_ = rows;
-  return null_space_torque(state_, terms_, goals_.goal(), gains_.now(), rows, null_limit_);
+  return null_space_torque(state_, terms_, goal_, active_, rows, null_limit_);
 }
 
 void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {

@@ -12,6 +12,7 @@
 #include "controller/arm_terms.h"
 #include "controller/gains.h"
 #include "controller/goal_generator.h"
+#include "controller/inverse_kinematics.h"
 #include "controller/laws/registry.h"
 #include "controller/limits.h"
 #include "controller/nullspace.h"
@@ -29,7 +30,7 @@ class TorqueCycle {
   /// The state of this cycle, judged usable, and the terms that follow from it.
   void measure(const joint_state_t& message) noexcept;
 
-  /// Runs joint_impedance, or the selected law, around the place where the arm is. The torque
+  /// Runs joint_pd, or the selected law, around the place where the arm is. The torque
   /// continues from the last one and fades over to the law (TorqueBlend).
   void hold() noexcept { run(hold_, true); }
   void activate() noexcept { run(selected_, true); }
@@ -57,9 +58,13 @@ class TorqueCycle {
 
  private:
   void run(int law, bool from_here) noexcept;
+  bool due(Term term) const noexcept;
+  void match_goals() noexcept;
+  void refresh_gains() noexcept;
   VectorJ null_space() noexcept;
+  void describe_tip(controller_status_t* status) const noexcept;
   void describe_parts(controller_status_t* status) const noexcept;
-  LawInputs inputs() const noexcept { return {state_, terms_, goals_.goal(), gains_.now()}; }
+  LawInputs inputs(double dt_s) const noexcept;
   const LawEntry& entry() const noexcept { return laws()[static_cast<std::size_t>(running_)]; }
 
   ArmModel model_;
@@ -72,9 +77,14 @@ class TorqueCycle {
   int running_;
 
   GoalGenerator goals_;
+  Goal goal_;  // of this cycle: tip and joints matched
+  InverseKinematics inverse_kinematics_;
   GainRamp gains_;
-  Gains asked_;  // where a gains message is read into
+  Gains active_;  // of this cycle, in base axes
+  Gains asked_;   // where a gains message is read into
+  Estimates estimates_;
   TaskRows rows_;
+  std::int64_t cycles_ = 0;
   TorqueBlend blend_;
   bool switched_ = false;
   JointLimits limits_;

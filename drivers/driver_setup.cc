@@ -39,6 +39,8 @@ void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t sessio
   if (robot.buses.empty() || robot.buses.size() > kMaxBuses || robot.buses.size() != open_buses)
     refuse("buses", fmt::format("{} described, {} open, 1 to {} allowed", robot.buses.size(),
                                 open_buses, kMaxBuses));
+  if (robot.has_tip_sensor && robot.tip_sensor.bus >= static_cast<int>(robot.buses.size()))
+    refuse("tip_sensor.bus", "does not exist");
   if (!(robot.rate_hz > 0.0)) refuse("rate_hz", "must be positive");
   if (session == 0) refuse("session", "0 names no session");
 }

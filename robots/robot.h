@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "robots/tip_sensor_config.h"
+
 namespace limber {
 
 /// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME"
@@ -103,6 +105,8 @@ struct Robot {
   std::vector<JointConfig> joints;
   DefaultGains gains;
   bool has_drives = false;  ///< false for a bare URDF: fit for `check` and `eval`, not for running
+  bool has_tip_sensor = false;
+  TipSensorConfig tip_sensor;  ///< counts only if there is one
 
   int size() const { return static_cast<int>(joints.size()); }
 

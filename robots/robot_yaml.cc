@@ -8,6 +8,7 @@
 #include "common/complaints.h"
 #include "robots/joint_yaml.h"
 #include "robots/motor_yaml.h"
+#include "robots/tip_sensor_yaml.h"
 
 namespace limber {
 namespace {
@@ -70,6 +71,8 @@ void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   const bool motors_known = complaints.collect([&] { motors = read_motors(yaml); });
   yaml.has("joints");
   if (buses_known && motors_known) complaints.collect([&] { read_joints(yaml, motors, robot); });
+  if (yaml.has("tip_sensor") && buses_known)
+    complaints.collect([&] { read_tip_sensor(yaml.map("tip_sensor"), robot); });
   complaints.collect([&] { read_watchdog(yaml.map("watchdog"), robot); });
   complaints.collect([&] { robot->gains = read_gains(yaml.map("gains"), robot->size()); });
   complaints.collect([&] { yaml.finish(); });

@@ -16,21 +16,23 @@ std::int8_t goal_kind(const YamlMap& yaml) {
   const bool offset = yaml.has("offset_m") || yaml.has("offset_rad");
   const bool pose = yaml.has("position_m") || yaml.has("quaternion_wxyz");
   const bool joints = yaml.has("joints_rad");
+  const bool circle = yaml.has("circle_centre_m") || yaml.has("circle_axis");
   const bool wrench = yaml.has("force_N") || yaml.has("torque_Nm");
-  if (offset + pose + joints > 1) {
+  if (offset + pose + joints + circle > 1) {
     yaml.refuse(
         "more than one goal; expected one of: offset_m with offset_rad, position_m with "
-        "quaternion_wxyz, joints_rad");
+        "quaternion_wxyz, joints_rad, circle_centre_m with circle_axis");
   }
   if (offset) return compliance_goal_t::GOAL_OFFSET;
   if (pose) return compliance_goal_t::GOAL_POSE;
   if (joints) return compliance_goal_t::GOAL_JOINT;
+  if (circle) return compliance_goal_t::GOAL_CIRCLE;
   if (wrench) return compliance_goal_t::GOAL_WRENCH;
   yaml.has("duration_s");
   yaml.finish();  // a misspelt key is the likelier reason
   yaml.refuse(
       "no goal; expected offset_m, offset_rad, position_m with quaternion_wxyz, "
-      "joints_rad, force_N or torque_Nm");
+      "joints_rad, circle_centre_m with circle_axis, force_N or torque_Nm");
 }
 
 }  // namespace
@@ -52,6 +54,13 @@ compliance_goal_t read_goal(const YamlMap& yaml, const Robot& robot) {
   }
   if (goal.kind == compliance_goal_t::GOAL_JOINT)
     read_joint_pose(yaml, "joints_rad", robot, goal.q);
+  if (goal.kind == compliance_goal_t::GOAL_CIRCLE) {
+    const auto centre = yaml.numbers("circle_centre_m", 3, kPositionRange_m);
+    const auto axis = yaml.numbers("circle_axis", 3, {-1.001, 1.001});
+    std::copy(centre.begin(), centre.end(), goal.offset);
+    std::copy(axis.begin(), axis.end(), goal.offset + 3);
+    normalise(yaml, "circle_axis", goal.offset + 3, 3);
+  }
   if (yaml.has("posture_rad")) {
     if (goal.kind != compliance_goal_t::GOAL_POSE && goal.kind != compliance_goal_t::GOAL_OFFSET)
       yaml.refuse("posture_rad", "goes with a goal of the tip only");

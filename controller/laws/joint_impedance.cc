@@ -1,9 +1,13 @@
-// A spring and a damper at every joint; also what HOLD uses.
-//   tau = -K_q (q - q_d) - D_q (v - v_d) + g
-// D_q: double diagonalisation of (M with rotors, K_q), so that every mode has the joint damping
-// ratio at this pose, plus a floor where K_q is zero. Coriolis torque is not compensated: for a
-// goal at rest the energy v^T M v / 2 + (q - q_d)^T K_q (q - q_d) / 2 then never rises by itself.
-#include "controller/damping_design.h"
+// Impedance at the joints with the contact torque measured (Hogan 1985, in joint space).
+//   a   = a_d + M_d^-1 (tau_ext - K_q (q - q_d) - D_q (v - v_d))
+//   tau = M a + C v + g - tau_ext
+//   =>  M_d (dv/dt - a_d) + D_q (v - v_d) + K_q (q - q_d) = tau_ext
+// as long as tau_ext is right: from the joints' torques it sees a contact anywhere, from a sensor
+// at the tip only there. A contact it does not see meets the stiffness M M_d^-1 K_q instead.
+// M_d as given, or the diagonal of M where the law started; D_q for (M_d, K_q), or as given.
+#include <Eigen/Cholesky>
+
+#include "controller/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {
@@ -11,29 +15,55 @@ namespace {
 
 class JointImpedance : public Law {
  public:
-  void compute(const LawInputs& in, LawOutput* out) noexcept override {
-    const VectorJ& K = in.gains.K_q;
-    const VectorJ error = in.state.q - in.goal.q_d;
-    const VectorJ rate = in.state.v - in.goal.v_d;
-    const VectorJ spring = K.cwiseProduct(error);
-    out->tau_stiffness = -spring;
-    out->spring_energy_J = 0.5 * error.dot(spring);
-    const MatrixJ D = joint_damping(in.terms.M_total, K, in.gains.joint_damping_ratio);
-    out->tau_damping = -D * rate;
-    out->tau_damping -= joint_damping_floor(in.terms.M_total, K).cwiseProduct(rate);
+  explicit JointImpedance(int joints) : M_start_(MatrixJ::Identity(joints, joints)), D_(M_start_) {}
+
+  void start(const LawInputs& in) noexcept override {
+    M_start_ = in.terms.M_total.diagonal().asDiagonal();
+    design(in);
   }
+
+  void compute(const LawInputs& in, LawOutput* out) noexcept override {
+    if (in.damping_due) design(in);
+    const Eigen::LLT<MatrixJ> M_d(wanted(in.gains));
+    const auto torque = [&](const VectorJ& effort) -> VectorJ {
+      return in.terms.M_total * M_d.solve(effort);
+    };
+    out->tau_stiffness = torque(-in.gains.K_q * (in.state.q - in.goal.q_d));
+    out->tau_damping = torque(-D_ * (in.state.v - in.goal.v_d));
+    const VectorJ& tau_ext = in.estimates.tau_ext;
+    out->tau_feedforward = in.terms.M_total * in.goal.a_d + torque(tau_ext) - tau_ext;
+  }
+
+ private:
+  MatrixJ wanted(const Gains& gains) const noexcept {
+    return gains.M_q.isZero(0.0) ? M_start_ : gains.M_q;
+  }
+
+  void design(const LawInputs& in) noexcept {
+    D_ = chosen_joint_damping(in.gains, wanted(in.gains), in.gains.K_q);
+  }
+
+  MatrixJ M_start_;
+  MatrixJ D_;
 };
+
+const char* refuse(const Gains& gains, int /*joints*/) {
+  if (gains.M_q.isZero(0.0)) return nullptr;
+  const Eigen::LLT<MatrixJ> cholesky(gains.M_q);
+  return cholesky.info() == Eigen::Success ? nullptr : "M_q must be positive for every joint";
+}
 
 }  // namespace
 
 LawEntry joint_impedance_law() {
   return {.name = "joint_impedance",
-          .summary = "spring and damper at every joint",
+          .summary = "joint inertia, damping and stiffness, contact torque measured",
           .needs = sensors::kLinkEncoder,
           .follows = Follows::kJointGoal,
-          .composition = {.gravity = true},
-          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
-            return std::make_unique<JointImpedance>();
+          .composition = {.gravity = true, .coriolis = true},
+          .refuse = refuse,
+          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
+            return std::make_unique<JointImpedance>(robot.robot.size());
           }};
 }
 

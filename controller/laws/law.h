@@ -28,7 +28,31 @@ inline constexpr unsigned kTorqueSensor = 4;  ///< tau_measured from a sensor, n
 inline constexpr unsigned kTipForceSensor = 8;
 }  // namespace sensors
 
-enum class Follows : std::uint8_t { kNothing, kJointGoal, kPoseGoal };
+/// Laws for the joints take goals at the tip too: the cycle solves the inverse kinematics.
+enum class Follows : std::uint8_t {
+  kNothing,
+  kPoseGoal,
+  kJointGoal,           ///< and exerts no wrench besides
+  kJointGoalAndWrench,  ///< and adds Goal::F_ff
+};
+
+inline bool follows_joints(Follows follows) noexcept {
+  return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench;
+}
+
+/// Whether a law can go on with the goal another one had.
+inline bool same_goal(Follows a, Follows b) noexcept {
+  return a == b || (follows_joints(a) && follows_joints(b));
+}
+
+/// What the observers say of this instant; zero where LawSettings::contact names no source.
+struct Estimates {
+  explicit Estimates(int joints) : tau_ext(VectorJ::Zero(joints)) {}
+
+  VectorJ tau_ext;                  ///< torque of the world on the joints, N m
+  Vector6 F_ext = Vector6::Zero();  ///< wrench of the world on the tip, base axes, N and N m
+  Vector6 A_BT = Vector6::Zero();   ///< dV_BT/dt, filtered, m/s^2 and rad/s^2
+};
 
 /// What the cycle adds to the law's torque.
 struct Composition {
@@ -37,12 +61,24 @@ struct Composition {
   bool null_space = false;  ///< + N (-K_null (q - q_null) - D_null v)
 };
 
+/// The composition with the user's choice of the model terms.
+inline Composition with_bias(Composition composition, Bias bias) noexcept {
+  if (bias == Bias::kOfLaw) return composition;
+  composition.gravity = bias != Bias::kNone;
+  composition.coriolis = bias == Bias::kGravityCoriolis;
+  return composition;
+}
+
 /// Everything a law may look at, of the same instant. The references outlive the call only.
 struct LawInputs {
   const ArmState& state;
   const ArmTerms& terms;
   const Goal& goal;    ///< after interpolation
-  const Gains& gains;  ///< after ramps
+  const Gains& gains;  ///< after ramps, in base axes
+  const Estimates& estimates;
+  double dt_s = 0.0;          ///< since the law's last cycle
+  bool stiffness_due = true;  ///< what a law derives from K_x, it may derive anew
+  bool damping_due = true;    ///< the same for damping
 };
 
 /// The law's torque by parts, N m, n each; their sum is what counts.
@@ -86,8 +122,10 @@ struct LawEntry {
   unsigned needs;       ///< sensors::*
   Follows follows;
   Composition composition;
+  /// nullptr, or what in these gains the law cannot work with. May be called in the cycle.
+  const char* (*refuse)(const Gains& gains, int joints) = nullptr;
   /// Makes the law for an arm that has what it needs. May throw ConfigError.
-  std::unique_ptr<Law> (*make)(const LoadedRobot& robot);
+  std::unique_ptr<Law> (*make)(const LoadedRobot& robot) = nullptr;
 };
 
 }  // namespace limber::controller

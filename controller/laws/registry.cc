@@ -3,10 +3,19 @@
 #include <array>
 
 // One line a law. The order is the numbering of controller_status_t.law: append, do not insert.
-#define LIMBER_LAWS(LAW)    \
-  LAW(gravity_compensation) \
-  LAW(joint_impedance)      \
-  LAW(cartesian_impedance)
+#define LIMBER_LAWS(LAW)     \
+  LAW(gravity_compensation)  \
+  LAW(joint_pd)              \
+  LAW(cartesian_impedance)   \
+  LAW(salisbury)             \
+  LAW(eq4)                   \
+  LAW(eq7)                   \
+  LAW(incremental_impedance) \
+  LAW(computed_torque)       \
+  LAW(pd_plus)               \
+  LAW(joint_impedance)       \
+  LAW(opspace_impedance)     \
+  LAW(accel_feedback)
 
 namespace limber::controller {
 
@@ -30,7 +39,9 @@ int find_law(const std::string& name) noexcept {
 }
 
 unsigned sensors_of(const Robot& robot) noexcept {
-  return robot.size() > 0 ? sensors::kLinkEncoder | sensors::kMotorEncoder : 0U;
+  if (robot.size() == 0) return 0U;
+  return sensors::kLinkEncoder | sensors::kMotorEncoder |
+         (robot.has_tip_sensor ? sensors::kTipForceSensor : 0U);
 }
 
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
@@ -39,6 +50,18 @@ const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
   if ((missing & sensors::kMotorEncoder) != 0) return "the law needs motor encoders";
   if ((missing & sensors::kTorqueSensor) != 0) return "the law needs joint torque sensors";
   if ((missing & sensors::kTipForceSensor) != 0) return "the law needs a force sensor at the tip";
+  return nullptr;
+}
+
+const char* refuse_settings(const LawSettings& settings, unsigned available) noexcept {
+  if (settings.contact == ContactSource::kTipSensor &&
+      (available & sensors::kTipForceSensor) == 0) {
+    return "contact: the arm has no force sensor at the tip";
+  }
+  if (settings.friction == FrictionCompensation::kObserver &&
+      (available & sensors::kTorqueSensor) == 0) {
+    return "friction: the observer needs joint torque sensors";
+  }
   return nullptr;
 }
 

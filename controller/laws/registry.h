@@ -20,4 +20,7 @@ unsigned sensors_of(const Robot& robot) noexcept;
 /// nullptr if an arm with these sensors can run the law, else why not. May be called in the cycle.
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept;
 
+/// The same for what the settings ask of the arm, whatever the law.
+const char* refuse_settings(const LawSettings& settings, unsigned available) noexcept;
+
 }  // namespace limber::controller

@@ -11,9 +11,10 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
       state(model.size()),
       goal(model.size()),
       gains(controller::default_gains(robot.robot)),
+      estimates(model.size()),
       output(model.size()),
       law_(controller::laws()[static_cast<std::size_t>(controller::find_law(name))].make(robot)) {
-  law_->start({state, terms, goal, gains});
+  law_->start({state, terms, goal, gains, estimates});
 }
 
 const controller::LawOutput& LawBench::at(const VectorJ& q, const VectorJ& v) {
@@ -21,7 +22,7 @@ const controller::LawOutput& LawBench::at(const VectorJ& q, const VectorJ& v) {
   state.v = v;
   model.evaluate(q, v, &terms);
   output.reset();
-  law_->compute(LawInputs{state, terms, goal, gains}, &output);
+  law_->compute(LawInputs{state, terms, goal, gains, estimates}, &output);
   return output;
 }
 

@@ -25,6 +25,7 @@ class LawBench {
   controller::ArmState state;
   controller::Goal goal;
   controller::Gains gains;
+  controller::Estimates estimates;
   controller::LawOutput output;
 
  private:

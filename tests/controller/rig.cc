@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scenarios/gains_yaml.h"
+
 namespace limber::testing {
 namespace {
 
@@ -96,18 +98,8 @@ const char* Rig::ask(std::int8_t request, std::int64_t client) {
 }
 
 compliance_gains_t Rig::gains() const {
-  const DefaultGains& given = robot.robot.gains;
-  compliance_gains_t message{};
+  compliance_gains_t message = default_gains(robot.robot);
   message.client = kClient;
-  message.num_joints = state.num_joints;
-  message.damping_ratio = given.damping_ratio;
-  message.joint_damping_ratio = given.joint_damping_ratio;
-  for (int i = 0; i < 6; ++i) {
-    message.K_x[i][i] = i < 3 ? given.K_x_translation_N_per_m : given.K_x_rotation_Nm_per_rad;
-  }
-  std::copy(given.K_q.begin(), given.K_q.end(), message.K_q);
-  std::copy(given.K_null.begin(), given.K_null.end(), message.K_null);
-  std::copy(given.D_null.begin(), given.D_null.end(), message.D_null);
   return message;
 }
 

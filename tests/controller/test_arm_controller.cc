@@ -167,7 +167,7 @@ TEST(ArmController, FollowsPoseAndJointGoals) {
   for (int i = 3; i < 6; ++i) EXPECT_NEAR(status.e[i], 0.0, 2e-3);
 
   compliance_gains_t gains = rig.gains();
-  gains.law = "joint_impedance";
+  gains.law = "joint_pd";
   ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
   goal.kind = compliance_goal_t::GOAL_JOINT;
   for (int i = 0; i < 7; ++i) goal.q[i] = rig.plant.q[i] + 0.1;

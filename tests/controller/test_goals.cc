@@ -226,10 +226,15 @@ TEST_F(Goals, PostureMovesAlong) {
 
 TEST_F(Goals, OnlyWhatTheLawFollows) {
   EXPECT_NE(goals.set(message, Follows::kNothing), nullptr);
-  EXPECT_NE(goals.set(message, Follows::kJointGoal), nullptr);
+  EXPECT_EQ(goals.set(message, Follows::kJointGoal), nullptr) << "by inverse kinematics";
+  EXPECT_TRUE(goals.at_tip());
   message.kind = compliance_goal_t::GOAL_JOINT;
   EXPECT_NE(goals.set(message, Follows::kPoseGoal), nullptr);
   EXPECT_EQ(goals.set(message, Follows::kJointGoal), nullptr);
+  EXPECT_FALSE(goals.at_tip());
+  message.F_ff[0] = 1.0;
+  EXPECT_NE(goals.set(message, Follows::kJointGoal), nullptr) << "nobody would exert it";
+  EXPECT_EQ(goals.set(message, Follows::kJointGoalAndWrench), nullptr);
 }
 
 TEST_F(Goals, NothingAllocates) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "controller/nullspace.h"
@@ -30,7 +31,8 @@ VectorJ equilibrium(LawBench* bench, const Vector6& F_ext, const VectorJ& start)
   const TaskRows rows(bench->gains.K_x);
   const auto residual = [&](const VectorJ& q) -> Eigen::VectorXd {
     const VectorJ spring = bench->at(q, VectorJ::Zero(n)).tau();
-    const VectorJ posture = project_to_null_space(bench->terms, rows, -10.0 * (q - start));
+    const VectorJ posture =
+        null_space_projector(bench->terms, rows, Projector::kDynamic) * (-10.0 * (q - start));
     return spring + posture + bench->terms.J.transpose() * F_ext;
   };
   constexpr double h = 1e-6;
@@ -81,13 +83,13 @@ TEST(GravityCompensation, AddsNothingToTheWeight) {
 TEST(Springs, TorqueIsTheGradientOfTheEnergy) {
   std::mt19937 generator(1);
   constexpr double h = 1e-6;
-  for (const char* name : {"joint_impedance", "cartesian_impedance"}) {
+  for (const char* name : {"joint_pd", "cartesian_impedance"}) {
     for (const LoadedRobot& robot : {seven(), planar()}) {
       LawBench bench(robot, name);
       const int n = robot.robot.size();
       const VectorJ rest = VectorJ::Zero(n);
       for (int i = 0; i < 40; ++i) {
-        bench.gains.orientation = i % 2 == 0 ? Orientation::kLog : Orientation::kQuat;
+        bench.gains.settings.orientation = i % 2 == 0 ? Orientation::kLog : Orientation::kQuat;
         bench.gains.K_x = limber::testing::random_stiffness(400.0, 20.0, generator);
         bench.set_goal(bent(n) + random_vector(n, 0.3, generator));
         const VectorJ q = bent(n) + random_vector(n, i < 30 ? 0.3 : 1.0, generator);
@@ -114,7 +116,7 @@ TEST(Springs, ForceIsLimitedWithoutAnEdge) {
   for (double x = 0.0; x < 2.0; x += 1e-3) {
     bench.goal.X_BD.p = far.p + Eigen::Vector3d(x, 0, 0);
     const LawOutput& out = bench.at(bent(7), VectorJ::Zero(7));
-    EXPECT_NEAR(out.F[0], std::min(500.0 * x, SpringLimit::kMaxForce_N), 1e-6);
+    EXPECT_NEAR(out.F[0], std::min(500.0 * x, bench.gains.settings.spring_force_N), 1e-6);
     EXPECT_LE(out.F[0] - last, 500.0 * 1e-3 + 1e-9);
     if (std::abs(x - 0.2) > 1e-9) {
       EXPECT_EQ(out.limits != 0, x > 0.2);
@@ -169,12 +171,12 @@ TEST(CartesianImpedance, PlanarArmIsAsStiffAsItsTwoRowsSay) {
 }
 
 TEST(JointImpedance, TipComplianceFollowsFromTheJoints) {
-  LawBench bench(seven(), "joint_impedance");
-  bench.gains.K_q << 80, 70, 60, 50, 30, 20, 10;
+  LawBench bench(seven(), "joint_pd");
+  bench.gains.K_q.diagonal() << 80, 70, 60, 50, 30, 20, 10;
+  const MatrixJ C_q = bench.gains.K_q.inverse();
   bench.set_goal(bent(7));
   bench.at(bent(7), VectorJ::Zero(7));
-  const Matrix6 C =
-      bench.terms.J * bench.gains.K_q.cwiseInverse().asDiagonal() * bench.terms.J.transpose();
+  const Matrix6 C = bench.terms.J * C_q * bench.terms.J.transpose();
   constexpr double kSmall = 1e-5;
   for (int i = 0; i < 6; ++i) {
     const auto settled = [&](double sign) {
@@ -182,7 +184,8 @@ TEST(JointImpedance, TipComplianceFollowsFromTheJoints) {
       VectorJ q = bent(7);
       for (int k = 0; k < 60; ++k) {  // K_q (q - q_d) = J(q)^T F
         bench.at(q, VectorJ::Zero(7));
-        q = bent(7) + bench.gains.K_q.cwiseInverse().asDiagonal() * (bench.terms.J.transpose() * F);
+        const VectorJ torque = bench.terms.J.transpose() * F;
+        q = bent(7) + C_q * torque;
       }
       EXPECT_LT((bench.at(q, VectorJ::Zero(7)).tau() + bench.terms.J.transpose() * F).norm(),
                 1e-14);
@@ -208,8 +211,9 @@ TEST(CartesianImpedance, TipMovesAsMassSpringDamper) {
     const VectorJ v = random_vector(7, 0.5, generator);
     plant.F_ext = random_six(5.0, generator);
     const LawOutput& out = bench.at(q, v);
-    const VectorJ posture = project_to_null_space(bench.terms, TaskRows(bench.gains.K_x),
-                                                  random_vector(7, 5.0, generator));
+    const VectorJ posture =
+        null_space_projector(bench.terms, TaskRows(bench.gains.K_x), Projector::kDynamic) *
+        random_vector(7, 5.0, generator);
     EXPECT_GT(posture.norm(), 0.01);
     const VectorJ a =
         plant.acceleration(q, v, out.tau() + posture + bench.terms.g + bench.terms.Cv);
@@ -229,7 +233,7 @@ TEST(CartesianImpedance, TipMovesAsMassSpringDamper) {
 // rises, from wild starts, for a redundant and a planar arm, and it does fall.
 TEST(Springs, EnergyNeverRises) {
   std::mt19937 generator(4);
-  for (const char* name : {"joint_impedance", "cartesian_impedance"}) {
+  for (const char* name : {"joint_pd", "cartesian_impedance"}) {
     for (const LoadedRobot& robot : {seven(), planar()}) {
       const int n = robot.robot.size();
       LawBench bench(robot, name);

@@ -164,7 +164,7 @@ TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
   from.K_x = limber::testing::random_stiffness(300.0, 10.0, generator);
   Gains to = from;
   to.K_x = limber::testing::random_stiffness(900.0, 40.0, generator);
-  to.K_q.setConstant(50.0);
+  to.K_q.diagonal().setConstant(50.0);
   to.damping_ratio = 1.0;
   GainRamp ramp(from);
   ramp.start(to, 0.2);
@@ -177,7 +177,7 @@ TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
     EXPECT_TRUE(ramp.moving());
     before = K;
     if (i == 99) {
-      EXPECT_NEAR(ramp.now().K_q[0], 25.0, 1e-9) << "half way";
+      EXPECT_NEAR(ramp.now().K_q(0, 0), 25.0, 1e-9) << "half way";
     }
   }
   ramp.advance(1e-3 + 1e-12);
@@ -189,16 +189,16 @@ TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
 TEST(GainRamp, ANewRampStartsWhereTheOldOneIs) {
   Gains gains(1);
   GainRamp ramp(gains);
-  gains.K_q.setConstant(100.0);
+  gains.K_q.diagonal().setConstant(100.0);
   ramp.start(gains, 0.0);  // at least a tenth of a second
   for (int i = 0; i < 50; ++i) ramp.advance(1e-3);
-  const double reached = ramp.now().K_q[0];
+  const double reached = ramp.now().K_q(0, 0);
   EXPECT_NEAR(reached, 50.0, 1e-6);
   gains.K_q.setZero();
   ramp.start(gains, 1.0);
-  EXPECT_EQ(ramp.now().K_q[0], reached);
+  EXPECT_EQ(ramp.now().K_q(0, 0), reached);
   ramp.advance(1e-3);
-  EXPECT_NEAR(ramp.now().K_q[0], reached, 1e-3);
+  EXPECT_NEAR(ramp.now().K_q(0, 0), reached, 1e-3);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(Requests, WrongGainsAreRefusedWhole) {
   const Case cases[] = {
       {"unknown law", [](compliance_gains_t* g) { g->law = "wishful_thinking"; }},
       {"joint count", [](compliance_gains_t* g) { g->num_joints = 6; }},
-      {"orientation", [](compliance_gains_t* g) { g->orientation = 2; }},
+      {"orientation", [](compliance_gains_t* g) { g->orientation = 5; }},
       {"NaN", [](compliance_gains_t* g) { g->K_x[1][2] = g->K_x[2][1] = kNaN; }},
       {"too stiff", [](compliance_gains_t* g) { g->K_x[0][0] = 1.1e5; }},
       {"too stiff in rotation", [](compliance_gains_t* g) { g->K_x[4][4] = 1.1e4; }},

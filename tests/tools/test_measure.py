@@ -187,10 +187,10 @@ def test_friction_band_is_what_the_joints_can_hold(scenario):
     assert statics.force_of_torque(G, G @ J.T, np.eye(6)[0], extreme) == pytest.approx(band)
 
 
-def test_joint_impedance_closed_form(tmp_path, scenario):
+def test_joint_pd_closed_form(tmp_path, scenario):
     """planar2r: C = J K_q⁻¹ Jᵀ with the textbook Jacobian."""
     text = "friction: false\n" + timeline(
-        ("+x", "+y"), "  - {at_s: 0.5, gains: {law: joint_impedance, K_q_Nm_per_rad: [50, 30]}}"
+        ("+x", "+y"), "  - {at_s: 0.5, gains: {law: joint_pd, K_q_Nm_per_rad: [50, 30]}}"
     )
     arm = scenario("planar2r", text)
     q1, q2, a1, a2 = 0.4, 1.1, 0.35, 0.3

@@ -13,7 +13,7 @@ from limber.robot import JointInfo
 from limber.watch import PERIODIC, View
 
 JOINTS = [JointInfo("shoulder", -1.0, 1.0, 0.0), JointInfo("elbow", -np.inf, np.inf, 0.0)]
-LAWS = ["gravity_compensation", "joint_impedance", "cartesian_impedance"]
+LAWS = ["gravity_compensation", "joint_pd", "cartesian_impedance"]
 
 
 class Silent:

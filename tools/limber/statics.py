@@ -11,7 +11,7 @@ C = G Jᵀ. For six or more joints under Cartesian impedance that is K_x⁻¹.
 import numpy as np
 
 CARTESIAN = "cartesian_impedance"
-JOINT = "joint_impedance"
+JOINT = "joint_pd"
 
 
 def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> np.ndarray | None:

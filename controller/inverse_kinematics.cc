@@ -1,0 +1,43 @@
+#include "controller/inverse_kinematics.h"
+
+#include "controller/pose_error.h"
+#include "controller/singularity.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr int kStepsPerCycle = 3;
+constexpr double kSigma_0 = 0.05;
+constexpr double kLambdaMax = 0.05;
+constexpr double kLongestStep_rad = 0.1;
+constexpr double kPostureRate_per_s = 1.0;
+
+}  // namespace
+
+InverseKinematics::InverseKinematics(const LoadedRobot& robot)
+    : model_(robot), terms_(model_.size()), q_(VectorJ::Zero(model_.size())) {}
+
+void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
+  const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
+  const Matrix6J J = rows.of(error.A * model_.jacobian(q_));
+  VectorJ step = -damped_inverse(J, kSigma_0, kLambdaMax).inverse * error.e;
+  const double longest = step.cwiseAbs().maxCoeff();
+  if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
+  if (step.allFinite()) q_ += step;
+}
+
+void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noexcept {
+  for (int i = 0; i < kStepsPerCycle; ++i) correct(rows, goal->X_BD);
+  const Matrix6J J = rows.of(model_.jacobian(q_));
+  const MatrixJ6 inverse = damped_inverse(J, kSigma_0, kLambdaMax).inverse;
+  const VectorJ posture = kPostureRate_per_s * (goal->q_null - q_);
+  const VectorJ drift = posture - inverse * (J * posture);
+  q_ += dt_s * drift;
+
+  goal->q_d = q_;
+  goal->v_d = inverse * goal->V_BD + drift;
+  model_.evaluate(q_, goal->v_d, {.jacobian = true, .inertia = false, .coriolis = false}, &terms_);
+  goal->a_d = inverse * (goal->A_BD - terms_.Jdot_v);
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,32 @@
+// Joint goal for a goal at the tip.
+#pragma once
+
+#include "controller/arm_terms.h"
+#include "controller/goal.h"
+#include "controller/nullspace.h"
+
+namespace limber::controller {
+
+/// Follows the goal at the tip with q_d, by a few damped Gauss-Newton steps a cycle from where it
+/// was (the goal moves smoothly, so it keeps up to rounding), and its rates:
+///   v_d = J^+ (V_BD) + (I - J^+ J) v_0,   a_d = J^+ (A_BD - Jdot v_d),   J = J(q_d)
+/// over the task's rows only, J^+ damped near singularities. v_0 pulls a redundant arm towards the
+/// posture q_null. Where the goal is out of reach q_d stays as close as the damping lets it.
+class InverseKinematics {
+ public:
+  explicit InverseKinematics(const LoadedRobot& robot);
+
+  /// Starts from q. In the cycle.
+  void reset(const VectorJ& q) noexcept { q_ = q; }
+  /// Takes X_BD, V_BD, A_BD and q_null of the goal, writes q_d, v_d, a_d. In the cycle.
+  void track(const TaskRows& rows, double dt_s, Goal* goal) noexcept;
+
+ private:
+  void correct(const TaskRows& rows, const Pose& X_BD) noexcept;
+
+  ArmModel model_;
+  ArmTerms terms_;
+  VectorJ q_;
+};
+
+}  // namespace limber::controller
