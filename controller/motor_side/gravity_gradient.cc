@@ -10,14 +10,12 @@ constexpr double kStep = 1e-5;  // rad or m
 MatrixJ gravity_gradient(ArmModel* model, const VectorJ& q) noexcept {
   const Eigen::Index n = q.size();
   MatrixJ gradient(n, n);
-  VectorJ ahead(n);
-  VectorJ behind(n);
   VectorJ at = q;
   for (Eigen::Index i = 0; i < n; ++i) {
     at[i] = q[i] + kStep;
-    model->gravity(at, &ahead);
+    const VectorJ ahead = model->gravity(at);
     at[i] = q[i] - kStep;
-    model->gravity(at, &behind);
+    const VectorJ behind = model->gravity(at);
     at[i] = q[i];
     gradient.col(i) = (ahead - behind) / (2.0 * kStep);
   }

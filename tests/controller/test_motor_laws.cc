@@ -131,8 +131,7 @@ TEST(Tomei, HoldsTheLinkAtItsGoal) {
   std::mt19937 generator(7);
   ArmModel model(limber::testing::seven_joint_arm());
   const VectorJ q_d = random_vector(7, 0.7, generator);
-  VectorJ g_d(7);
-  model.gravity(q_d, &g_d);
+  const VectorJ g_d = model.gravity(q_d);
   const Tomei law{300.0 * MatrixJ::Identity(7, 7), 20.0 * MatrixJ::Identity(7, 7),
                   VectorJ::Constant(7, 800.0)};
   const VectorJ theta_d = law.theta_d(q_d, g_d);
