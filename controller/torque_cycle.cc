@@ -146,8 +146,9 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
   }
   gains_.start(asked_, message.ramp_s);
   selected_ = law;
-  // A law that follows the same kind of goal goes on with it.
-  if (active && law != running_) run(law, !same_goal(wanted.follows, entry().follows));
+  // A law that follows a goal goes on with the one there is.
+  const bool nothing = wanted.follows == Follows::kNothing || entry().follows == Follows::kNothing;
+  if (active && law != running_) run(law, nothing);
   return nullptr;
 }
 
