@@ -48,6 +48,7 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       asked_(gains_.now()),
       estimation_(robot),
       tank_({0.0, 0.0, 0.0, 0.0}, gains_.now().K_x),
+      passivity_(3, 0.0),
       rows_(gains_.now().K_x),
       blend_(model_.size()),
       limits_(robot.robot),
@@ -105,6 +106,7 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
   } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
     goals_.follow_tip(goal_.X_BD);
   }
+  passivity_.reset();
   match_goals();
   refresh_gains();
   laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
@@ -140,6 +142,10 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
 
   if (asked_.settings != gains_.now().settings) switched_ = true;
   estimation_.set(asked_.settings);
+  if (asked_.settings.passivity_damping_Ns_per_m !=
+      gains_.now().settings.passivity_damping_Ns_per_m) {
+    passivity_ = {3, asked_.settings.passivity_damping_Ns_per_m};
+  }
   if (asked_.settings.tank_J != gains_.now().settings.tank_J) {
     tank_ =
         EnergyTank({asked_.settings.tank_J, 0.0, asked_.settings.tank_J, kTankShare}, active_.K_x);
@@ -181,6 +187,20 @@ void TorqueCycle::draw_from_tank() noexcept {
   active_.K_x = tank_.update(active_.K_x, D, error.e, V, state_.period_s);
 }
 
+// Energy of spring and damper against the goal; the feed-forward wrench is the user's own.
+void TorqueCycle::keep_passive() noexcept {
+  if (entry().follows != Follows::kPoseGoal) {
+    passivity_.reset();
+    return;
+  }
+  passivity_.observe(terms_.X_BT.p - goal_.X_BD.p);
+  const Eigen::Vector3d V = (terms_.V_BT - goal_.V_BD).head<3>();
+  const Eigen::Vector3d F_added = -passivity_.damping(V, state_.period_s) * V;
+  law_.tau_damping += terms_.J.topRows<3>().transpose() * F_added;
+  law_.F.head<3>() += F_added;
+  passivity_.hold((law_.F - goal_.F_ff).head<3>());
+}
+
 VectorJ TorqueCycle::friction() const noexcept {
   if (active_.settings.friction == FrictionCompensation::kNone) return none_;
   VectorJ v_d = goal_.v_d;
@@ -204,6 +224,7 @@ bool TorqueCycle::control(double dt_s) noexcept {
   const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
   laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
+  keep_passive();
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
   tau_coriolis_ = add.coriolis ? terms_.Cv : none_;
