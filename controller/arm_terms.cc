@@ -141,9 +141,7 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
     terms->M_total.llt().solveInPlace(terms->Minv_JT);
   }
   if (due.coriolis) terms->Cv = coriolis(q, v);
-  s.q.data = q;
-  s.note(s.dynamics.JntToGravity(s.q, s.vector));
-  terms->g = s.vector.data;
+  terms->g = gravity(q);
 }
 
 Pose ArmModel::tip_pose(const VectorJ& q) noexcept {
@@ -183,6 +181,19 @@ VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const Vec
   s.a.data = a;
   s.note(s.newton_euler.CartToJnt(s.q, s.qv.qdot, s.a, s.no_wrench, s.vector));
   return s.vector.data + rotor_inertia_.cwiseProduct(a);
+}
+
+VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
+  Solvers& s = *solvers_;
+  s.q.data = q;
+  s.note(s.dynamics.JntToGravity(s.q, s.vector));
+  return s.vector.data;
+}
+
+void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
+  terms->X_BT = tip_pose(q);
+  terms->J = jacobian(q);
+  terms->g = gravity(q);
 }
 
 }  // namespace limber::controller

@@ -65,6 +65,10 @@ class ArmModel {
   VectorJ coriolis(const VectorJ& q, const VectorJ& v) noexcept;
   /// (M + diag(B)) a + C v + g by recursive Newton-Euler (Luh, Walker, Paul 1980).
   VectorJ inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept;
+  /// Torque that holds the arm still, g.
+  VectorJ gravity(const VectorJ& q) noexcept;
+  /// What torques at rest depend on, X_BT, J and g; the other terms stay as they are.
+  void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
   struct Solvers;

@@ -10,6 +10,7 @@ namespace {
 
 // Share of the greatest eigenvalue below which the tip cannot be said to move.
 constexpr double kOutOfReach = 1e-9;
+constexpr double kRounding = 1e-12;
 constexpr double kFloorLinear = 5.0;    // N s/m
 constexpr double kFloorAngular = 0.2;   // N m s/rad
 constexpr double kFloorFadesAt = 10.0;  // N/m
@@ -41,7 +42,9 @@ Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
 // M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
 template <typename Matrix>
 Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
-  const Eigen::LLT<Matrix> cholesky(M);
+  // Where a direction is lost M has an eigenvalue of zero, or less by rounding.
+  const Matrix least = kRounding * M.trace() * Matrix::Identity(M.rows(), M.cols());
+  const Eigen::LLT<Matrix> cholesky(M + least);
   Matrix S = K;
   cholesky.matrixL().solveInPlace(S);
   S.transposeInPlace();

@@ -30,6 +30,8 @@ void TorqueCycle::describe(controller_status_t* status) noexcept {
   for (std::size_t i = 0; i < kTerms; ++i) {
     status->term_period_cycles[i] = static_cast<std::int16_t>(settings.period_cycles[i]);
   }
+  status->tank_energy_J = settings.tank_J > 0.0 ? tank_.energy_J() : 0.0;
+  status->passivity_energy_J = passivity_.energy_J();
   status->contact = static_cast<std::int8_t>(settings.contact);
   describe_tip(status);
   describe_parts(status);
@@ -41,7 +43,7 @@ void TorqueCycle::describe_tip(controller_status_t* status) const noexcept {
   write(goal_.X_BD, status->p_BD, status->quat_BD);
   write(pose_error(terms_.X_BT, goal_.X_BD, active_.settings.orientation).e, status->e);
   write(law_.F, status->F_law);
-  write(estimates_.F_ext, status->F_ext);
+  write(estimation_.estimates().F_ext, status->F_ext);
 }
 
 void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
@@ -50,7 +52,8 @@ void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
   write(tau_null_, status->tau_null);
   write(tau_gravity_, status->tau_gravity);
   write(tau_coriolis_, status->tau_coriolis);
-  write(estimates_.tau_ext, status->tau_ext);
+  write(tau_friction_, status->tau_friction);
+  write(estimation_.estimates().tau_ext, status->tau_ext);
   write(limits_.previous(), status->tau_sent);
 }
 

@@ -55,6 +55,7 @@ LawSettings read_settings(const compliance_gains_t& message) noexcept {
   s.acceleration_filter_s = or_default(message.acceleration_filter_s, s.acceleration_filter_s);
   s.observer_gain_per_s = or_default(message.observer_gain_per_s, s.observer_gain_per_s);
   s.tank_J = static_cast<double>(message.tank_J);
+  s.passivity_damping_Ns_per_m = static_cast<double>(message.passivity_damping_Ns_per_m);
   s.spring_force_N = or_default(message.spring_force_N, s.spring_force_N);
   s.spring_moment_Nm = or_default(message.spring_moment_Nm, s.spring_moment_Nm);
   for (std::size_t i = 0; i < kTerms; ++i) {

@@ -7,6 +7,7 @@ namespace limber::controller {
 namespace {
 
 constexpr int kStepsPerCycle = 3;
+constexpr int kStepsToApproach = 20;
 constexpr double kSigma_0 = 0.05;
 constexpr double kLambdaMax = 0.05;
 constexpr double kLongestStep_rad = 0.1;
@@ -27,11 +28,15 @@ void InverseKinematics::reset(const VectorJ& q) noexcept {
 
 void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
   const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
-  const Matrix6J J = rows.of(error.A * model_.jacobian(q_));
+  const Matrix6J J = rows.of(Matrix6J(error.A * model_.jacobian(q_)));
   VectorJ step = -damped_inverse(J, kSigma_0, kLambdaMax).inverse * error.e;
   const double longest = step.cwiseAbs().maxCoeff();
   if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
   if (step.allFinite()) q_ += step;
+}
+
+void InverseKinematics::approach(const TaskRows& rows, const Pose& X_BD) noexcept {
+  for (int i = 0; i < kStepsToApproach; ++i) correct(rows, X_BD);
 }
 
 void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noexcept {

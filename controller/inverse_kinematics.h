@@ -19,6 +19,9 @@ class InverseKinematics {
 
   /// Starts from q. In the cycle.
   void reset(const VectorJ& q) noexcept;
+  /// Goes to a pose that is not where the arm is, so that the joints do not have to run after it.
+  /// In the cycle, where a law starts.
+  void approach(const TaskRows& rows, const Pose& X_BD) noexcept;
   /// Takes X_BD, V_BD, A_BD and q_null of the goal, writes q_d, v_d, a_d. In the cycle.
   void track(const TaskRows& rows, double dt_s, Goal* goal) noexcept;
 

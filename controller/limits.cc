@@ -29,16 +29,25 @@ JointLimits::JointLimits(const Robot& robot)
       position_max_(collect(robot, &JointConfig::position_max)),
       wall_(((position_max_ - position_min_) * kWallShareOfRange).cwiseMin(kWallWidth)),
       velocity_(collect(robot, &JointConfig::velocity_limit)),
-      torque_(collect(robot, &JointConfig::torque_limit_Nm)),
       torque_rate_(collect(robot, &JointConfig::torque_rate_limit_Nm_per_s)),
-      previous_(VectorJ::Zero(robot.size())) {}
+      power_W_(robot.power_limit_W),
+      limiter_(collect(robot, &JointConfig::torque_limit_Nm), kShareOfGateStep * torque_rate_) {}
 
 void JointLimits::set_previous(const VectorJ& tau) noexcept {
-  previous_ = tau.cwiseMax(-torque_).cwiseMin(torque_);
+  limiter_.set_previous(tau.cwiseMax(-torque_limit()).cwiseMin(torque_limit()));
 }
 
 bool JointLimits::far_from_previous(const VectorJ& tau, double period_s) const noexcept {
-  return ((tau - previous_).cwiseAbs().array() > torque_rate_.array() * period_s).any();
+  return ((tau - previous()).cwiseAbs().array() > torque_rate_.array() * period_s).any();
+}
+
+bool JointLimits::scale_for_power(const VectorJ& v, const VectorJ& g, VectorJ* tau) const noexcept {
+  const double weight = g.dot(v);
+  const double motion = tau->dot(v) - weight;
+  if (!(motion > 0.0 && motion + weight > power_W_)) return false;
+  const double share = std::clamp((power_W_ - weight) / motion, 0.0, 1.0);
+  *tau = g + share * (*tau - g);
+  return true;
 }
 
 bool JointLimits::scale_for_velocity(const ArmState& state, const VectorJ& g,
@@ -63,7 +72,7 @@ bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* ta
     if (!(depth > 0.0)) continue;
     const double outwards = below > above ? -1.0 : 1.0;
     const double speed = std::max(outwards * state.v[i], 0.0);
-    const double K = kWallTorqueAtLimit * torque_[i] / wall_[i];
+    const double K = kWallTorqueAtLimit * torque_limit()[i] / wall_[i];
     // The damper comes in with the depth: at the edge of the wall nothing jumps.
     const double D =
         2.0 * kWallDampingRatio * std::sqrt(K * M(i, i)) * std::min(depth / wall_[i], 1.0);
@@ -76,24 +85,16 @@ bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* ta
 std::int32_t JointLimits::shape(const ArmState& state, const ArmTerms& terms,
                                 VectorJ* tau) const noexcept {
   std::int32_t acted = 0;
+  if (scale_for_power(state.v, terms.g, tau)) acted |= controller_status_t::LIMIT_POWER;
   if (scale_for_velocity(state, terms.g, tau)) acted |= controller_status_t::LIMIT_VELOCITY;
   if (add_walls(state, terms.M_total, tau)) acted |= controller_status_t::LIMIT_POSITION;
   return acted;
 }
 
 std::int32_t JointLimits::clamp(double period_s, VectorJ* tau) noexcept {
-  std::int32_t acted = 0;
-  for (Eigen::Index i = 0; i < tau->size(); ++i) {
-    const double wanted = (*tau)[i];
-    const double clamped = std::clamp(wanted, -torque_[i], torque_[i]);
-    const double step = kShareOfGateStep * torque_rate_[i] * period_s;
-    const double limited = std::clamp(clamped, previous_[i] - step, previous_[i] + step);
-    if (clamped != wanted) acted |= controller_status_t::LIMIT_TORQUE;
-    if (limited != clamped) acted |= controller_status_t::LIMIT_RATE;
-    (*tau)[i] = limited;
-  }
-  previous_ = *tau;
-  return acted;
+  const TorqueLimiter::Acted acted = limiter_.limit(period_s, tau);
+  return (acted.torque ? controller_status_t::LIMIT_TORQUE : 0) |
+         (acted.rate ? controller_status_t::LIMIT_RATE : 0);
 }
 
 }  // namespace limber::controller

@@ -19,6 +19,7 @@ struct TaskRows {
   int count() const noexcept;
   /// M with the rows that are not stiff set to zero.
   Matrix6J of(Matrix6J J) const noexcept;
+  Vector6 of(Vector6 F) const noexcept;
 
   bool stiff[6];
 };
@@ -26,6 +27,17 @@ struct TaskRows {
 /// Directions whose apparent inertia is more than ten thousand times the lightest one's are being
 /// lost.
 inline constexpr double kLostShare = 1e-4;
+
+/// M on the task's rows, zero elsewhere.
+Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept;
+
+/// The same with ones on the diagonal of every row left empty, so that it has an inverse: also
+/// while a ramp of K_x still holds rows that M no longer has.
+Matrix6 invertible_on_task(const TaskRows& rows, const Matrix6& M) noexcept;
+
+/// nullptr if M_x is zero or positive definite wherever K_x has entries; in the goal's axes an
+/// entry in one row may turn into any of its block. In the cycle.
+const char* refuse_tip_inertia(const Gains& gains) noexcept;
 
 /// Of the task's rows alone; zero out of them. In the cycle.
 TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept;

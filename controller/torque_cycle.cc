@@ -1,12 +1,22 @@
 #include "controller/torque_cycle.h"
 
+#include <algorithm>
+
 #include "common/config_error.h"
+#include "controller/pose_error.h"
+#include "controller/singularity.h"
 
 namespace limber::controller {
 namespace {
 
 // The posture may take this share of a joint's torque.
 constexpr double kNullShare = 0.3;
+// Of what the damper takes out, this much goes into the tank.
+constexpr double kTankShare = 0.9;
+constexpr double kSlowest = 1e-12;  // m^2/s^2
+// Joint velocities for a motion at the tip.
+constexpr double kSigma_0 = 0.05;
+constexpr double kLambdaMax = 0.05;
 
 int checked_law(const std::string& name, unsigned sensors) {
   const int index = find_law(name);
@@ -36,7 +46,9 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       gains_(default_gains(robot.robot)),
       active_(gains_.now()),
       asked_(gains_.now()),
-      estimates_(model_.size()),
+      estimation_(robot),
+      tank_({0.0, 0.0, 0.0, 0.0}, gains_.now().K_x),
+      passivity_(3, 0.0),
       rows_(gains_.now().K_x),
       blend_(model_.size()),
       limits_(robot.robot),
@@ -46,15 +58,11 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       tau_null_(none_),
       tau_gravity_(none_),
       tau_coriolis_(none_),
+      tau_friction_(none_),
       gravity_(none_) {
   for (const LawEntry& entry : laws()) {
     const bool possible = refuse_law(entry, sensors_) == nullptr;
     laws_.push_back(possible ? entry.make(robot) : nullptr);
-  }
-  const LawEntry& selected = laws()[static_cast<std::size_t>(selected_)];
-  if (selected.refuse == nullptr) return;
-  if (const char* reason = selected.refuse(gains_.now(), model_.size())) {
-    throw ConfigError(law + ": with the gains of robot.yaml: " + reason);
   }
 }
 
@@ -67,7 +75,7 @@ LawInputs TorqueCycle::inputs(double dt_s) const noexcept {
           .terms = terms_,
           .goal = goal_,
           .gains = active_,
-          .estimates = estimates_,
+          .estimates = estimation_.estimates(),
           .dt_s = dt_s,
           .stiffness_due = due(Term::kStiffness),
           .damping_due = due(Term::kDamping)};
@@ -76,21 +84,31 @@ LawInputs TorqueCycle::inputs(double dt_s) const noexcept {
 void TorqueCycle::measure(const joint_state_t& message) noexcept {
   ++cycles_;
   read_arm_state(message, &state_);
+  estimation_.estimate_velocity(&state_);
   const TermsDue terms{.jacobian = due(Term::kJacobian) || cycles_ == 1,
                        .inertia = due(Term::kInertia) || cycles_ == 1,
                        .coriolis = due(Term::kCoriolis) || cycles_ == 1};
   model_.evaluate(state_.q, state_.v, terms, &terms_);
+  estimation_.observe(message, state_, terms_, TaskRows(active_.K_x), &model_);
   if (!terms_.g.allFinite()) return;
   gravity_ = terms_.g.cwiseMax(-limits_.torque_limit()).cwiseMin(limits_.torque_limit());
 }
 
 void TorqueCycle::run(int law, bool from_here) noexcept {
+  const bool joints = follows_joints(entry().follows);
   running_ = law;
   switched_ = true;
   if (from_here) {
     goals_.reset(terms_.X_BT, state_.q);
     inverse_kinematics_.reset(state_.q);
+  } else if (!joints && follows_joints(entry().follows)) {
+    // A goal at the tip, followed by the joints from now on.
+    inverse_kinematics_.reset(state_.q);
+    inverse_kinematics_.approach(TaskRows(active_.K_x), goals_.goal().X_BD);
+  } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
+    goals_.follow_tip(goal_.X_BD);
   }
+  passivity_.reset();
   match_goals();
   refresh_gains();
   laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
@@ -130,10 +148,19 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
   if (asked_.settings != now.settings || asked_.M_x != now.M_x || asked_.M_q != now.M_q) {
     switched_ = true;
   }
+  estimation_.set(asked_.settings);
+  if (asked_.settings.passivity_damping_Ns_per_m != now.settings.passivity_damping_Ns_per_m) {
+    passivity_ = {3, asked_.settings.passivity_damping_Ns_per_m};
+  }
+  if (asked_.settings.tank_J != now.settings.tank_J) {
+    tank_ =
+        EnergyTank({asked_.settings.tank_J, 0.0, asked_.settings.tank_J, kTankShare}, active_.K_x);
+  }
   gains_.start(asked_, message.ramp_s);
   selected_ = law;
-  // A law that follows the same kind of goal goes on with it.
-  if (active && law != running_) run(law, !same_goal(wanted.follows, entry().follows));
+  // A law that follows a goal goes on with the one there is.
+  const bool nothing = wanted.follows == Follows::kNothing || entry().follows == Follows::kNothing;
+  if (active && law != running_) run(law, nothing);
   return nullptr;
 }
 
@@ -152,6 +179,41 @@ void TorqueCycle::match_goals() noexcept {
 void TorqueCycle::refresh_gains() noexcept {
   active_ = gains_.now();
   turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
+  if (active_.settings.tank_J > 0.0) draw_from_tank();
+}
+
+// A stiffer spring takes its energy from the tank; the damper of the cycle before has filled it.
+void TorqueCycle::draw_from_tank() noexcept {
+  const PoseError error = pose_error(terms_.X_BT, goal_.X_BD, active_.settings.orientation);
+  const Vector6 V = terms_.V_BT - goal_.V_BD;
+  const double dissipated = -law_.tau_damping.dot(state_.v);
+  // As a matrix that dissipates just that along V.
+  const double along = V.squaredNorm();
+  const Matrix6 D = std::max(dissipated, 0.0) / std::max(along, kSlowest) * Matrix6::Identity();
+  active_.K_x = tank_.update(active_.K_x, D, error.e, V, state_.period_s);
+}
+
+// Energy of spring and damper against the goal; the feed-forward wrench is the user's own.
+void TorqueCycle::keep_passive() noexcept {
+  if (entry().follows != Follows::kPoseGoal) {
+    passivity_.reset();
+    return;
+  }
+  passivity_.observe(terms_.X_BT.p - goal_.X_BD.p);
+  const Eigen::Vector3d V = (terms_.V_BT - goal_.V_BD).head<3>();
+  const Eigen::Vector3d F_added = -passivity_.damping(V, state_.period_s) * V;
+  law_.tau_damping += terms_.J.topRows<3>().transpose() * F_added;
+  law_.F.head<3>() += F_added;
+  passivity_.hold((law_.F - goal_.F_ff).head<3>());
+}
+
+VectorJ TorqueCycle::friction() const noexcept {
+  if (active_.settings.friction == FrictionCompensation::kNone) return none_;
+  VectorJ v_d = goal_.v_d;
+  if (!follows_joints(entry().follows)) {
+    v_d = damped_inverse(terms_.J, kSigma_0, kLambdaMax).inverse * goal_.V_BD;
+  }
+  return estimation_.friction(v_d, state_);
 }
 
 bool TorqueCycle::control(double dt_s) noexcept {
@@ -168,10 +230,12 @@ bool TorqueCycle::control(double dt_s) noexcept {
   const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
   laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
+  keep_passive();
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
   tau_coriolis_ = add.coriolis ? terms_.Cv : none_;
-  VectorJ tau = law_.tau() + tau_null_ + tau_gravity_ + tau_coriolis_;
+  tau_friction_ = friction();
+  VectorJ tau = law_.tau() + tau_null_ + tau_gravity_ + tau_coriolis_ + tau_friction_;
 
   limits_active_ = law_.limits | limits_.shape(state_, terms_, &tau);
   if (!tau.allFinite()) return false;
@@ -197,6 +261,7 @@ void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {
   tau_null_.setZero();
   tau_gravity_ = gravity_;
   tau_coriolis_.setZero();
+  tau_friction_.setZero();
   limits_active_ = 0;
   if (in_steps) {
     limits_active_ = limits_.clamp(state_.period_s, &tau);

@@ -10,12 +10,15 @@
 
 #include "controller/arm_state.h"
 #include "controller/arm_terms.h"
+#include "controller/energy_tank.h"
+#include "controller/estimation.h"
 #include "controller/gains.h"
 #include "controller/goal_generator.h"
 #include "controller/inverse_kinematics.h"
 #include "controller/laws/registry.h"
 #include "controller/limits.h"
 #include "controller/nullspace.h"
+#include "controller/observers/passivity_observer.h"
 #include "controller/torque_blend.h"
 
 namespace limber::controller {
@@ -61,6 +64,9 @@ class TorqueCycle {
   bool due(Term term) const noexcept;
   void match_goals() noexcept;
   void refresh_gains() noexcept;
+  void draw_from_tank() noexcept;
+  void keep_passive() noexcept;
+  VectorJ friction() const noexcept;
   VectorJ null_space() noexcept;
   void describe_tip(controller_status_t* status) const noexcept;
   void describe_parts(controller_status_t* status) const noexcept;
@@ -82,7 +88,9 @@ class TorqueCycle {
   GainRamp gains_;
   Gains active_;  // of this cycle, in base axes
   Gains asked_;   // where a gains message is read into
-  Estimates estimates_;
+  Estimation estimation_;
+  EnergyTank tank_;
+  PassivityObserver<Eigen::Vector3d> passivity_;
   TaskRows rows_;
   std::int64_t cycles_ = 0;
   TorqueBlend blend_;
@@ -95,6 +103,7 @@ class TorqueCycle {
   VectorJ tau_null_;
   VectorJ tau_gravity_;
   VectorJ tau_coriolis_;
+  VectorJ tau_friction_;
   VectorJ gravity_;
   std::int32_t limits_active_ = 0;
 };

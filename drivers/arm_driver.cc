@@ -31,6 +31,7 @@ ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
     drives.emplace_back(joint, buses.at(static_cast<std::size_t>(joint.drive.bus)).fd(), rate_hz,
                         bridged_cycles);
   }
+  if (robot.has_tip_sensor) tip_sensor.emplace(robot.tip_sensor, bridged_cycles);
   published.session = session;
   published.period_ns = std::llround(1e9 / rate_hz);
   published.num_joints = static_cast<std::int8_t>(drives.size());
@@ -88,6 +89,10 @@ void ArmDriver::Impl::send_commands() noexcept {
     buses[static_cast<std::size_t>(drive.bus())].add(drive.next_frame(state(), tau[i], settling));
     drive.begin_cycle();
   }
+  if (tip_sensor) {
+    buses[static_cast<std::size_t>(tip_sensor->bus())].add(tip_sensor->next_frame());
+    tip_sensor->begin_cycle();
+  }
   ++cycles_in_state;
   if (in(DriveState::kOn)) tau_present = tau;
   for (BusEnd& bus : buses) {
@@ -120,8 +125,12 @@ void ArmDriver::Impl::take_frames(bool late) noexcept {
 void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noexcept {
   BusEnd& end = buses[static_cast<std::size_t>(bus)];
   if (frame.error || end.take_lockstep(frame)) return;
+  if (tip_sensor && tip_sensor->is_mine(bus, frame)) {
+    tip_sensor->receive(frame, late);
+    return;
+  }
   const auto drive = std::find_if(drives.begin(), drives.end(), [&](const Drive& candidate) {
-    return candidate.bus() == bus && candidate.reply_id() == frame.id && !frame.extended;
+    return candidate.bus() == bus && has_id(frame, candidate.link().joint().drive.reply_id);
   });
   if (drive == drives.end()) {
     end.count_foreign();
@@ -137,7 +146,8 @@ bool ArmDriver::complete() const noexcept {
     return std::all_of(impl_->buses.begin(), impl_->buses.end(),
                        [](const BusEnd& bus) { return bus.tocked(); });
   }
-  return impl_->all_drives(&Drive::answered);
+  return impl_->all_drives(&Drive::answered) &&
+         (!impl_->tip_sensor || impl_->tip_sensor->settled());
 }
 
 // --- 3. finish_cycle -----------------------------------------------------------------------------
@@ -170,6 +180,7 @@ GateSituation ArmDriver::Impl::situation() const noexcept {
   now.powered = machine.powered();
   now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
   now.torque_present = tau_present;
+  std::copy_n(published.v, kMaxJoints, now.velocity.begin());
   return now;
 }
 

@@ -39,7 +39,8 @@ class ArmDriver {
   void transmit(std::int64_t time_ns) noexcept;
   /// 2. Takes the replies that have arrived.
   void poll() noexcept;
-  /// True when every joint has answered (in lock step: when every bus has sent its TOCK).
+  /// True when every joint has answered, and the tip sensor, unless it has been silent for longer
+  /// than is bridged (in lock step: when every bus has sent its TOCK).
   bool complete() const noexcept;
   /// Lock step, first cycle or a lost datagram: sends the TICK again. The simulator answers without
   /// advancing twice.
@@ -61,7 +62,7 @@ class ArmDriver {
   void request_shut_down() noexcept;
   bool shut_down() const noexcept;
 
-  /// The drive whose start-up dialogue failed, in words ("joint3: TMAX is 10, robot.yaml says 28");
+  /// The drive whose start-up dialogue failed, in words ("joint3: register 23 is 10, expected 28");
   /// empty if none did. Allocates: for messages, outside the cycle.
   std::string configuration_problem() const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/joints.h"
@@ -12,6 +13,7 @@
 #include "drivers/drive.h"
 #include "drivers/drive_states.h"
 #include "drivers/gate/torque_gate.h"
+#include "drivers/tip_sensor_link.h"
 
 namespace limber {
 
@@ -39,6 +41,7 @@ struct ArmDriver::Impl {
   void supervise_motion() noexcept;
   void describe_state() noexcept;
   void describe_joint(std::size_t i) noexcept;
+  void describe_tip_sensor() noexcept;
   // accept
   GateSituation situation() const noexcept;
   void obey(const joint_torque_t& command, bool followed) noexcept;
@@ -53,6 +56,7 @@ struct ArmDriver::Impl {
   int bridged_cycles;
   std::int64_t session;
   std::vector<Drive> drives;
+  std::optional<TipSensorLink> tip_sensor;
   std::vector<BusEnd> buses;
   std::vector<double> load_predicted;
   TorqueGate gate;

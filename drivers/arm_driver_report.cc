@@ -14,6 +14,7 @@ void ArmDriver::Impl::describe_state() noexcept {
   published.fault = machine.fault();
   published.fault_joint = machine.fault_joint();
   for (std::size_t i = 0; i < drives.size(); ++i) describe_joint(i);
+  if (tip_sensor) describe_tip_sensor();
   // The step to the first torque after HOLD or DAMP counts from what the drive itself exerts.
   if (!in(DriveState::kOn)) std::copy_n(published.tau_applied, kMaxJoints, tau_present.begin());
 }
@@ -31,6 +32,12 @@ void ArmDriver::Impl::describe_joint(std::size_t i) noexcept {
                              (link.enabled() ? joint_state_t::JOINT_ENABLED : 0) |
                              (link.drive_error() ? joint_state_t::JOINT_DRIVE_ERROR : 0) |
                              (link.out_of_range() ? joint_state_t::JOINT_OUT_OF_RANGE : 0);
+}
+
+void ArmDriver::Impl::describe_tip_sensor() noexcept {
+  std::copy_n(tip_sensor->reading().F.begin(), 6, published.F_sensor);
+  published.sensor_age_cycles = tip_sensor->age_cycles();
+  published.sensor_state = tip_sensor->state();
 }
 
 void ArmDriver::fill_status(driver_status_t* status) const noexcept {
@@ -53,6 +60,11 @@ void ArmDriver::fill_status(driver_status_t* status) const noexcept {
     status->replies_lost[i] = driver.drives[i].replies_lost();
     status->replies_invalid[i] = driver.drives[i].replies_invalid();
   }
+  if (driver.tip_sensor) {
+    status->sensor_replies_late = driver.tip_sensor->late();
+    status->sensor_replies_lost = driver.tip_sensor->lost();
+    status->sensor_replies_invalid = driver.tip_sensor->invalid();
+  }
   for (std::size_t b = 0; b < driver.buses.size(); ++b) {
     const BusEnd& bus = driver.buses[b];
     status->bus_load_predicted[b] = static_cast<float>(driver.load_predicted[b]);
@@ -73,8 +85,8 @@ std::string ArmDriver::configuration_problem() const {
     const std::string who = fmt::format("{} (id 0x{:X})", joint.name, joint.drive.command_id);
     if (failure.reg == 0) return who + ": could not be disabled, or does not answer";
     if (!failure.answered) return fmt::format("{}: register {} not answered", who, failure.reg);
-    return fmt::format("{}: register {} is {:g}, robot.yaml says {:g}", who, failure.reg,
-                       failure.found, failure.expected);
+    return fmt::format("{}: register {} is {:g}, expected {:g}", who, failure.reg, failure.found,
+                       failure.expected);
   }
   return "";
 }

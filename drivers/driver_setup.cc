@@ -14,6 +14,7 @@ namespace {
 constexpr double kGreatestLoad = 0.9;
 constexpr double kLease_s = 0.25;
 constexpr double kRefusals_s = 0.1;
+constexpr double kPowerSlack = 1.25;
 constexpr double kRoundingSlack = 1e-9;  // a step of exactly the limit may differ in its last bits
 
 }  // namespace
@@ -39,6 +40,8 @@ void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t sessio
   if (robot.buses.empty() || robot.buses.size() > kMaxBuses || robot.buses.size() != open_buses)
     refuse("buses", fmt::format("{} described, {} open, 1 to {} allowed", robot.buses.size(),
                                 open_buses, kMaxBuses));
+  if (robot.has_tip_sensor && robot.tip_sensor.bus >= static_cast<int>(robot.buses.size()))
+    refuse("tip_sensor.bus", "does not exist");
   if (!(robot.rate_hz > 0.0)) refuse("rate_hz", "must be positive");
   if (session == 0) refuse("session", "0 names no session");
 }
@@ -59,6 +62,8 @@ GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
   limits.n = robot.size();
   limits.session = session;
   limits.lease_cycles = cycles_of(kLease_s, robot.rate_hz);
+  // The controller shapes at the limit itself; a noisy velocity shall not trip the arm.
+  limits.power_W = kPowerSlack * robot.power_limit_W;
   limits.refusal_cycles = cycles_of(kRefusals_s, robot.rate_hz);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const JointConfig& joint = robot.joints[i];

@@ -35,7 +35,7 @@ StateReporter::StateReporter(std::vector<std::string> joints)
     while (!last_look) {
       last_look = stop.stop_requested();
       const std::uint32_t noted = noted_.load(std::memory_order_relaxed);
-      if (noted != told) report(noted);
+      if (noted != told) report_changes(told, noted);
       told = noted;
       if (!last_look) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -43,6 +43,15 @@ StateReporter::StateReporter(std::vector<std::string> joints)
 }
 
 StateReporter::~StateReporter() = default;
+
+void StateReporter::report_changes(std::uint32_t told, std::uint32_t noted) const {
+  const bool nothing_told = told == kNothing;
+  if (nothing_told || (told & ~kSensorError) != (noted & ~kSensorError)) report(noted);
+  const bool was_lost = !nothing_told && (told & kSensorError) != 0;
+  const bool lost = (noted & kSensorError) != 0;
+  if (lost && !was_lost) spdlog::warn("tip sensor: does not answer, or is beyond its range");
+  if (!lost && was_lost) spdlog::info("tip sensor: back");
+}
 
 void StateReporter::report(std::uint32_t packed) const {
   const int state = static_cast<int>(packed & 0xFF);

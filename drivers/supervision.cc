@@ -18,6 +18,7 @@ constexpr int kSilentCycles = 3;
 
 void ArmDriver::Impl::supervise() noexcept {
   for (Drive& drive : drives) drive.close_cycle(state(), cycle);
+  if (tip_sensor) tip_sensor->close_cycle();
   supervise_progress();
   supervise_replies();
   supervise_motion();

@@ -63,6 +63,23 @@ LoadedRobot from_urdf(const std::string& path, const std::string& base, const st
   return loaded;
 }
 
+/// The tool is part of what the last joint carries.
+void check_tool_mass(const YamlMap& yaml, const LoadedRobot& loaded) {
+  if (!loaded.robot.has_tip_sensor) return;
+  double carried_kg = 0.0;
+  for (const KDL::Segment& segment : loaded.chain.segments) {
+    if (segment.getJoint().getType() != KDL::Joint::Fixed) carried_kg = 0.0;
+    carried_kg += segment.getInertia().getMass();
+  }
+  if (loaded.robot.tip_sensor.tool_mass_kg <= carried_kg) return;
+  yaml.map("tip_sensor")
+      .map("tool")
+      .refuse("mass_kg",
+              fmt::format("{} is more than the {:.4g} kg that the last joint carries; the "
+                          "tool must be part of the URDF",
+                          loaded.robot.tip_sensor.tool_mass_kg, carried_kg));
+}
+
 /// Gains that are soft on any arm, for one that nobody has tuned.
 void fill_default_gains(Robot* robot) {
   const auto n = static_cast<std::size_t>(robot->size());
@@ -84,6 +101,7 @@ LoadedRobot load_robot(const std::string& name_or_path) {
   loaded.robot.name = header.name;
   loaded.robot.folder = folder;
   read_robot_yaml(yaml, &loaded.robot);
+  check_tool_mass(yaml, loaded);
   check_mass_matrix(loaded, loaded.robot.urdf_path);
   return loaded;
 }

@@ -8,6 +8,7 @@
 #include "common/complaints.h"
 #include "robots/joint_yaml.h"
 #include "robots/motor_yaml.h"
+#include "robots/tip_sensor_yaml.h"
 
 namespace limber {
 namespace {
@@ -65,11 +66,16 @@ void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   Complaints complaints(yaml.file());
   robot->rate_hz = 1000.0;
   complaints.collect([&] { robot->rate_hz = yaml.number("rate_hz", {1.0, 10'000.0}); });
+  complaints.collect([&] {
+    robot->power_limit_W = yaml.number_or("power_limit_W", {1.0, 1e5}, robot->power_limit_W);
+  });
   std::map<std::string, DriveConfig> motors;
   const bool buses_known = complaints.collect([&] { robot->buses = read_buses(yaml); });
   const bool motors_known = complaints.collect([&] { motors = read_motors(yaml); });
   yaml.has("joints");
   if (buses_known && motors_known) complaints.collect([&] { read_joints(yaml, motors, robot); });
+  if (yaml.has("tip_sensor") && buses_known)
+    complaints.collect([&] { read_tip_sensor(yaml.map("tip_sensor"), robot); });
   complaints.collect([&] { read_watchdog(yaml.map("watchdog"), robot); });
   complaints.collect([&] { robot->gains = read_gains(yaml.map("gains"), robot->size()); });
   complaints.collect([&] { yaml.finish(); });

@@ -71,14 +71,36 @@ scenario_event_t read_payload(const YamlMap& entry) {
   return event;
 }
 
-scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
+namespace {
+
+/// `sensor: tip`, in place of a joint: it can only fall silent.
+void read_sensor_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t* event) {
+  yaml.word("sensor", {"tip"});
+  if (!robot.has_tip_sensor)
+    yaml.refuse("sensor", fmt::format("{} has no sensor at the tip", robot.name));
+  yaml.word("kind", {"silent"});
+  event->joint = scenario_event_t::NODE_TIP_SENSOR;
+  event->fault = scenario_event_t::FAULT_SILENT;
+}
+
+void read_joint_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t* event) {
   std::vector<std::string> names;
   for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
+  event->joint = index_of(yaml.word("joint", names), names);
+  event->fault = static_cast<std::int8_t>(index_of(yaml.word("kind", kFaults), kFaults));
+}
+
+}  // namespace
+
+scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
   scenario_event_t event{};
   event.kind = scenario_event_t::EVENT_FAULT;
   event.normal[2] = 1.0;
-  event.joint = index_of(yaml.word("joint", names), names);
-  event.fault = static_cast<std::int8_t>(index_of(yaml.word("kind", kFaults), kFaults));
+  if (yaml.has("sensor")) {
+    read_sensor_fault(yaml, robot, &event);
+  } else {
+    read_joint_fault(yaml, robot, &event);
+  }
   event.duration_s = yaml.number_or("for_s", {0.0, 600.0}, 0.0);  // 0: for ever
   yaml.finish();
   return event;

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/config_error.h"
 #include "drivers/can/lockstep_frame.h"
 #include "sim/arm_plant.h"
 #include "sim/force_model.h"
 #include "sim/inbox.h"
-#include "sim/nodes/damiao_node.h"
+#include "sim/nodes/motor_node.h"
 #include "sim/tick_count.h"
+#include "sim/tip_sensor.h"
 #include "sim/truth.h"
 #include "sim/world_event.h"
 
@@ -44,6 +46,8 @@ void check(const Robot& robot, const std::vector<CanBus*>& buses, const Simulato
   }
   if (!(robot.rate_hz >= 1.0 && robot.rate_hz <= 1e5))
     refuse(robot, "rate {} Hz; allowed: 1 to 1e5", robot.rate_hz);
+  if (robot.has_tip_sensor && !(robot.tip_sensor.bus < static_cast<int>(buses.size())))
+    refuse(robot, "the tip sensor is on bus number {}, which does not exist", robot.tip_sensor.bus);
   for (const JointConfig& joint : robot.joints) {
     if (joint.drive.bus < 0 || joint.drive.bus >= static_cast<int>(buses.size())) {
       refuse(robot, "joint {} is on bus number {}, which does not exist", joint.name,
@@ -84,14 +88,18 @@ struct Simulator::Impl {
   void clear_world() noexcept;
   bool push(const push_t& message) noexcept;
   bool event(const scenario_event_t& message) noexcept;
+  void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
+  void inject(const sim::NodeFault& fault) noexcept;
+  void update_tip_sensor(double h, std::int64_t t_ns) noexcept;
   sim::JointReading reading(int joint) const noexcept;
   std::int64_t sim_time(std::int64_t steps) const noexcept;
   std::int64_t arm_time_now() const noexcept;
 
   std::unique_ptr<sim::ArmPlant> plant;
   sim::ForceModel forces;
-  std::vector<sim::DamiaoNode> nodes;
+  std::vector<std::unique_ptr<sim::MotorNode>> nodes;
   std::vector<int> node_bus;
+  std::optional<sim::TipSensor> tip_sensor;
   std::vector<sim::Inbox> inboxes;
   sim::TickCount ticks;
   bool lockstep;
@@ -131,7 +139,11 @@ Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buse
   for (CanBus* bus : buses) inboxes.emplace_back(bus);
   for (const JointConfig& joint : robot.robot.joints) {
     node_bus.push_back(joint.drive.bus);
-    nodes.emplace_back(joint, robot.robot.buses[joint.drive.bus].fd);
+    nodes.push_back(sim::make_motor_node(joint, robot.robot.buses[joint.drive.bus].fd));
+  }
+  if (robot.robot.has_tip_sensor) {
+    tip_sensor.emplace(robot.robot.tip_sensor, plant->arm());
+    update_tip_sensor(step_s, 0);
   }
   for (int i = 0; stand && i < robot.robot.size(); ++i) {
     forces.stands[i] = sim::Stand(robot.robot.joints[i], plant->q()[i]);
@@ -171,10 +183,13 @@ bool Simulator::Impl::poll() noexcept {
 void Simulator::Impl::on_frame(int bus, const CanFrame& frame) noexcept {
   CanFrame reply;
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
-    if (node_bus[i] == bus && nodes[i].receive(frame, reading(i), sim_time(steps), &reply)) {
+    if (node_bus[i] == bus && nodes[i]->receive(frame, reading(i), sim_time(steps), &reply)) {
       inboxes[bus].bus()->send(reply);
     }
   }
+  if (!tip_sensor || tip_sensor->bus != bus) return;
+  const std::span<const CanFrame> answer = tip_sensor->node.receive(frame);
+  if (!answer.empty()) inboxes[bus].bus()->send(answer);
 }
 
 bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
@@ -198,7 +213,7 @@ bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
 }
 
 void Simulator::Impl::advance_step() noexcept {
-  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i].law();
+  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i]->law();
   const std::int64_t now = sim_time(steps);
   const std::int64_t next = sim_time(steps + 1);
   if (stand) update_stand(now);
@@ -206,13 +221,17 @@ void Simulator::Impl::advance_step() noexcept {
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant->step(&forces, step_s, now + (next - now) / 2);
   ++steps;
-  for (sim::DamiaoNode& node : nodes) node.update(next);
+  for (const auto& node : nodes) node->update(next);
+  if (tip_sensor) update_tip_sensor(step_s, next);
+}
+
+void Simulator::Impl::update_tip_sensor(double h, std::int64_t t_ns) noexcept {
+  tip_sensor->update(plant->arm(), forces.environment, h, t_ns);
 }
 
 void Simulator::Impl::update_stand(std::int64_t now_ns) noexcept {
-  const bool enabled = std::all_of(nodes.begin(), nodes.end(), [](const sim::DamiaoNode& node) {
-    return node.state() == mit::DriveError::kEnabled;
-  });
+  const bool enabled =
+      std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node->enabled(); });
   const double left = stand_fade.left(now_ns, enabled);
   for (std::size_t i = 0; i < nodes.size(); ++i) forces.stands[i].set_left(left);
   stand = left > 0.0;
@@ -234,8 +253,9 @@ void Simulator::Impl::clear_world() noexcept {
   if (messages == nullptr) return;
   forces.environment.wall = sim::Wall();
   forces.environment.pushes.clear();
-  plant->set_payload(0.0, Eigen::Vector3d::Zero());
-  for (sim::DamiaoNode& node : nodes) node.clear_faults();
+  set_payload(0.0, Eigen::Vector3d::Zero());
+  for (const auto& node : nodes) node->clear_faults();
+  if (tip_sensor) tip_sensor->node.clear_faults();
 }
 
 bool Simulator::Impl::push(const push_t& message) noexcept {
@@ -252,19 +272,32 @@ bool Simulator::Impl::event(const scenario_event_t& message) noexcept {
       return sim::read_wall(message, &forces.environment.wall);
     case scenario_event_t::EVENT_PAYLOAD:
       if (!sim::read_payload(message, &payload)) return false;
-      plant->set_payload(payload.mass, payload.p_TL);
+      set_payload(payload.mass, payload.p_TL);
       return true;
-    case scenario_event_t::EVENT_FAULT: {
-      if (!sim::read_fault(message, plant->arm().size(), &fault)) return false;
-      const std::int64_t now = sim_time(steps);
-      constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
-      nodes[fault.joint].inject(
-          fault.fault, reading(fault.joint),
-          fault.duration_ns > kForEver - now ? kForEver : now + fault.duration_ns);
+    case scenario_event_t::EVENT_FAULT:
+      if (!sim::read_fault(message, plant->arm().size(), tip_sensor.has_value(), &fault))
+        return false;
+      inject(fault);
       return true;
-    }
     default:
       return false;
+  }
+}
+
+void Simulator::Impl::set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept {
+  plant->set_payload(mass, p_TL);
+  if (tip_sensor) tip_sensor->load.set_payload(plant->arm(), mass, p_TL);
+}
+
+void Simulator::Impl::inject(const sim::NodeFault& fault) noexcept {
+  constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t now = sim_time(steps);
+  const std::int64_t until =
+      fault.duration_ns > kForEver - now ? kForEver : now + fault.duration_ns;
+  if (fault.joint == scenario_event_t::NODE_TIP_SENSOR) {
+    tip_sensor->node.silence(until);
+  } else {
+    nodes[fault.joint]->inject(fault.fault, reading(fault.joint), until);
   }
 }
 

@@ -1,11 +1,11 @@
 // A plane the tip can lean on, by Kelvin and Voigt.
-//
-//   F = max(0, k delta - b v_n) n for delta > 0,   delta = -n . (p - p0),   v_n = n . v
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <limits>
+
+#include "sim/contact.h"
 
 namespace limber::sim {
 
@@ -32,11 +32,10 @@ struct Wall {
 
   /// Force of the wall on the point; zero outside.
   Eigen::Vector3d force(const Eigen::Vector3d& p, const Eigen::Vector3d& v) const noexcept {
-    const double delta = depth(p);
-    if (!(stiffness > 0.0) || !(delta > 0.0)) return Eigen::Vector3d::Zero();
-    const double push =
-        std::min(stiffness, max_stiffness) * delta - std::min(damping, max_damping) * normal.dot(v);
-    return (push > 0.0 ? push : 0.0) * normal;
+    if (!(stiffness > 0.0) || !(depth(p) > 0.0)) return Eigen::Vector3d::Zero();
+    const Approach at(p, v, point, normal);
+    return kelvin_voigt(at, std::min(stiffness, max_stiffness), std::min(damping, max_damping)) *
+           normal;
   }
 };
 

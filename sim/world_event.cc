@@ -81,8 +81,12 @@ bool read_payload(const scenario_event_t& event, Payload* payload) noexcept {
   return true;
 }
 
-bool read_fault(const scenario_event_t& event, int joints, NodeFault* fault) noexcept {
-  if (event.joint < 0 || event.joint >= joints || event.fault < scenario_event_t::FAULT_SILENT ||
+bool read_fault(const scenario_event_t& event, int joints, bool has_tip_sensor,
+                NodeFault* fault) noexcept {
+  const bool on_sensor = has_tip_sensor && event.joint == scenario_event_t::NODE_TIP_SENSOR &&
+                         event.fault == scenario_event_t::FAULT_SILENT;
+  const bool on_joint = event.joint >= 0 && event.joint < joints;
+  if (!(on_joint || on_sensor) || event.fault < scenario_event_t::FAULT_SILENT ||
       event.fault > scenario_event_t::FAULT_DROP_COMMANDS ||
       !within(event.duration_s, 0.0, kMaxFault_s)) {
     return false;

@@ -29,11 +29,12 @@ struct Payload {
 [[nodiscard]] bool read_payload(const scenario_event_t& event, Payload* payload) noexcept;
 
 struct NodeFault {
-  int joint = 0;
+  int joint = 0;  ///< or NODE_TIP_SENSOR
   int fault = 0;
   std::int64_t duration_ns = 0;  ///< the largest there is: for ever
 };
-/// A FAULT_* on one of the joints for up to 600 s; 0 means for ever.
-[[nodiscard]] bool read_fault(const scenario_event_t& event, int joints, NodeFault* fault) noexcept;
+/// A FAULT_* on one of the joints, or silence of the tip sensor, for up to 600 s; 0 means for ever.
+[[nodiscard]] bool read_fault(const scenario_event_t& event, int joints, bool has_tip_sensor,
+                              NodeFault* fault) noexcept;
 
 }  // namespace limber::sim

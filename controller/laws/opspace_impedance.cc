@@ -15,36 +15,6 @@
 namespace limber::controller {
 namespace {
 
-Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept {
-  for (int i = 0; i < 6; ++i) {
-    if (rows.stiff[i]) continue;
-    M.row(i).setZero();
-    M.col(i).setZero();
-  }
-  return M;
-}
-
-// M_x on the task, ones elsewhere, so that it has an inverse; also while a ramp of K_x still holds
-// rows that M_x no longer has.
-Matrix6 wanted_inertia(const TaskRows& rows, const Matrix6& M_x) noexcept {
-  Matrix6 M_d = on_task(rows, M_x);
-  for (int i = 0; i < 6; ++i) {
-    if (M_d.row(i).isZero(0.0)) M_d(i, i) = 1.0;
-  }
-  return M_d;
-}
-
-// With gains in the goal's axes an entry in one row may turn into any of its block.
-TaskRows rows_in_base(const Gains& gains) noexcept {
-  TaskRows rows(gains.K_x);
-  if (gains.settings.frame == GainFrame::kBase) return rows;
-  for (const int first : {0, 3}) {
-    const bool any = rows.stiff[first] || rows.stiff[first + 1] || rows.stiff[first + 2];
-    for (int i = first; i < first + 3; ++i) rows.stiff[i] = any;
-  }
-  return rows;
-}
-
 class OpspaceImpedance : public Law {
  public:
   void start(const LawInputs& in) noexcept override { D_x_ = damping(in, TaskRows(in.gains.K_x)); }
@@ -59,7 +29,7 @@ class OpspaceImpedance : public Law {
 
     const Vector6 F_spring = -gain * (error.A.transpose() * Ke);
     const Vector6 F_damping = -gain * (D_x_ * (in.terms.V_BT - in.goal.V_BD));
-    const Vector6 F_ext = on_task(rows, Matrix6::Identity()) * in.estimates.F_ext;
+    const Vector6 F_ext = rows.of(in.estimates.F_ext);
     const Vector6 F_other =
         gain * (F_ext + in.goal.F_ff) - F_ext + Lambda * (in.goal.A_BD - in.terms.Jdot_v);
     const auto JT = in.terms.J.transpose();
@@ -79,7 +49,7 @@ class OpspaceImpedance : public Law {
   static Matrix6 shaping(const LawInputs& in, const Matrix6& Lambda,
                          const TaskRows& rows) noexcept {
     if (in.gains.M_x.isZero(0.0)) return on_task(rows, Matrix6::Identity());
-    return wanted_inertia(rows, in.gains.M_x).llt().solve(Lambda).transpose();
+    return invertible_on_task(rows, in.gains.M_x).llt().solve(Lambda).transpose();
   }
 
   static Matrix6 damping(const LawInputs& in, const TaskRows& rows) noexcept {
@@ -89,7 +59,8 @@ class OpspaceImpedance : public Law {
     if (gains.M_x.isZero(0.0)) {
       return tip_damping(design, task_mobility(in.terms, rows), gains.K_x, gains.damping_ratio);
     }
-    return inertia_damping(design, wanted_inertia(rows, gains.M_x), gains.K_x, gains.damping_ratio);
+    return inertia_damping(design, invertible_on_task(rows, gains.M_x), gains.K_x,
+                           gains.damping_ratio);
   }
 
   Matrix6 D_x_ = Matrix6::Zero();
@@ -100,13 +71,7 @@ const char* refuse(const Gains& gains, int joints) {
     return "K_x has entries in more rows than the arm has joints: it cannot shape the inertia of "
            "all of them";
   }
-  if (gains.M_x.isZero(0.0)) return nullptr;
-  const TaskRows rows = rows_in_base(gains);
-  bool positive = wanted_inertia(rows, gains.M_x).llt().info() == Eigen::Success;
-  for (int i = 0; i < 6; ++i) positive = positive && (!rows.stiff[i] || gains.M_x(i, i) > 0.0);
-  return positive ? nullptr
-                  : "M_x must be positive definite in the rows in which K_x has entries (with "
-                    "frame: goal, in the whole block)";
+  return refuse_tip_inertia(gains);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@
   LAW(pd_plus)               \
   LAW(joint_impedance)       \
   LAW(opspace_impedance)     \
-  LAW(accel_feedback)
+  LAW(accel_feedback)        \
+  LAW(admittance)
 
 namespace limber::controller {
 
@@ -39,7 +40,9 @@ int find_law(const std::string& name) noexcept {
 }
 
 unsigned sensors_of(const Robot& robot) noexcept {
-  return robot.size() > 0 ? sensors::kLinkEncoder | sensors::kMotorEncoder : 0U;
+  if (robot.size() == 0) return 0U;
+  return sensors::kLinkEncoder | sensors::kMotorEncoder |
+         (robot.has_tip_sensor ? sensors::kTipForceSensor : 0U);
 }
 
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept {

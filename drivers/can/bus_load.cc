@@ -6,8 +6,10 @@
 namespace limber {
 namespace {
 
-constexpr int kCommandBytes = 8;
-constexpr int kReplyBytes = 8;
+// Frames of the tip sensor's two protocols.
+constexpr int kRftBytes = 8;
+constexpr int kFtRequestBytes = 2;
+constexpr int kFtReplyBytes = 32;
 constexpr int kTrailerBits =
     13;  // CRC delimiter, acknowledge slot and delimiter, end of frame, gap
 constexpr int kFdStuffCountBits = 4;  // three bits of count and their parity
@@ -83,6 +85,19 @@ double fd_frame_time_s(const CanFrame& frame, double bitrate_bps,
          fast / (frame.bitrate_switch ? data_bitrate_bps : bitrate_bps);
 }
 
+double tip_sensor_time_s(const Robot& robot, int bus) noexcept {
+  const TipSensorConfig& sensor = robot.tip_sensor;
+  if (!robot.has_tip_sensor || sensor.bus != bus) return 0.0;
+  const bool rft = sensor.protocol == TipSensorProtocol::kRobotousRft;
+  const BusConfig& config = robot.buses[static_cast<std::size_t>(bus)];
+  const auto time_s = [&](int bytes) {
+    return worst_frame_time_s(bytes, false, !rft, config.bitrate_bps, config.data_bitrate_bps);
+  };
+  const int request = rft ? kRftBytes : kFtRequestBytes;
+  const int reply = rft ? kRftBytes : kFtReplyBytes;
+  return time_s(request) + sensor.replies() * time_s(reply);
+}
+
 /// Seconds per cycle in which the bus is busy.
 double busy_time_s(const Robot& robot, int bus) noexcept {
   const BusConfig& config = robot.buses[static_cast<std::size_t>(bus)];
@@ -93,10 +108,11 @@ double busy_time_s(const Robot& robot, int bus) noexcept {
   double busy_s = 0.0;
   for (const JointConfig& joint : robot.joints) {
     if (joint.drive.bus != bus) continue;
-    busy_s +=
-        time_s(kCommandBytes, joint.drive.command_id) + time_s(kReplyBytes, joint.drive.reply_id);
+    const DriveConfig& drive = joint.drive;
+    busy_s += time_s(drive.command_bytes, drive.command_id);
+    busy_s += time_s(drive.reply_bytes, drive.reply_id);
   }
-  return busy_s;
+  return busy_s + tip_sensor_time_s(robot, bus);
 }
 
 }  // namespace

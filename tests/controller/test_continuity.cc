@@ -1,7 +1,6 @@
 // Whatever happens to law, gains and goals, the torque goes on where it was, within its limits.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -21,11 +20,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGateStep = 1.0;
 // Limits that would hide a jump of the law.
 constexpr int kClamped = int{Status::LIMIT_RATE} | int{Status::LIMIT_TORQUE};
-
-// Six rows of stiffness cannot be shaped with fewer joints.
-int at_least(int joints, const std::string& law) {
-  return law == "opspace_impedance" ? std::max(joints, 6) : joints;
-}
 
 LoadedRobot arm() { return limber::testing::seven_joint_arm(); }
 
@@ -81,7 +75,7 @@ TEST(Continuity, TorqueIsBoundedUnderRandomInput) {
     const std::string& law = names[seed % names.size()];
     const int joints = 1 + static_cast<int>(seed) % 7;
     SCOPED_TRACE(law + ", joints: " + std::to_string(joints));
-    Rig rig(limber::testing::random_arm(at_least(joints, law), seed, true), law);
+    Rig rig(limber::testing::random_arm(joints, seed, true), law);
     rig.to_active();
     const int n = rig.state.num_joints;
     VectorJ before = rig.tau();
@@ -120,7 +114,7 @@ TEST(Continuity, NothingInTheCycleAllocates) {
   for (const std::string& law : law_names()) {
     for (const int n : {1, 2, 7, 16}) {
       SCOPED_TRACE(law + ", joints: " + std::to_string(n));
-      Rig rig(limber::testing::random_arm(at_least(n, law), 5, true), law);
+      Rig rig(limber::testing::random_arm(n, 5, true), law);
       const std::vector<TimedMessage> timeline{{1'400'000'000, push_t{}}};
       rig.controller.set_timeline(&timeline);
       compliance_gains_t gains = rig.gains();

@@ -46,9 +46,16 @@ class Switching : public ::testing::Test {
     EXPECT_EQ(rig.limits() & kClamped, 0);
   }
 
-  void switch_to(const std::string& law) {
+  // The robot's, with the contact that an admittance needs.
+  Gains gains_of(const std::string& law) const {
     Gains gains = rig.gains();
     gains.law = law;
+    if (law == "admittance") gains.contact = Gains::CONTACT_JOINT_TORQUE;
+    return gains;
+  }
+
+  void switch_to(const std::string& law) {
+    const Gains gains = gains_of(law);
     const char* refused = rig.controller.on_gains(gains);
     ASSERT_EQ(refused, nullptr) << law << ": " << refused;
   }
@@ -175,9 +182,8 @@ TEST_F(Switching, SettingsNeverJump) {
     push(1.0);
     rig.run(0.6);
     for (const Change& change : kChanges) {
-      Gains gains = rig.gains();
+      Gains gains = gains_of(law);
       change.make(&gains);
-      gains.law = law;
       const controller::Gains parsed = [&] {
         controller::Gains result(7);
         read_gains(gains, &result);

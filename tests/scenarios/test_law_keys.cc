@@ -56,6 +56,7 @@ TEST(LawKeys, NumbersArrive) {
   EXPECT_EQ(gains.acceleration_filter_s, 0.01F);
   EXPECT_EQ(gains.observer_gain_per_s, 30.0F);
   EXPECT_EQ(gains.tank_J, 2.0F);
+  EXPECT_EQ(gains.passivity_damping_Ns_per_m, 12.0F);
   EXPECT_EQ(gains.spring_force_N, 60.0F);
   EXPECT_EQ(gains.spring_moment_Nm, 8.0F);
   EXPECT_EQ(gains.D_x[0][1], 1.0F);
@@ -183,6 +184,8 @@ const Mutation kSlips[] = {
     {"Filter", "acceleration_filter_s: 0.01", "acceleration_filter_s: 10", "out of range"},
     {"Observer", "observer_gain_per_s: 30", "observer_gain_per_s: 501", "out of range"},
     {"Tank", "tank_J: 2", "tank_J: nan", "not a number"},
+    {"Passivity", "passivity_damping_Ns_per_m: 12", "passivity_damping_Ns_per_m: 2e3",
+     "out of range"},
     {"SpringForce", "spring_force_N: 60", "spring_force_N: -60", "out of range"},
     {"SpringMoment", "spring_moment_Nm: 8", "spring_moment_Nm: 20000", "out of range"},
     {"DampingNotSymmetric", "- [1, 20, 0, 0, 0, 0]", "- [2, 20, 0, 0, 0, 0]", "is not symmetric",

@@ -121,6 +121,9 @@ const Mutation kThings[] = {
     {"PayloadNegative", "mass_kg: 0.7", "mass_kg: -0.7", "out of range"},
     {"PayloadFarAway", "position_m: [0, 0, 0.1]", "position_m: [0, 0, 10]", "out of range"},
     {"FaultJoint", "joint: slide", "joint: slid", "did you mean 'slide'?"},
+    {"FaultSensor", "joint: slide, kind", "sensor: hand, kind", "expected one of: tip"},
+    {"FaultWithoutSensor", "joint: slide, kind: frozen_encoder", "sensor: tip, kind: silent",
+     "arm has no sensor at the tip"},
     {"FaultKind", "kind: frozen_encoder", "kind: frozen", "one of: silent, frozen_encoder"},
 };
 INSTANTIATE_TEST_SUITE_P(Things, ScenarioRefusal, ::testing::ValuesIn(kThings),

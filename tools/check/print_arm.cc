@@ -29,6 +29,14 @@ std::string bus_text(const BusConfig& bus, const BusReport& report, double rate_
                      report.highest_rate_hz);
 }
 
+std::string tip_sensor_text(const Robot& robot) {
+  const TipSensorConfig& sensor = robot.tip_sensor;
+  return fmt::format(
+      "  tip sensor: {} on {}, id {}; +-{:g} N, +-{:g} N m along its z; tool behind it {:g} kg\n",
+      sensor.model, robot.buses[static_cast<std::size_t>(sensor.bus)].name, sensor.command_id,
+      sensor.range[2], sensor.range[5], sensor.tool_mass_kg);
+}
+
 std::string joint_table(const Robot& robot, const ArmReport& report) {
   std::string table =
       fmt::format("  {:<14} {:<10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9}", "joint", "type",
@@ -100,6 +108,7 @@ std::string arm_text(const LoadedRobot& robot, const ArmReport& report) {
       p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
   for (std::size_t i = 0; i < report.buses.size(); ++i)
     text += bus_text(arm.buses[i], report.buses[i], arm.rate_hz);
+  if (arm.has_tip_sensor) text += tip_sensor_text(arm);
   for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   for (const std::string& note : robot.notes) text += "  note: " + note + "\n";
   return text;

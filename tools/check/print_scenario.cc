@@ -39,7 +39,10 @@ std::string describe(const push_t& push) {
 std::string describe(const scenario_event_t& event) {
   const char* const faults[] = {"silent", "frozen encoder", "drive error", "drop commands"};
   if (event.kind == scenario_event_t::EVENT_FAULT) {
-    return fmt::format("fault: joint {} {}{}", event.joint, faults[event.fault],
+    const std::string who = event.joint == scenario_event_t::NODE_TIP_SENSOR
+                                ? "tip sensor"
+                                : fmt::format("joint {}", event.joint);
+    return fmt::format("fault: {} {}{}", who, faults[event.fault],
                        event.duration_s > 0.0 ? fmt::format(" for {:g} s", event.duration_s) : "");
   }
   if (event.kind == scenario_event_t::EVENT_PAYLOAD) {

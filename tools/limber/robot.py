@@ -12,6 +12,8 @@ from limber.errors import InputError
 from limber.paths import robot_folder
 from limber.urdf import Chain
 
+EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
+
 
 @dataclass(frozen=True)
 class JointInfo:
@@ -25,7 +27,10 @@ class JointInfo:
 
 @dataclass(frozen=True)
 class Robot:
-    """`K_q`, N m/rad, and `K_x`, 6x6 [linear; angular], are what a law starts with."""
+    """`K_q`, N m/rad, and `K_x`, 6x6 [linear; angular], are what a law starts with.
+
+    `gravity` is the acceleration in base axes, m/s².
+    """
 
     name: str
     folder: Path
@@ -33,6 +38,7 @@ class Robot:
     base: str
     tip: str
     rate_hz: float
+    gravity: np.ndarray
     buses: list[str]
     joints: list[JointInfo]
     K_q: np.ndarray
@@ -83,6 +89,7 @@ def _robot(content: dict[str, Any], folder: Path) -> Robot:
         base=content["base"],
         tip=content["tip"],
         rate_hz=float(content["rate_hz"]),
+        gravity=chain.R_RB.T @ np.asarray(content.get("gravity_m_per_s2", EARTH), float),
         buses=[bus["name"] for bus in content["buses"]],
         joints=[_joint(name, content["joints"][name], chain.limits(name)) for name in names],
         K_q=np.broadcast_to(np.asarray(gains["K_q_Nm_per_rad"], float), len(names)).copy(),

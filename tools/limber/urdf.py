@@ -29,10 +29,15 @@ class Joint:
 
 
 class Chain:
-    """The joints from `base` to `tip`, in order; `joint_names` are those that move."""
+    """The joints from `base` to `tip`, in order; `joint_names` are those that move.
+
+    `R_RB` turns base axes into those of the URDF's root link, every joint between at zero.
+    """
 
     def __init__(self, urdf: Path, base: str, tip: str) -> None:
-        self.joints = _path_between(_read_joints(urdf), base, tip, urdf)
+        joints = _read_joints(urdf)
+        self.joints = _path_between(joints, base, tip, urdf)
+        self.R_RB = _rotation_of(joints, base)
         self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
 
     def limits(self, name: str) -> tuple[float, float]:
@@ -121,3 +126,12 @@ def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> 
         path.append(joints[link])
         link = joints[link].parent
     return path[::-1]
+
+
+def _rotation_of(joints: dict[str, Joint], link: str) -> np.ndarray:
+    """Axes of a link in those of the root link."""
+    R = np.eye(3)
+    while link in joints:
+        R = joints[link].X_PF[:3, :3] @ R
+        link = joints[link].parent
+    return R

@@ -1,0 +1,57 @@
+// The observers of the cycle: velocities, contact, tip acceleration, friction. Which of them run is
+// a matter of LawSettings.
+#pragma once
+
+#include <limber/joint_state_t.hpp>
+#include <optional>
+
+#include "controller/arm_state.h"
+#include "controller/arm_terms.h"
+#include "controller/friction_feedforward.h"
+#include "controller/laws/law.h"
+#include "controller/nullspace.h"
+#include "controller/observers/alpha_beta.h"
+#include "controller/observers/filtered_difference.h"
+#include "controller/observers/levant.h"
+#include "controller/observers/momentum_observer.h"
+#include "controller/observers/tip_force.h"
+
+namespace limber::controller {
+
+class Estimation {
+ public:
+  explicit Estimation(const LoadedRobot& robot);
+
+  /// Takes new settings; observers that they change start over. In the cycle.
+  void set(const LawSettings& settings) noexcept;
+
+  /// Puts the chosen estimate in the place of the drives' velocities. In the cycle, before the
+  /// terms are evaluated.
+  void estimate_velocity(ArmState* state) noexcept;
+  /// Contact and tip acceleration, from the terms at this state. In the cycle.
+  void observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,
+               const TaskRows& rows, ArmModel* model) noexcept;
+  /// Torque against the gear's friction, N m; zero unless asked for. In the cycle.
+  VectorJ friction(const VectorJ& v_d, const ArmState& state) const noexcept;
+
+  const Estimates& estimates() const noexcept { return estimates_; }
+
+ private:
+  void observe_joint_torque(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
+                            ArmModel* model) noexcept;
+
+  int joints_;
+  double T_;
+  double position_noise_;  // rad
+  LawSettings settings_;
+  FrictionFeedforward friction_;
+  FilteredDifference<VectorJ> filtered_difference_;
+  AlphaBeta alpha_beta_;
+  LevantDifferentiator levant_;
+  MomentumObserver momentum_;
+  TipAcceleration tip_acceleration_;
+  std::optional<TipForce> tip_force_;
+  Estimates estimates_;
+};
+
+}  // namespace limber::controller

@@ -1,0 +1,118 @@
+"""Mass and centre of mass of what the tip carries, from torques at rest.
+
+A payload of mass m with its centre at c (tip axes) asks of the joints, beyond the arm's own weight,
+
+    tau = -J^T [m a; (R m c) x a],     a: gravitational acceleration, base axes,
+
+which is linear in m and m c: least squares over static poses (An, Atkeson, Hollerbach,
+"Estimation of inertial parameters of rigid body links", 1985). Constant torque offsets of the
+joints can be estimated along with them. Friction at rest is not modelled: it is in the standard
+deviations.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from limber.errors import InputError
+from limber.robot import load_robot
+from limber.static_poses import static_poses
+from limber.urdf import Chain
+
+LENGTH_M = 0.1  # makes m c comparable with m
+WORST_CONDITION = 200.0
+LEAST_POSES = 3
+
+
+@dataclass(frozen=True)
+class Payload:
+    """Values and standard deviations; `offsets` N m, empty if they were not asked for."""
+
+    mass_kg: float
+    mass_std: float
+    com_m: np.ndarray
+    com_std: np.ndarray
+    offsets: np.ndarray
+    offsets_std: np.ndarray
+    condition: float
+    residual_rms: float
+    poses: int
+
+
+def regressor(chain: Chain, q: np.ndarray, gravity: np.ndarray) -> np.ndarray:
+    """n x 4: holding torque per [m, m c]."""
+    R = chain.forward(q)[:3, :3]
+    wrench = np.zeros((6, 4))
+    wrench[:3, 0] = gravity
+    for i in range(3):
+        wrench[3:, 1 + i] = np.cross(R[:, i], gravity)
+    return -chain.jacobian(q).T @ wrench
+
+
+def identify(
+    chain: Chain, q: np.ndarray, tau: np.ndarray, gravity: np.ndarray, offsets: bool = False
+) -> Payload:
+    """`q`, `tau`: one row a static pose; `tau` without what the arm itself weighs, N m."""
+    poses, n = q.shape
+    least = LEAST_POSES + offsets
+    if poses < least:
+        raise InputError(f"{poses} static poses; at least {least} different ones are needed")
+    scale = np.array([1.0] + [1.0 / LENGTH_M] * 3 + [1.0] * (n * offsets))
+    rows = []
+    for pose in q:
+        Y = regressor(chain, pose, gravity)
+        rows.append(np.hstack([Y, np.eye(n)]) if offsets else Y)
+    A, b = np.vstack(rows) * scale, tau.reshape(-1)
+    condition = float(np.linalg.cond(A))
+    if not condition <= WORST_CONDITION:
+        raise InputError(
+            f"the poses tell too little: condition number {condition:.3g}, at most "
+            f"{WORST_CONDITION:g} is allowed; turn the tip about more than one horizontal axis"
+        )
+    x = np.linalg.lstsq(A, b, rcond=None)[0]
+    residual = b - A @ x
+    variance = residual @ residual / max(len(b) - len(x), 1)
+    covariance = variance * np.linalg.inv(A.T @ A) * np.outer(scale, scale)
+    return _payload(x * scale, covariance, condition, residual, poses)
+
+
+def _payload(
+    x: np.ndarray, covariance: np.ndarray, condition: float, residual: np.ndarray, poses: int
+) -> Payload:
+    mass, std = x[0], np.sqrt(np.diag(covariance))
+    if not abs(mass) > 2.0 * std[0]:
+        raise InputError(
+            f"no payload can be told from nothing: mass {mass:.4f} kg, "
+            f"standard deviation {std[0]:.4f} kg"
+        )
+    com = x[1:4] / mass
+    slope = np.hstack([-com[:, None], np.eye(3)]) / mass  # of c by [m, m c]
+    com_std = np.sqrt(np.diag(slope @ covariance[:4, :4] @ slope.T))
+    rms = float(np.sqrt(np.mean(residual**2)))
+    return Payload(mass, std[0], com, com_std, x[4:], std[4:], condition, rms, poses)
+
+
+def run(runs: list[Path], robot_name: str, offsets: bool, console: Console) -> int:
+    robot = load_robot(robot_name)
+    found = static_poses(runs, len(robot.joints))
+    payload = identify(robot.chain, found.q, found.tau, robot.gravity, offsets)
+    table = Table("", "value", "std. deviation", "unit", title=f"payload at {robot.tip}")
+    rows = [("mass", payload.mass_kg, payload.mass_std, "kg")]
+    for i, axis in enumerate("xyz"):
+        rows.append((f"centre {axis}", payload.com_m[i], payload.com_std[i], "m"))
+    for name, value, std in zip(
+        robot.joint_names if offsets else (), payload.offsets, payload.offsets_std, strict=True
+    ):
+        rows.append((f"offset {name}", value, std, "N m"))
+    for name, value, std, unit in rows:
+        table.add_row(name, f"{value:.4f}", f"{std:.4f}", unit)
+    console.print(table)
+    console.print(
+        f"{payload.poses} poses, condition number {payload.condition:.1f}, "
+        f"{payload.residual_rms:.3f} N m rms unexplained",
+        highlight=False,
+    )
+    return 0

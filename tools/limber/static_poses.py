@@ -1,0 +1,55 @@
+"""Where an arm stood still in a recorded run, and what its joints carried there."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from limber import messages
+from limber.errors import InputError
+from limber.logs import Log
+
+WINDOW_S = 0.25
+STILL = 2e-3  # rad or m: no joint moves further than this in a window
+APART = 0.05  # rad or m: closer poses are one
+
+
+@dataclass(frozen=True)
+class StaticPoses:
+    """One row a pose: mean position, mean applied torque less the model's gravity torque."""
+
+    q: np.ndarray
+    tau: np.ndarray
+
+
+def static_poses(paths: list[Path], joints: int) -> StaticPoses:
+    windows = [window for path in paths for window in _windows(path, joints)]
+    if not windows:
+        raise InputError(f"nowhere does the arm stand still for {WINDOW_S} s while it is held")
+    groups: list[list[tuple[np.ndarray, np.ndarray]]] = []
+    for q, tau in windows:
+        near = next((g for g in groups if np.abs(g[0][0] - q).max() < APART), None)
+        if near is None:
+            groups.append([(q, tau)])
+        else:
+            near.append((q, tau))
+    means = [[np.mean(values, axis=0) for values in zip(*g, strict=True)] for g in groups]
+    return StaticPoses(np.array([m[0] for m in means]), np.array([m[1] for m in means]))
+
+
+def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(q, tau) of every window in which the arm is held and still."""
+    log = Log(path)
+    status, state = log.read("CONTROLLER_STATUS"), log.read("JOINT_STATE")
+    _, of_status, of_state = np.intersect1d(status["state_seq"], state["seq"], return_indices=True)
+    status, state = status[of_status], state[of_state]
+    modes = messages.message_class("controller_status_t")
+    held = np.isin(status["mode"], (modes.MODE_HOLD, modes.MODE_ACTIVE))
+    q, tau = state["q"][:, :n], state["tau_applied"][:, :n] - status["tau_gravity"][:, :n]
+    slots = state["time_ns"] // int(WINDOW_S * 1e9)
+    found = []
+    for slot in np.unique(slots):
+        inside = slots == slot
+        if held[inside].all() and np.ptp(q[inside], axis=0).max() < STILL:
+            found.append((q[inside].mean(axis=0), tau[inside].mean(axis=0)))
+    return found
