@@ -8,10 +8,11 @@ from scipy.linalg import eigh
 from limber.experiments import planar2r
 from limber.experiments.check import Check
 from limber.experiments.context import Context
-from limber.experiments.inertia import tip_inertia
+from limber.experiments.inertia import gravity_gradient, joint_inertia, tip_inertia
 from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
 from limber.experiments.ringdown import DELAY_S, Mode, modes_of, modes_seen
 from limber.experiments.truth import joints, motion, status
+from limber.robot import load_robot
 
 ZETA = 0.12
 FIRST_S, PUSH_S, RING_S = 2.0, 1.0, 2.5  # one push after the other, each let go at once
@@ -19,6 +20,8 @@ EVERY = 5  # samples of the log: the torques on their way have died out by then
 PLANAR, SEVEN = "two joints", "seven joints"
 STIFFNESS = {PLANAR: np.array([200.0, 100.0]), SEVEN: np.array([200.0] * 3 + [4.0] * 3)}
 HOME = np.array([0.5, 1.0])  # where the planar arm starts
+D_NULL = 3.0  # N m s/rad
+NULL_SPACE = {"K_null_Nm_per_rad": 0.0, "D_null_Nms_per_rad": D_NULL}
 PUSH_M, PUSH_RAD = 4e-3, 8e-3  # how far a push moves the tip
 
 
@@ -59,7 +62,7 @@ def cartesian(context: Context, arm: str) -> tuple[list[Mode], list[Mode]]:
         "bias": "gravity",
         "K_x_translation_N_per_m": stiffness[:3].tolist(),
         "K_x_rotation_Nm_per_rad": stiffness[3:].tolist(),
-        **(given_damping() if arm == PLANAR else {"damping_ratio": ZETA, "K_null_Nm_per_rad": 0.0}),
+        **(given_damping() if arm == PLANAR else {"damping_ratio": ZETA, **NULL_SPACE}),
     }
     scenario = {
         "robot": robot,
@@ -69,25 +72,36 @@ def cartesian(context: Context, arm: str) -> tuple[list[Mode], list[Mode]]:
     }  # fmt: skip
     deflections = np.diag([PUSH_M] * 3 + [PUSH_RAD] * 3)[: len(K)]
     q, seen = rung(context, name, scenario, list(deflections * stiffness), len(K))
-    L = planar_inertia(q) if arm == PLANAR else tip_inertia(robot, q)
-    omega = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(L, np.diag(K))).real))
-    return [Mode(float(w), float(ZETA - w * DELAY_S / 2)) for w in omega], seen
+    return modes_asked(robot, q, np.diag(K)), seen
+
+
+def modes_asked(robot: str, q: np.ndarray, K: np.ndarray) -> list[Mode]:
+    """Of the joints' M s² + D s + JᵀKJ, where delay takes from D what it takes of all that depends
+    on position: of the spring, and of the compensation of gravity with ∂g/∂q. The damping of the
+    null space does not reach the tip, but what comes late moves both.
+    """
+    J, M = load_robot(robot).chain.jacobian(q)[: len(K)], joint_inertia(robot, q)
+    L = tip_inertia(J, M)
+    null = np.eye(len(q)) - J.T @ L @ np.linalg.solve(M, J.T).T
+    D = J.T @ designed(L, K) @ J + D_NULL * null
+    late = J.T @ K @ J - gravity_gradient(robot, q)
+    return modes_of(M, D - DELAY_S * late, J.T @ K @ J, len(K))
+
+
+def designed(L: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """The damping that gives every mode of Λ and K the ratio ZETA (double diagonalization)."""
+    k, modes = eigh(K, L)
+    return 2 * ZETA * L @ modes @ np.diag(np.sqrt(k)) @ modes.T @ L
 
 
 def given_damping() -> dict[str, Any]:
     """Designed here: the controller's own design adds a floor where there is no stiffness, and a
     hand that is free to turn would feel it.
     """
-    L, K = planar_inertia(HOME), np.diag(STIFFNESS[PLANAR])
-    k, modes = eigh(K, L)
+    J, M = planar2r.jacobian(HOME), planar2r.inertia(HOME)
     D = np.zeros((6, 6))
-    D[:2, :2] = 2 * ZETA * L @ modes @ np.diag(np.sqrt(k)) @ modes.T @ L
+    D[:2, :2] = designed(tip_inertia(J, M), np.diag(STIFFNESS[PLANAR]))
     return {"damping": "given", "D_x": D.tolist()}
-
-
-def planar_inertia(q: np.ndarray) -> np.ndarray:
-    J = planar2r.jacobian(q)
-    return np.linalg.inv(J @ np.linalg.solve(planar2r.inertia(q), J.T))
 
 
 def checks(found: dict[str, tuple[list[Mode], list[Mode]]]) -> list[Check]:

@@ -23,7 +23,7 @@ Found = dict[float, tuple[list[Mode], list[Mode]]]
 def predicted(elbow: float) -> list[Mode]:
     q = np.array([SHOULDER, elbow])
     K_q = arm.jacobian(q).T @ K @ arm.jacobian(q)
-    return modes_of(arm.inertia(q), np.diag(D_Q) - DELAY_S * K_q, K_q)
+    return modes_of(arm.inertia(q), np.diag(D_Q) - DELAY_S * K_q, K_q, 2)
 
 
 def runs(context: Context) -> Found:

@@ -1,4 +1,4 @@
-"""Inertia of a shipped robot, from its URDF and by the sum over its links, without the C++ chain."""
+"""Inertia and gravity of a shipped robot, from its URDF, as sums over its links and without C++."""
 
 import xml.etree.ElementTree as ElementTree
 from functools import cache
@@ -15,23 +15,39 @@ def joint_inertia(robot: str, q: np.ndarray) -> np.ndarray:
     """M(q) = Σ J_cᵀ diag(m, I_c) J_c with J_c at each link's centre of mass; base axes."""
     M = np.zeros((len(q), len(q)))
     for chain, m, p_LC, I_C in _links(robot):
-        X = chain.forward(q)
-        J = chain.jacobian(q)
-        moving = J.shape[1]
-        at_centre = J[:3] + np.cross(J[3:], X[:3, :3] @ p_LC, axis=0)
-        R = X[:3, :3]
-        M[:moving, :moving] += m * at_centre.T @ at_centre + J[3:].T @ R @ I_C @ R.T @ J[3:]
+        J_c, J_w, R = _at_centre(chain, q, p_LC), chain.jacobian(q)[3:], chain.forward(q)[:3, :3]
+        moving = J_w.shape[1]
+        M[:moving, :moving] += m * J_c.T @ J_c + J_w.T @ R @ I_C @ R.T @ J_w
     return M
 
 
-def tip_inertia(robot: str, q: np.ndarray) -> np.ndarray:
-    """Λ = (J M⁻¹ Jᵀ)⁻¹, 6 x 6."""
-    J = tip_jacobian(robot, q)
-    return np.linalg.inv(J @ np.linalg.solve(joint_inertia(robot, q), J.T))
+def gravity_gradient(robot: str, q: np.ndarray) -> np.ndarray:
+    """∂g/∂q by central differences; g(q) = -Σ m J_cᵀ a holds the arm against gravity a."""
+    step = 1e-5
+    columns = [
+        (_gravity(robot, q + step * axis) - _gravity(robot, q - step * axis)) / (2 * step)
+        for axis in np.eye(len(q))
+    ]
+    return np.column_stack(columns)
 
 
-def tip_jacobian(robot: str, q: np.ndarray) -> np.ndarray:
-    return load_robot(robot).chain.jacobian(q)
+def _gravity(robot: str, q: np.ndarray) -> np.ndarray:
+    g = np.zeros(len(q))
+    for chain, m, p_LC, _ in _links(robot):
+        J_c = _at_centre(chain, q, p_LC)
+        g[: J_c.shape[1]] -= m * J_c.T @ load_robot(robot).gravity
+    return g
+
+
+def _at_centre(chain: Chain, q: np.ndarray, p_LC: np.ndarray) -> np.ndarray:
+    """Velocity of a link's centre of mass by the joints' before it."""
+    J = chain.jacobian(q)
+    return J[:3] + np.cross(J[3:], chain.forward(q)[:3, :3] @ p_LC, axis=0)
+
+
+def tip_inertia(J: np.ndarray, M: np.ndarray) -> np.ndarray:
+    """Λ = (J M⁻¹ Jᵀ)⁻¹."""
+    return np.linalg.inv(J @ np.linalg.solve(M, J.T))
 
 
 @cache
@@ -47,15 +63,9 @@ def _links(robot: str) -> list[tuple[Chain, float, np.ndarray, np.ndarray]]:
         origin = inertial.find("origin").attrib
         R = Rotation.from_euler("xyz", [float(x) for x in origin.get("rpy", "0 0 0").split()])
         axes = R.as_matrix()
-        I = {key: float(value) for key, value in inertial.find("inertia").attrib.items()}
-        about = np.array(
-            [
-                [I["ixx"], I["ixy"], I["ixz"]],
-                [I["ixy"], I["iyy"], I["iyz"]],
-                [I["ixz"], I["iyz"], I["izz"]],
-            ]
-        )
+        about = {key: float(value) for key, value in inertial.find("inertia").attrib.items()}
+        tensor = np.array([[about["i" + "".join(sorted(a + b))] for b in "xyz"] for a in "xyz"])
         centre = np.array([float(x) for x in origin.get("xyz", "0 0 0").split()])
         mass = float(inertial.find("mass").get("value"))
-        found.append((chain, mass, centre, axes @ about @ axes.T))
+        found.append((chain, mass, centre, axes @ tensor @ axes.T))
     return found

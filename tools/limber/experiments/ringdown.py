@@ -17,11 +17,11 @@ class Mode:
     zeta: float
 
 
-def modes_of(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> list[Mode]:
-    """Of M s² + D s + K, slowest first."""
+def modes_of(M: np.ndarray, D: np.ndarray, K: np.ndarray, count: int) -> list[Mode]:
+    """Of M s² + D s + K, slowest first; `count` of them swing."""
     n = len(M)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, np.hstack([K, D]))]])
-    return _swinging(np.linalg.eigvals(A), n)
+    return _swinging(np.linalg.eigvals(A), count)
 
 
 def modes_seen(tracks: list[np.ndarray], step_s: float, count: int) -> list[Mode]:
