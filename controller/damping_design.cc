@@ -30,13 +30,18 @@ Matrix root(const Matrix& K) noexcept {
   return V * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * V.transpose();
 }
 
-// The sum of products of positive matrices need not be positive: what would drive is cut off.
 template <typename Matrix>
 Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
   const Matrix product = root(M) * root(K);
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(product + product.transpose());
+  return ratio * (product + product.transpose());
+}
+
+// The sum of products of positive matrices need not be positive: what would drive is cut off.
+template <typename Matrix>
+Matrix never_driving(const Matrix& D) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(D);
   const Matrix& V = eigen.eigenvectors();
-  return ratio * V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+  return V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
 }
 
 // M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
@@ -59,7 +64,7 @@ Matrix designed(DampingDesign design, const Matrix& M, const Matrix& K, double r
     case DampingDesign::kDoubleDiagonalisation:
       return doubly_diagonalised<Matrix>(M, K, ratio);
     case DampingDesign::kFactorisation:
-      return factorised<Matrix>(M, K, ratio);
+      return never_driving<Matrix>(factorised<Matrix>(M, K, ratio));
     case DampingDesign::kWithoutInertia:
       return 2.0 * ratio * root<Matrix>(K);
     case DampingDesign::kGiven:
@@ -93,6 +98,12 @@ Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6&
   return designed<Matrix6>(design, M_d, K, ratio);
 }
 
+Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
+                               double ratio) noexcept {
+  const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
+  return factorised<Matrix6>(Lambda, K, ratio);
+}
+
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept {
   switch (design) {
@@ -102,10 +113,8 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
                         reach.inverse_transpose.transpose();
       return 2.0 * ratio * D;
     }
-    case DampingDesign::kFactorisation: {
-      const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
-      return factorised<Matrix6>(Lambda, K, ratio);
-    }
+    case DampingDesign::kFactorisation:
+      return never_driving<Matrix6>(factorised_tip_damping(mobility, K, ratio));
     case DampingDesign::kWithoutInertia:
       return 2.0 * ratio * root<Matrix6>(K);
     case DampingDesign::kGiven:

@@ -27,6 +27,10 @@ MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept;
 
+/// The factorisation as it stands, with the negative eigenvalues it may have.
+Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
+                               double ratio) noexcept;
+
 /// Damping of a wanted inertia at the tip, given as a matrix: the same for M_d s^2 + D s + K. M_d:
 /// 6 x 6 symmetric positive definite.
 Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
