@@ -1,0 +1,109 @@
+#include "controller/motor_side/qbar.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace limber::controller {
+namespace {
+
+constexpr double kStep = 1e-5;        // rad, for differences
+constexpr double kContraction = 0.7;  // slower than this, Newton steps are cheaper
+
+}  // namespace
+
+QbarSolver::QbarSolver(ArmModel* model, const VectorJ& K_J, const Options& options)
+    : model_(model),
+      K_J_(K_J),
+      options_(options),
+      terms_(model->size()),
+      q_(VectorJ::Zero(model->size())),
+      l_(q_) {}
+
+VectorJ QbarSolver::law(const VectorJ& q, const TipSpring& spring) noexcept {
+  model_->evaluate_statics(q, &terms_);
+  const PoseError error = pose_error(terms_.X_BT, spring.X_BD, spring.orientation);
+  const Vector6 F = error.A.transpose() * (spring.K_x * error.e);
+  return terms_.g - terms_.J.transpose() * F;
+}
+
+VectorJ QbarSolver::law(const VectorJ& q, const JointSpring& spring) noexcept {
+  model_->evaluate_statics(q, &terms_);
+  return terms_.g - spring.K_d * (q - spring.q_d);
+}
+
+bool QbarSolver::solve(const VectorJ& theta, const TipSpring& spring) noexcept {
+  return solve_for(theta, spring);
+}
+
+bool QbarSolver::solve(const VectorJ& theta, const JointSpring& spring) noexcept {
+  return solve_for(theta, spring);
+}
+
+template <typename Spring>
+bool QbarSolver::solve_for(const VectorJ& theta, const Spring& spring) noexcept {
+  iterations_ = 0;
+  if (!theta.allFinite()) return false;
+  if (!warm_) q_ = theta;
+  warm_ = fixpoint(theta, spring);
+  if (!warm_ && options_.newton) {
+    q_ = theta;
+    warm_ = newton(theta, spring);
+  }
+  if (!warm_) q_ = theta;
+  l_ = law(q_, spring);
+  return warm_;
+}
+
+// True: converged. False: it does not contract, or not fast enough.
+template <typename Spring>
+bool QbarSolver::fixpoint(const VectorJ& theta, const Spring& spring) noexcept {
+  double before = 0.0;
+  for (int i = 0; i < options_.max_iterations; ++i) {
+    const VectorJ next = theta - law(q_, spring).cwiseQuotient(K_J_);
+    const double change = (next - q_).cwiseAbs().maxCoeff();
+    q_ = next;
+    ++iterations_;
+    if (change <= options_.tolerance) return true;
+    if (!next.allFinite()) return false;
+    const bool slow = change > (options_.newton ? kContraction : 1.0) * before;
+    // The first changes say little about the last ones.
+    if (i > 2 && slow) return false;
+    before = change;
+  }
+  return false;
+}
+
+template <typename Spring>
+bool QbarSolver::newton(const VectorJ& theta, const Spring& spring) noexcept {
+  for (int i = 0; i < options_.max_iterations; ++i) {
+    const VectorJ residual = K_J_.cwiseProduct(q_ - theta) + law(q_, spring);
+    MatrixJ S = tangent(q_, spring);
+    S.diagonal() += K_J_;
+    const VectorJ step = S.partialPivLu().solve(residual);
+    q_ -= step;
+    ++iterations_;
+    if (!q_.allFinite()) return false;
+    if (step.cwiseAbs().maxCoeff() <= options_.tolerance) {
+      return S.llt().info() == Eigen::Success;
+    }
+  }
+  return false;
+}
+
+template <typename Spring>
+MatrixJ QbarSolver::tangent(const VectorJ& q, const Spring& spring) noexcept {
+  const Eigen::Index n = q.size();
+  MatrixJ slope(n, n);
+  VectorJ at = q;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    at[i] = q[i] + kStep;
+    slope.col(i) = law(at, spring);
+    at[i] = q[i] - kStep;
+    slope.col(i) -= law(at, spring);
+    at[i] = q[i];
+  }
+  slope /= 2.0 * kStep;
+  return 0.5 * (slope + slope.transpose());
+}
+
+}  // namespace limber::controller
