@@ -130,7 +130,7 @@ void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noex
     return;
   }
   const auto drive = std::find_if(drives.begin(), drives.end(), [&](const Drive& candidate) {
-    return candidate.bus() == bus && candidate.reply_id() == frame.id && !frame.extended;
+    return candidate.bus() == bus && has_id(frame, candidate.link().joint().drive.reply_id);
   });
   if (drive == drives.end()) {
     end.count_foreign();
@@ -180,6 +180,7 @@ GateSituation ArmDriver::Impl::situation() const noexcept {
   now.powered = machine.powered();
   now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
   now.torque_present = tau_present;
+  std::copy_n(published.v, kMaxJoints, now.velocity.begin());
   return now;
 }
 

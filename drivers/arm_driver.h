@@ -62,7 +62,7 @@ class ArmDriver {
   void request_shut_down() noexcept;
   bool shut_down() const noexcept;
 
-  /// The drive whose start-up dialogue failed, in words ("joint3: TMAX is 10, robot.yaml says 28");
+  /// The drive whose start-up dialogue failed, in words ("joint3: register 23 is 10, expected 28");
   /// empty if none did. Allocates: for messages, outside the cycle.
   std::string configuration_problem() const;
 

@@ -85,8 +85,8 @@ std::string ArmDriver::configuration_problem() const {
     const std::string who = fmt::format("{} (id 0x{:X})", joint.name, joint.drive.command_id);
     if (failure.reg == 0) return who + ": could not be disabled, or does not answer";
     if (!failure.answered) return fmt::format("{}: register {} not answered", who, failure.reg);
-    return fmt::format("{}: register {} is {:g}, robot.yaml says {:g}", who, failure.reg,
-                       failure.found, failure.expected);
+    return fmt::format("{}: register {} is {:g}, expected {:g}", who, failure.reg, failure.found,
+                       failure.expected);
   }
   return "";
 }

@@ -6,7 +6,7 @@ namespace limber {
 
 Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
-      configure_(joint.drive, fd),
+      configure_(&link_.family()),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles) {}
 
 void Drive::enter(DriveState state, double gravity) noexcept {
@@ -51,11 +51,11 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
     case DriveState::kFault:
       break;
   }
-  return link_.special(mit::Special::kDisable);  // until it is confirmed and after: it may be lost
+  return link_.disable();  // until it is confirmed and after: it may be lost
 }
 
 CanFrame Drive::poll() noexcept {
-  return link_.enabled() ? link_.special(mit::Special::kDisable) : link_.state_request();
+  return link_.enabled() ? link_.disable() : link_.state_request();
 }
 
 void Drive::begin_cycle() noexcept {

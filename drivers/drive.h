@@ -52,7 +52,6 @@ class Drive {
   std::int32_t replies_lost() const noexcept { return missing_; }
   std::int32_t replies_invalid() const noexcept { return invalid_; }
   int bus() const noexcept { return link_.joint().drive.bus; }
-  std::uint32_t reply_id() const noexcept { return link_.joint().drive.reply_id; }
 
  private:
   CanFrame poll() noexcept;

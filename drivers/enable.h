@@ -18,9 +18,9 @@ class EnableDialogue {
   CanFrame next_frame(JointLink* link) const noexcept {
     switch (step_) {
       case Step::kClear:
-        return link->special(mit::Special::kClearError);
+        return link->clear_error();
       case Step::kEnable:
-        return link->special(mit::Special::kEnable);
+        return link->enable();
       case Step::kZero:
       case Step::kConfirm:
         break;

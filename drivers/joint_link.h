@@ -1,4 +1,4 @@
-// One joint's end of the bus: the only place that knows the drive's sign, zero and number format.
+// One joint's end of the bus: the only place that knows the drive's sign and zero.
 //
 //   joint angle  = sign * (drive angle - offset)       speed and torque likewise by sign
 //
@@ -6,9 +6,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "drivers/can/can_frame.h"
-#include "drivers/protocols/mit.h"
+#include "drivers/families/drive_family.h"
 #include "robots/robot.h"
 
 namespace limber {
@@ -31,13 +32,12 @@ class JointLink {
   /// asks for a motion, whatever becomes of its gain fields.
   CanFrame torque(double tau) noexcept;
 
-  /// The rounding error of the torque field is added to the next torque (first-order noise
-  /// shaping): the mean over the cycles is exact although a count is up to 14 mN m, and there is no
-  /// exact zero. Neither that nor rounding carries a torque over the joint's limit. What is not
-  /// finite is not sent: the frame is then a state request.
+  /// What is not finite is not sent: the frame is then a state request.
   CanFrame command(const JointCommand& command) noexcept;
 
-  CanFrame special(mit::Special special) noexcept;
+  CanFrame disable() noexcept;
+  CanFrame clear_error() noexcept;
+  CanFrame enable() noexcept;
   CanFrame state_request() noexcept;
 
   // --- from the drive -------------------------------------------------------------------------
@@ -46,7 +46,6 @@ class JointLink {
   /// in this cycle, or an angle the joint cannot have reached since the last one
   /// (1.5 velocity_limit T for each cycle since, at most as many as are bridged and one, plus two
   /// counts).
-  /// Replies are decoded with half a count added, because drives truncate.
   bool receive(const CanFrame& frame) noexcept;
 
   /// Start of a cycle: no reply yet, one cycle more since the last.
@@ -66,24 +65,23 @@ class JointLink {
   double v() const noexcept { return v_; }      ///< rad/s
   double tau() const noexcept { return tau_; }  ///< N m, the drive's own estimate
   double tau_applied() const noexcept;          ///< N m, see below
-  double current_A() const noexcept { return tau_ / joint_.drive.torque_constant_Nm_per_A; }
-  int temperature_degC() const noexcept { return temperature_degC_; }  ///< rotor
-  bool enabled() const noexcept { return status_ == mit::DriveError::kEnabled; }
-  bool drive_error() const noexcept;   ///< any status that is a fault
+  double current_A() const noexcept { return current_A_; }
+  double temperature_degC() const noexcept { return temperature_degC_; }
+  bool enabled() const noexcept { return condition_ == DriveCondition::kEnabled; }
+  bool drive_error() const noexcept { return condition_ == DriveCondition::kFailed; }
   bool out_of_range() const noexcept;  ///< 0.02 rad beyond a position limit
   const JointConfig& joint() const noexcept { return joint_; }
+  DriveFamily& family() noexcept { return *family_; }
 
  private:
   bool plausible(double q) const noexcept;
 
   JointConfig joint_;
-  bool fd_;
+  std::unique_ptr<DriveFamily> family_;
   int longest_gap_;         ///< cycles
   double jump_per_cycle_;   ///< rad
   double jump_resolution_;  ///< rad
-  double torque_count_;     ///< N m
-  double carry_ = 0.0;      ///< rounding error not sent yet, N m at the drive
-  mit::Command sent_;       ///< as the drive decodes it
+  DriveCommand sent_;       ///< as the drive understands it
   bool commanded_ = false;  ///< this cycle's frame is a command, not a request
 
   std::int32_t age_cycles_ = kNever;
@@ -91,8 +89,9 @@ class JointLink {
   double q_ = 0.0;
   double v_ = 0.0;
   double tau_ = 0.0;
-  int temperature_degC_ = 0;
-  mit::DriveError status_ = mit::DriveError::kDisabled;
+  double current_A_ = 0.0;
+  double temperature_degC_ = 0.0;
+  DriveCondition condition_ = DriveCondition::kDisabled;
 };
 
 }  // namespace limber

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <memory>
 #include <vector>
 
 #include "common/clock.h"
-#include "drivers/protocols/mit.h"
+#include "drivers/families/drive_family.h"
 
 namespace limber {
 namespace {
@@ -18,7 +18,12 @@ constexpr std::int64_t kStragglers_ns = 20'000'000;
 class Roll {
  public:
   Roll(const Robot& robot, std::span<CanBus* const> buses)
-      : robot_(robot), buses_(buses), here_(robot.joints.size(), false) {}
+      : robot_(robot), buses_(buses), here_(robot.joints.size(), false) {
+    for (const JointConfig& joint : robot.joints) {
+      const bool fd = robot.buses[static_cast<std::size_t>(joint.drive.bus)].fd;
+      families_.push_back(make_drive_family(joint, fd));
+    }
+  }
 
   bool complete() const {
     return std::all_of(here_.begin(), here_.end(), [](bool here) { return here; });
@@ -27,11 +32,8 @@ class Roll {
   void ask() {
     for (std::size_t i = 0; i < here_.size(); ++i) {
       if (here_[i]) continue;
-      const DriveConfig& drive = robot_.joints[i].drive;
-      const auto bus = static_cast<std::size_t>(drive.bus);
-      buses_[bus]->send(mit::encode_register_read(static_cast<std::uint16_t>(drive.command_id),
-                                                  mit::Register::kControlMode,
-                                                  robot_.buses[bus].fd));
+      const auto bus = static_cast<std::size_t>(robot_.joints[i].drive.bus);
+      buses_[bus]->send(families_[i]->presence_request());
     }
   }
 
@@ -72,13 +74,13 @@ class Roll {
   void note(int bus, const CanFrame& frame) {
     for (std::size_t i = 0; i < here_.size(); ++i) {
       const DriveConfig& drive = robot_.joints[i].drive;
-      if (drive.bus == bus && drive.reply_id == frame.id && !frame.extended && !frame.error)
-        here_[i] = true;
+      if (drive.bus == bus && has_id(frame, drive.reply_id)) here_[i] = true;
     }
   }
 
   const Robot& robot_;
   std::span<CanBus* const> buses_;
+  std::vector<std::unique_ptr<DriveFamily>> families_;
   std::vector<bool> here_;
 };
 

@@ -10,9 +10,9 @@
 
 namespace limber {
 
-/// Asks every motor for a register, ten times a second, until all have answered; reading a register
-/// moves, enables and disturbs nothing. Returns "" then, or after `patience_s` (or when `stop` is
-/// set) the motors that are missing, for a message. Set-up only.
+/// Asks every motor for something it can read out, ten times a second, until all have answered;
+/// that moves, enables and disturbs nothing. Returns "" then, or after `patience_s` (or when `stop`
+/// is set) the motors that are missing, for a message. Set-up only.
 std::string call_roll(const Robot& robot, std::span<CanBus* const> buses, double patience_s,
                       const volatile std::sig_atomic_t& stop);
 

@@ -35,18 +35,15 @@ Json damping_design(Arm& arm, Inputs& in) {
   const ArmTerms terms = arm.terms(in);
   const Matrix6 K_x = task.embed(in.positive_semidefinite("Kx", task.size()));
   const double zeta = in.not_negative("zeta");
-  const TaskRows rows = task.rows();
-  const MatrixJ6 Minv_JT = rows.of(terms.Minv_JT.transpose()).transpose();
-  const TipMobility mobility = tip_mobility(rows.of(terms.J), Minv_JT);
-  const auto design = [&](DampingDesign kind) {
-    return rows_of(task.of(tip_damping(kind, mobility, K_x, zeta)));
-  };
+  const TipMobility mobility = task_mobility(terms, task.rows());
+  const Matrix6 Lambda = task_inertia(terms, task.rows(), kLostOnlyWhenSingular);
+  const Matrix6 D = tip_damping(DampingDesign::kDoubleDiagonalisation, mobility, K_x, zeta);
   // Rows that are no part of the task have the least stiffness of all: zero.
   const Vector6 k_0 = modal_stiffness(mobility, K_x);
-  return {{"Lambda", rows_of(task.of(task_inertia(terms, rows, kLostOnlyWhenSingular)))},
-          {"D_double_diag", design(DampingDesign::kDoubleDiagonalisation)},
+  return {{"Lambda", rows_of(task.of(Lambda))},
+          {"D_double_diag", rows_of(task.of(D))},
           {"k0", list_of(k_0.tail(task.size()))},
-          {"D_factorization", design(DampingDesign::kFactorisation)}};
+          {"D_factorization", rows_of(task.of(factorised_tip_damping(mobility, K_x, zeta)))}};
 }
 
 }  // namespace limber::eval

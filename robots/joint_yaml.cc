@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/complaints.h"
+#include "robots/address_yaml.h"
 
 namespace limber {
 namespace {
@@ -92,30 +93,6 @@ FrictionConfig read_friction(const YamlMap& yaml, const Units& units) {
   return friction;
 }
 
-void read_address(const YamlMap& yaml, const Robot& robot, DriveConfig* drive) {
-  std::vector<std::string> names;
-  for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
-  const std::string bus = yaml.word("bus", names);
-  drive->bus = static_cast<int>(std::find(names.begin(), names.end(), bus) - names.begin());
-  // The reply carries the identifier in four bits.
-  drive->command_id = static_cast<std::uint32_t>(yaml.integer("id", 1, 15));
-  drive->reply_id = static_cast<std::uint32_t>(yaml.integer("reply_id", 1, 0x7FE));
-}
-
-void check_address(const YamlMap& yaml, const Robot& robot, std::size_t index) {
-  const DriveConfig& mine = robot.joints[index].drive;
-  if (mine.reply_id == mine.command_id) yaml.refuse("reply_id", "must differ from id");
-  for (std::size_t i = 0; i < index; ++i) {
-    const DriveConfig& other = robot.joints[i].drive;
-    if (other.bus != mine.bus) continue;
-    const std::string taken = fmt::format("is taken by {} on the same bus", robot.joints[i].name);
-    if (other.command_id == mine.command_id || other.reply_id == mine.command_id)
-      yaml.refuse("id", fmt::format("{} {}", mine.command_id, taken));
-    if (other.command_id == mine.reply_id || other.reply_id == mine.reply_id)
-      yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
-  }
-}
-
 void read_hold(const YamlMap& yaml, const Units& units, DriveConfig* drive) {
   drive->hold_kp_Nm_per_rad =
       yaml.number("kp" + units.stiffness, {0.0, drive->range.kp_Nm_per_rad});
@@ -132,8 +109,7 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
   types.reserve(motors.size());
   for (const auto& [name, motor] : motors) types.push_back(name);
   joint.drive = motors.at(yaml.word("motor", types));
-  read_address(yaml, *robot, &joint.drive);
-  check_address(yaml, *robot, index);
+  read_address(yaml, *robot, index, &joint);
   joint.drive.sign = yaml.integer_or("sign", -1, 1, 1) == -1 ? -1.0 : 1.0;
   if (yaml.integer_or("sign", -1, 1, 1) == 0) yaml.refuse("sign", "found '0'; expected 1 or -1");
   joint.drive.offset_rad = yaml.number_or("offset" + units.position, {-1e3, 1e3}, 0.0);

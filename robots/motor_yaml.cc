@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "common/joints.h"
 
 namespace limber {
 namespace {
 
-MitRange read_range(const YamlMap& yaml) {
-  MitRange range;
+CommandRange read_range(const YamlMap& yaml) {
+  CommandRange range;
   range.position_rad = yaml.number("position_rad", {1.0, 200.0});
   range.velocity_rad_per_s = yaml.number("velocity_rad_per_s", {0.1, 1000.0});
   range.torque_Nm = yaml.number("torque_Nm", {0.01, 2000.0});
@@ -21,11 +23,50 @@ MitRange read_range(const YamlMap& yaml) {
   return range;
 }
 
+/// Refuses keys that only motors of another protocol have.
+void refuse_keys_of(const YamlMap& yaml, const std::string& protocol,
+                    const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    if (yaml.has(key))
+      yaml.refuse(key, fmt::format("is for motors with protocol: {} only", protocol));
+  }
+}
+
+void read_damiao(const YamlMap& yaml, DriveConfig* drive) {
+  refuse_keys_of(yaml, "moteus", {"pid_position", "timeout_torque_Nm"});
+  drive->protocol = DriveProtocol::kDamiaoMit;
+  drive->range = read_range(yaml.map("mit_range"));
+  drive->encoder_bits = static_cast<int>(yaml.integer("encoder_bits", 8, 24));
+  if (!(drive->peak_torque_Nm <= drive->range.torque_Nm)) {
+    yaml.refuse("peak_torque_Nm",
+                fmt::format("{} is more than the {} the torque field can carry (mit_range)",
+                            drive->peak_torque_Nm, drive->range.torque_Nm));
+  }
+}
+
+/// Floats carry everything; kp and kd go as a share of what is configured in the drive.
+void read_moteus(const YamlMap& yaml, DriveConfig* drive) {
+  refuse_keys_of(yaml, "damiao_mit", {"mit_range"});
+  drive->protocol = DriveProtocol::kMoteus;
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  const YamlMap gains = yaml.map("pid_position");
+  drive->range = {kNoEnd, kNoEnd, kNoEnd, gains.number("kp_Nm_per_turn", {1e-3, 1e5}) / kTurn_rad,
+                  gains.number("kd_Nms_per_turn", {1e-3, 1e4}) / kTurn_rad};
+  gains.finish();
+  drive->timeout_torque_Nm =
+      yaml.number_or("timeout_torque_Nm", {0.0, drive->peak_torque_Nm},
+                     std::min(drive->timeout_torque_Nm, drive->peak_torque_Nm));
+  drive->encoder_bits = static_cast<int>(yaml.integer("encoder_bits", 8, 32));
+  drive->command_bytes = 48;
+  drive->reply_bytes = 32;
+}
+
 DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   DriveConfig drive;
   drive.motor = name;
   yaml.text_or("description", "-");
-  yaml.word("protocol", {"damiao_mit"});
+  const bool moteus = yaml.word("protocol", {"damiao_mit", "moteus"}) == "moteus";
   drive.gear_ratio = yaml.number("gear_ratio", {0.1, 1000.0});
   const double ratio_squared = drive.gear_ratio * drive.gear_ratio;
   drive.rotor_inertia_kgm2 = ratio_squared * yaml.number("rotor_inertia_kgm2", {0.0, 1.0});
@@ -33,14 +74,8 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   const double resistance = yaml.number("phase_resistance_ohm", {1e-4, 100.0});
   drive.torque_constant_Nm_per_A = drive.gear_ratio * kt;
   drive.short_circuit_damping_Nms = 2.0 / 3.0 * kt * kt / resistance * ratio_squared;
-  drive.range = read_range(yaml.map("mit_range"));
   drive.peak_torque_Nm = yaml.number("peak_torque_Nm", {0.01, 2000.0});
-  if (!(drive.peak_torque_Nm <= drive.range.torque_Nm)) {
-    yaml.refuse("peak_torque_Nm",
-                fmt::format("{} is more than the {} the torque field can carry (mit_range)",
-                            drive.peak_torque_Nm, drive.range.torque_Nm));
-  }
-  drive.encoder_bits = static_cast<int>(yaml.integer("encoder_bits", 8, 24));
+  (moteus ? read_moteus : read_damiao)(yaml, &drive);
   yaml.finish();
   return drive;
 }

@@ -15,7 +15,7 @@ namespace limber {
 ///   B = N^2 I_rotor,   Kt = N kt,   d = (2/3) kt^2 N^2 / R.
 /// d is the damping of shorted phases: with amplitude-invariant currents tau = kt iq, the back-EMF
 /// on the q axis is (2/3) kt w, so iq = -(2/3) kt w / R with R the resistance of one phase.
-/// Set-up only.
+/// moteus: range kp and kd are the configured ones, brought from turns to rad. Set-up only.
 std::map<std::string, DriveConfig> read_motors(const YamlMap& yaml);
 
 std::vector<BusConfig> read_buses(const YamlMap& yaml);

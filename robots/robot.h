@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,12 @@ struct BusConfig {
   int data_bitrate_bps = 5'000'000;  ///< FD data phase
 };
 
-/// The ranges both sides of an MIT link must agree on (protocols: MIT family).
-struct MitRange {
+/// The protocol a drive speaks.
+enum class DriveProtocol : std::uint8_t { kDamiaoMit, kMoteus };
+
+/// What a drive's command frames can carry. MIT: the ranges both sides of the link must agree on.
+/// moteus: kp and kd are the gains configured in the drive, at scale 1; the others are infinite.
+struct CommandRange {
   double position_rad = 12.5;
   double velocity_rad_per_s = 30.0;
   double torque_Nm = 10.0;
@@ -37,19 +42,23 @@ enum class NodeWatchdogReaction : std::uint8_t {
 /// One motor with its drive. Torque, speed and inertia are given at the joint (behind the gear).
 struct DriveConfig {
   std::string motor;  ///< model name, for messages only
-  int bus = 0;        ///< index into Robot::buses
-  std::uint32_t command_id = 0;
-  std::uint32_t reply_id = 0;
+  DriveProtocol protocol = DriveProtocol::kDamiaoMit;
+  int bus = 0;                   ///< index into Robot::buses
+  std::uint32_t command_id = 0;  ///< on the bus; 29 bits long above 0x7FF
+  std::uint32_t reply_id = 0;    ///< likewise
+  int command_bytes = 8;         ///< longest frame in a cycle
+  int reply_bytes = 8;
   double sign = 1.0;        ///< +1 or -1: joint angle = sign * (drive angle - offset)
   double offset_rad = 0.0;  ///< drive angle at joint zero
-  MitRange range;
+  CommandRange range;
   double gear_ratio = 1.0;
   double rotor_inertia_kgm2 = 0.0;        ///< reflected: rotor inertia times gear ratio squared (B)
   double torque_constant_Nm_per_A = 1.0;  ///< at the joint
   double peak_torque_Nm = 0.0;            ///< current limit of the drive, as torque at the joint
   double short_circuit_damping_Nms = 0.0;  ///< joint damping with shorted phases (kDamp)
-  double watchdog_s = 0.02;                ///< written to the drive at start and read back
+  double watchdog_s = 0.02;                ///< written to the drive
   NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
+  double timeout_torque_Nm = 5.0;   ///< moteus: most that brakes the joint after a time-out
   int encoder_bits = 14;            ///< per joint revolution
   double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;
@@ -101,6 +110,8 @@ struct Robot {
   std::string tip;
   double gravity[3] = {0.0, 0.0, -9.81};  ///< m/s^2 in axes of the base link
   double rate_hz = 1000.0;
+  /// Net power the motors may put into the arm; infinite: no limit.
+  double power_limit_W = std::numeric_limits<double>::infinity();
   std::vector<BusConfig> buses;
   std::vector<JointConfig> joints;
   DefaultGains gains;

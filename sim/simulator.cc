@@ -12,7 +12,7 @@
 #include "sim/arm_plant.h"
 #include "sim/force_model.h"
 #include "sim/inbox.h"
-#include "sim/nodes/damiao_node.h"
+#include "sim/nodes/motor_node.h"
 #include "sim/tick_count.h"
 #include "sim/tip_sensor.h"
 #include "sim/truth.h"
@@ -97,7 +97,7 @@ struct Simulator::Impl {
 
   std::unique_ptr<sim::ArmPlant> plant;
   sim::ForceModel forces;
-  std::vector<sim::DamiaoNode> nodes;
+  std::vector<std::unique_ptr<sim::MotorNode>> nodes;
   std::vector<int> node_bus;
   std::optional<sim::TipSensor> tip_sensor;
   std::vector<sim::Inbox> inboxes;
@@ -139,7 +139,7 @@ Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buse
   for (CanBus* bus : buses) inboxes.emplace_back(bus);
   for (const JointConfig& joint : robot.robot.joints) {
     node_bus.push_back(joint.drive.bus);
-    nodes.emplace_back(joint, robot.robot.buses[joint.drive.bus].fd);
+    nodes.push_back(sim::make_motor_node(joint, robot.robot.buses[joint.drive.bus].fd));
   }
   if (robot.robot.has_tip_sensor) {
     tip_sensor.emplace(robot.robot.tip_sensor, plant->arm());
@@ -183,7 +183,7 @@ bool Simulator::Impl::poll() noexcept {
 void Simulator::Impl::on_frame(int bus, const CanFrame& frame) noexcept {
   CanFrame reply;
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
-    if (node_bus[i] == bus && nodes[i].receive(frame, reading(i), sim_time(steps), &reply)) {
+    if (node_bus[i] == bus && nodes[i]->receive(frame, reading(i), sim_time(steps), &reply)) {
       inboxes[bus].bus()->send(reply);
     }
   }
@@ -213,7 +213,7 @@ bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
 }
 
 void Simulator::Impl::advance_step() noexcept {
-  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i].law();
+  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i]->law();
   const std::int64_t now = sim_time(steps);
   const std::int64_t next = sim_time(steps + 1);
   if (stand) update_stand(now);
@@ -221,7 +221,7 @@ void Simulator::Impl::advance_step() noexcept {
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant->step(&forces, step_s, now + (next - now) / 2);
   ++steps;
-  for (sim::DamiaoNode& node : nodes) node.update(next);
+  for (const auto& node : nodes) node->update(next);
   if (tip_sensor) update_tip_sensor(step_s, next);
 }
 
@@ -230,9 +230,8 @@ void Simulator::Impl::update_tip_sensor(double h, std::int64_t t_ns) noexcept {
 }
 
 void Simulator::Impl::update_stand(std::int64_t now_ns) noexcept {
-  const bool enabled = std::all_of(nodes.begin(), nodes.end(), [](const sim::DamiaoNode& node) {
-    return node.state() == mit::DriveError::kEnabled;
-  });
+  const bool enabled =
+      std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node->enabled(); });
   const double left = stand_fade.left(now_ns, enabled);
   for (std::size_t i = 0; i < nodes.size(); ++i) forces.stands[i].set_left(left);
   stand = left > 0.0;
@@ -255,7 +254,7 @@ void Simulator::Impl::clear_world() noexcept {
   forces.environment.wall = sim::Wall();
   forces.environment.pushes.clear();
   set_payload(0.0, Eigen::Vector3d::Zero());
-  for (sim::DamiaoNode& node : nodes) node.clear_faults();
+  for (const auto& node : nodes) node->clear_faults();
   if (tip_sensor) tip_sensor->node.clear_faults();
 }
 
@@ -298,7 +297,7 @@ void Simulator::Impl::inject(const sim::NodeFault& fault) noexcept {
   if (fault.joint == scenario_event_t::NODE_TIP_SENSOR) {
     tip_sensor->node.silence(until);
   } else {
-    nodes[fault.joint].inject(fault.fault, reading(fault.joint), until);
+    nodes[fault.joint]->inject(fault.fault, reading(fault.joint), until);
   }
 }
 

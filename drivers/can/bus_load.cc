@@ -6,8 +6,6 @@
 namespace limber {
 namespace {
 
-constexpr int kCommandBytes = 8;
-constexpr int kReplyBytes = 8;
 // Frames of the tip sensor's two protocols.
 constexpr int kRftBytes = 8;
 constexpr int kFtRequestBytes = 2;
@@ -110,8 +108,9 @@ double busy_time_s(const Robot& robot, int bus) noexcept {
   double busy_s = 0.0;
   for (const JointConfig& joint : robot.joints) {
     if (joint.drive.bus != bus) continue;
-    busy_s +=
-        time_s(kCommandBytes, joint.drive.command_id) + time_s(kReplyBytes, joint.drive.reply_id);
+    const DriveConfig& drive = joint.drive;
+    busy_s += time_s(drive.command_bytes, drive.command_id);
+    busy_s += time_s(drive.reply_bytes, drive.reply_id);
   }
   return busy_s + tip_sensor_time_s(robot, bus);
 }

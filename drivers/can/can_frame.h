@@ -31,4 +31,9 @@ int fd_length(int bytes);
 /// received. Allowed inside the cycle.
 bool is_possible(const CanFrame& frame) noexcept;
 
+/// A data frame with this identifier: 11 bits long if it fits, else 29. Allowed inside the cycle.
+inline bool has_id(const CanFrame& frame, std::uint32_t id) noexcept {
+  return frame.id == id && frame.extended == (id > kStandardIdMax) && !frame.error;
+}
+
 }  // namespace limber

@@ -89,7 +89,7 @@ bool all_finite(const Command& command) noexcept {
 
 bool is_usable(double range) noexcept { return range > 0.0 && std::isfinite(range); }
 
-bool is_usable(const MitRange& range) noexcept {
+bool is_usable(const CommandRange& range) noexcept {
   return is_usable(range.position_rad) && is_usable(range.velocity_rad_per_s) &&
          is_usable(range.torque_Nm) && is_usable(range.kp_Nm_per_rad) &&
          is_usable(range.kd_Nms_per_rad);
@@ -99,7 +99,7 @@ bool is_usable(const MitRange& range) noexcept {
 
 double half_count(double range, int bits) noexcept { return range / top_count(bits); }
 
-bool encode_command(const Command& command, const MitRange& range, std::uint32_t id, bool fd,
+bool encode_command(const Command& command, const CommandRange& range, std::uint32_t id, bool fd,
                     Quantiser quantiser, CanFrame* frame) noexcept {
   if (!all_finite(command) || !is_usable(range)) return false;
   const std::uint32_t p =
@@ -146,7 +146,7 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept {
   return register_frame(id, kStateRequest, 0, 0, kRegisterId, fd);
 }
 
-bool decode_reply(const CanFrame& frame, const MitRange& range, Reply* reply) noexcept {
+bool decode_reply(const CanFrame& frame, const CommandRange& range, Reply* reply) noexcept {
   if (!is_plain(frame) || frame.length != 8) return false;
   const auto& d = frame.data;
   const std::uint32_t p = static_cast<std::uint32_t>(d[1]) << 8U | d[2];
@@ -189,7 +189,7 @@ bool decode_special(const CanFrame& frame, Special* special) noexcept {
   return false;
 }
 
-bool decode_command(const CanFrame& frame, const MitRange& range, Command* command) noexcept {
+bool decode_command(const CanFrame& frame, const CommandRange& range, Command* command) noexcept {
   Special special{};
   if (!is_plain(frame) || frame.length != 8 || decode_special(frame, &special)) return false;
   const auto& d = frame.data;
@@ -220,8 +220,8 @@ bool decode_register_request(const CanFrame& frame, RegisterRequest* request) no
   return true;
 }
 
-CanFrame encode_reply(const Reply& reply, const MitRange& range, std::uint32_t reply_id, bool fd,
-                      Quantiser quantiser) noexcept {
+CanFrame encode_reply(const Reply& reply, const CommandRange& range, std::uint32_t reply_id,
+                      bool fd, Quantiser quantiser) noexcept {
   const std::uint32_t p =
       symmetric(reply.position_rad, range.position_rad, kPositionBits, quantiser);
   const std::uint32_t v =

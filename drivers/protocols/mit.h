@@ -69,8 +69,9 @@ double half_count(double range, int bits) noexcept;
 // and leaves the frame alone. A command that would read as a special frame (torque within four
 // counts of the top, all other fields at the top) is moved down to the first torque count that does
 // not.
-[[nodiscard]] bool encode_command(const Command& command, const MitRange& range, std::uint32_t id,
-                                  bool fd, Quantiser quantiser, CanFrame* frame) noexcept;
+[[nodiscard]] bool encode_command(const Command& command, const CommandRange& range,
+                                  std::uint32_t id, bool fd, Quantiser quantiser,
+                                  CanFrame* frame) noexcept;
 CanFrame encode_special(Special special, std::uint32_t id, bool fd) noexcept;
 CanFrame encode_register_read(std::uint16_t id, Register reg, bool fd) noexcept;
 CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw_value,
@@ -80,7 +81,7 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 
 // Drive to master.
 /// Decodes a state reply; false if it cannot be one (length, remote, error frame).
-[[nodiscard]] bool decode_reply(const CanFrame& frame, const MitRange& range,
+[[nodiscard]] bool decode_reply(const CanFrame& frame, const CommandRange& range,
                                 Reply* reply) noexcept;
 /// Decodes a register answer; false unless id, operation (0x33 or 0x55) and register match.
 [[nodiscard]] bool decode_register(const CanFrame& frame, std::uint16_t id, std::uint8_t operation,
@@ -88,7 +89,7 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 
 // The node's side, for the simulator.
 [[nodiscard]] bool decode_special(const CanFrame& frame, Special* special) noexcept;
-[[nodiscard]] bool decode_command(const CanFrame& frame, const MitRange& range,
+[[nodiscard]] bool decode_command(const CanFrame& frame, const CommandRange& range,
                                   Command* command) noexcept;
 struct RegisterRequest {
   std::uint16_t id = 0;
@@ -100,8 +101,8 @@ struct RegisterRequest {
                                            RegisterRequest* request) noexcept;
 /// Values outside the ranges saturate; NaN, which no physical state holds, becomes the lowest
 /// count.
-CanFrame encode_reply(const Reply& reply, const MitRange& range, std::uint32_t reply_id, bool fd,
-                      Quantiser quantiser) noexcept;
+CanFrame encode_reply(const Reply& reply, const CommandRange& range, std::uint32_t reply_id,
+                      bool fd, Quantiser quantiser) noexcept;
 CanFrame encode_register_answer(const RegisterRequest& request, std::uint32_t raw_value,
                                 std::uint32_t reply_id, bool fd) noexcept;
 

@@ -12,46 +12,32 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/mit.h"
 #include "robots/robot.h"
-#include "sim/joints/drive_law.h"
 #include "sim/nodes/damiao_registers.h"
+#include "sim/nodes/motor_node.h"
 
 namespace limber::sim {
-
-/// The joint as it is, in joint coordinates. rad, rad/s, N m.
-struct JointReading {
-  double q = 0.0;
-  double v = 0.0;
-  double motor_torque = 0.0;
-};
 
 /// States are those of the status nibble: disabled (phases open: rotor and friction are all the
 /// joint feels), enabled, or a latched error, which leaves enabled mode until it is cleared (FB)
 /// and the drive enabled again (FC). After construction every member is allowed in the cycle.
-class DamiaoNode {
+class DamiaoNode final : public MotorNode {
  public:
   DamiaoNode(const JointConfig& joint, bool fd);
 
-  /// Handles a frame at simulated time `now`. True if `reply` is to be sent; frames for others, of
-  /// the wrong length, extended, remote or error frames are no concern of the node.
+  /// Frames for others, of the wrong length, extended, remote or error frames are no concern of the
+  /// node.
   bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
-               CanFrame* reply) noexcept;
+               CanFrame* reply) noexcept override;
+  void update(std::int64_t now_ns) noexcept override;
 
-  /// Lets simulated time pass: the drive's own watchdog, the end of faults. Call before every
-  /// integration step.
-  void update(std::int64_t now_ns) noexcept;
+  /// kp, kd and t of the last command, limited to the smaller of the torque range and the drive's
+  /// peak.
+  DriveLaw law() const noexcept override;
+  bool enabled() const noexcept override { return state_ == mit::DriveError::kEnabled; }
 
-  /// The torque law at work, in joint coordinates: kp, kd and t of the last command, limited to the
-  /// smaller of the torque range and the drive's peak.
-  DriveLaw law() const noexcept;
-
-  /// scenario_event_t FAULT_* until a simulated time:
-  /// - SILENT: obeys, but its replies never reach the bus.
-  /// - FROZEN_ENCODER: position stays what it was, speed reads 0, for the bus and for the drive's
-  ///   own law.
-  /// - DRIVE_ERROR: over-current; leaves enabled mode, cannot be cleared while it lasts.
-  /// - DROP_COMMANDS: answers, but takes nothing in; the watchdog is not fed.
-  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept;
-  void clear_faults() noexcept;
+  /// DRIVE_ERROR is an over-current.
+  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept override;
+  void clear_faults() noexcept override;
 
   mit::DriveError state() const noexcept { return state_; }
   const DamiaoRegisters& registers() const noexcept { return registers_; }

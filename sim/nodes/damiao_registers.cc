@@ -93,6 +93,6 @@ std::int64_t DamiaoRegisters::timeout_ns() const noexcept {
 
 bool DamiaoRegisters::mit_mode() const noexcept { return raw_[kControlMode] == kMitMode; }
 
-MitRange DamiaoRegisters::range() const noexcept { return range_; }
+CommandRange DamiaoRegisters::range() const noexcept { return range_; }
 
 }  // namespace limber::sim

@@ -26,12 +26,12 @@ class DamiaoRegisters {
   std::int64_t timeout_ns() const noexcept;
   bool mit_mode() const noexcept;
   /// The ranges in which this drive packs and unpacks MIT frames.
-  MitRange range() const noexcept;
+  CommandRange range() const noexcept;
 
  private:
   static constexpr int kCount = 82;
   std::array<std::uint32_t, kCount> raw_{};
-  MitRange range_;
+  CommandRange range_;
 };
 
 }  // namespace limber::sim

@@ -152,7 +152,7 @@ TEST(CartesianImpedance, StaticStiffnessIsWhatWasAskedFor) {
 }
 
 TEST(CartesianImpedance, PlanarArmIsAsStiffAsItsTwoRowsSay) {
-  for (const LoadedRobot& robot : {planar(), load_robot("planar2r")}) {
+  for (const LoadedRobot& robot : {planar(), load_robot("desktop2r")}) {
     LawBench bench(robot, "cartesian_impedance");
     bench.gains.K_x.setZero();
     bench.gains.K_x.topLeftCorner<2, 2>() << 700.0, 150.0, 150.0, 300.0;

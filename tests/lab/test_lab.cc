@@ -50,7 +50,7 @@ TEST(Lab, GivesTheSameBytesTwice) {
 }
 
 TEST(Lab, NeverAllocatesInTheCycle) {
-  for (const char* name : {"quick.yaml", "planar2r_push.yaml"}) {
+  for (const char* name : {"quick.yaml", "desktop2r_push.yaml", "planar2r_push.yaml"}) {
     Stage stage(name);
     stage.run_to(0.01);
     const std::int64_t before = testing::allocations();

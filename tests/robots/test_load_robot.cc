@@ -13,7 +13,7 @@ namespace {
 using testing::Terms;
 using testing::terms_at;
 
-/// Textbook dynamics of the planar arm, without the rotors: see robots/planar2r/robot.urdf.
+/// Textbook dynamics of the planar arm, without the rotors: see the comments in their robot.urdf.
 struct Planar {
   double a1, a2, l1, l2, m1, m2, I1, I2, motor2;
 
@@ -44,8 +44,8 @@ void expect_planar(const LoadedRobot& arm, const Planar& closed) {
   }
 }
 
-TEST(LoadRobot, Planar2rHasItsClosedForm) {
-  const LoadedRobot arm = load_robot("planar2r");
+TEST(LoadRobot, Desktop2rHasItsClosedForm) {
+  const LoadedRobot arm = load_robot("desktop2r");
   expect_planar(arm, {0.35, 0.3, 0.175, 0.15, 1.2, 0.8, 0.01225, 0.006, 0.3});
   // Golden figures of the closed form with rotors, at q = 0: b11 0.293568, b22 0.0258. The coupling
   // of rotor 2 with link 1 (1.8e-5 in b11) is what a reflected inertia leaves out.
@@ -53,6 +53,41 @@ TEST(LoadRobot, Planar2rHasItsClosedForm) {
   EXPECT_NEAR(M(0, 0) + arm.robot.joints[0].drive.rotor_inertia_kgm2, 0.293568 - 1.8e-5, 1e-12);
   EXPECT_NEAR(M(1, 1) + arm.robot.joints[1].drive.rotor_inertia_kgm2, 0.0258, 1e-12);
   EXPECT_NEAR(terms_at(arm, {0, 0}).g[0], 7.01415, 1e-12);
+}
+
+TEST(LoadRobot, Planar2rIsTwoThinRodsOnIdealDrives) {
+  const LoadedRobot arm = load_robot("planar2r");
+  expect_planar(arm, {0.5, 0.4, 0.25, 0.2, 4.0, 2.5, 1.0 / 12.0, 1.0 / 30.0, 0.0});
+  for (const JointConfig& joint : arm.robot.joints) {
+    EXPECT_EQ(joint.drive.rotor_inertia_kgm2, 0.0);
+    EXPECT_EQ(joint.friction.coulomb_Nm + joint.friction.viscous_Nms_per_rad, 0.0);
+    EXPECT_EQ(joint.torque_limit_Nm, 150.0);
+    EXPECT_GE(joint.torque_rate_limit_Nm_per_s / arm.robot.rate_hz, 100.0);
+  }
+}
+
+// Stretched out the links' lengths add up: 0.1575 + 0.2025 + 0.2045 + 0.2155 + 0.1845 + 0.2155 +
+// 0.081 + 0.045 to the flange.
+TEST(LoadRobot, Ideal7IsTheArmOfItsTables) {
+  const LoadedRobot arm = load_robot("ideal7");
+  ASSERT_EQ(arm.robot.size(), 7);
+  const Terms zero = terms_at(arm, std::vector<double>(7, 0.0));
+  EXPECT_NEAR(zero.p_BT.z(), 1.306 + 0.1, 1e-12);
+  EXPECT_NEAR(zero.p_BT.head<2>().norm(), 0.0, 1e-12);
+  // A quarter turn of the shoulder: all masses beyond joint 2, at their heights above it.
+  const double mass[] = {6.35, 3.5, 3.5, 3.5, 1.8, 1.2};
+  const double height[] = {0.059,          0.2045 + 0.13, 0.42 + 0.067,
+                           0.6045 + 0.076, 0.82 + 0.0006, 0.901 + 0.02};
+  double moment = 0.0;
+  for (int i = 0; i < 6; ++i) moment += mass[i] * height[i];
+  const Terms level = terms_at(arm, {0.0, 1.5707963267948966, 0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(std::abs(level.g[1]), 9.81 * moment, 1e-9);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(arm.robot.joints[i].drive.command_id, 0x8001 + i);
+    EXPECT_EQ(arm.robot.joints[i].drive.reply_id, 256 * (i + 1));
+    EXPECT_EQ(arm.robot.joints[i].torque_limit_Nm, 300.0);
+    EXPECT_EQ(arm.robot.joints[i].velocity_limit, 10.0);
+  }
 }
 
 TEST(LoadRobot, TextbookArmHasItsClosedForm) {
@@ -86,7 +121,7 @@ TEST(LoadRobot, OpenarmIsTheArmOfItsTables) {
 
 /// A pose to start from must leave the motors room and be away from the ends.
 TEST(LoadRobot, ShippedHomesAreEasyToHold) {
-  for (const char* name : {"openarm", "planar2r"}) {
+  for (const char* name : {"openarm", "desktop2r", "planar2r", "ideal7"}) {
     const LoadedRobot arm = load_robot(name);
     std::vector<double> home;
     for (const JointConfig& joint : arm.robot.joints) home.push_back(joint.home);
@@ -98,6 +133,26 @@ TEST(LoadRobot, ShippedHomesAreEasyToHold) {
       EXPECT_GT(joint.position_max - joint.home, 0.3) << name << " " << joint.name;
     }
   }
+}
+
+TEST(LoadRobot, MoteusDrivesAreRead) {
+  const Robot robot = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/moteus").robot;
+  const DriveConfig& turn = robot.joints[0].drive;
+  EXPECT_EQ(turn.protocol, DriveProtocol::kMoteus);
+  EXPECT_EQ(turn.command_id, 0x8003U);
+  EXPECT_EQ(turn.reply_id, 0x300U);
+  EXPECT_EQ(turn.command_bytes, 48);
+  EXPECT_EQ(turn.reply_bytes, 32);
+  EXPECT_NEAR(turn.range.kp_Nm_per_rad * 2.0 * M_PI, 400.0, 1e-9);
+  EXPECT_NEAR(turn.range.kd_Nms_per_rad * 2.0 * M_PI, 20.0, 1e-9);
+  EXPECT_EQ(turn.timeout_torque_Nm, 3.0);
+  EXPECT_EQ(turn.encoder_bits, 32);
+  EXPECT_EQ(robot.joints[0].torque_limit_Nm, 15.0);  // peak; the URDF says 20
+  EXPECT_EQ(robot.joints[0].velocity_limit, 5.0);    // URDF: frames have no end
+  EXPECT_EQ(robot.joints[1].drive.protocol, DriveProtocol::kDamiaoMit);
+  EXPECT_EQ(robot.joints[1].drive.command_bytes, 8);
+  EXPECT_EQ(robot.joints[2].drive.command_id, 0x800CU);
+  EXPECT_EQ(robot.joints[2].drive.reply_id, 0xC00U);
 }
 
 class ArmOfTheTests : public ::testing::Test {

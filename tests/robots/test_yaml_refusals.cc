@@ -76,7 +76,7 @@ const Mutation kSections[] = {
     {"WatchdogOff", "timeout_s: 0.02", "timeout_s: 0", "'0' is out of range"},
     {"WatchdogTooShort", "timeout_s: 0.02", "timeout_s: 0.003", "shorter than two cycles at 500"},
     {"WatchdogReaction", "reaction: off", "reaction: brake", "expected one of: damp, off"},
-    {"MotorProtocol", "protocol: damiao_mit", "protocol: canopen", "one of: damiao_mit"},
+    {"MotorProtocol", "protocol: damiao_mit", "protocol: canopen", "one of: damiao_mit, moteus"},
     {"MotorGear", "gear_ratio: 9", "gear_ratio: 0", "motors.big.gear_ratio: '0' is out of range"},
     {"MotorInertiaNegative", "rotor_inertia_kgm2: 0.0002", "rotor_inertia_kgm2: -0.0002", "out of"},
     {"MotorResistance", "phase_resistance_ohm: 0.2", "phase_resistance_ohm: 0", "out of range"},
@@ -133,6 +133,53 @@ const Mutation kJoints[] = {
 INSTANTIATE_TEST_SUITE_P(Joints, RobotYamlRefusal, ::testing::ValuesIn(kJoints),
                          testing::MutationName());
 
+/// An arm with two moteus drives and a Damiao on a slide.
+std::string good_moteus_yaml() {
+  const std::string text =
+      testing::read_text(LIMBER_SOURCE_DIR "/tests/robots/data/moteus/robot.yaml");
+  return testing::apply(text, {"", "../arm/robot.urdf", kArm + "robot.urdf", ""}).text;
+}
+
+class MoteusYamlRefusal : public ::testing::TestWithParam<Mutation> {};
+
+TEST_P(MoteusYamlRefusal, NamesPlaceAndProblem) {
+  const testing::Mutated bad = testing::apply(good_moteus_yaml(), GetParam());
+  std::string file;
+  const std::string complaint = refusal(bad.text, &file);
+  testing::expect_complaint(complaint, file, bad.line, GetParam().expect);
+}
+
+const std::string kGains = "    pid_position: {kp_Nm_per_turn: 400, kd_Nms_per_turn: 20}\n";
+const std::string kRanges =
+    "    mit_range: {position_rad: 1, velocity_rad_per_s: 2, torque_Nm: 200, kp_Nm_per_rad: 5000, "
+    "kd_Nms_per_rad: 100}\n";
+
+const Mutation kMoteus[] = {
+    {"RangesOfAnotherProtocol", kGains, kGains + kRanges,
+     "mit_range: is for motors with protocol: damiao_mit only", 1},
+    {"GainsOfAnotherProtocol", kRanges, kRanges + kGains,
+     "pid_position: is for motors with protocol: moteus only", 1},
+    {"TimeoutTorqueOfAnotherProtocol", kRanges, kRanges + "    timeout_torque_Nm: 3\n",
+     "timeout_torque_Nm: is for motors with protocol: moteus only", 1},
+    {"GainsMissing", kGains, "", "'pid_position' is missing", -9},
+    {"GainsInRadians", "kp_Nm_per_turn", "kp_Nm_per_rad", "'kp_Nm_per_turn' is missing"},
+    {"GainZero", "kp_Nm_per_turn: 400", "kp_Nm_per_turn: 0", "'0' is out of range"},
+    {"TimeoutTorqueAbovePeak", "timeout_torque_Nm: 3", "timeout_torque_Nm: 16", "from 0 to 15"},
+    {"EncoderBits", "encoder_bits: 32", "encoder_bits: 33", "from 8 to 32"},
+    {"IdOfTheHost", "id: 12", "id: 0", "from 1 to 126"},
+    {"IdOfEverybody", "id: 12", "id: 127", "from 1 to 126"},
+    {"IdTaken", "id: 12", "id: 3", "3 is taken by turn on the same bus"},
+    {"ReplyId", "    id: 12\n", "    id: 12\n    reply_id: 18\n",
+     "reply_id: is for motors with protocol: damiao_mit only", 1},
+    {"ClassicBus", "    bus: left\n    id: 12", "    bus: right\n    id: 12",
+     "bus: 'right' is classic; moteus drives need CAN-FD"},
+    {"PrismaticJoint", "    motor: linear\n    bus: right", "    motor: turner\n    bus: left",
+     "motor: moteus drives count turns"},
+    {"HoldAboveTheDrives", "kp_Nm_per_rad: 50,", "kp_Nm_per_rad: 64,", "from 0 to 63.66"},
+};
+INSTANTIATE_TEST_SUITE_P(Moteus, MoteusYamlRefusal, ::testing::ValuesIn(kMoteus),
+                         testing::MutationName());
+
 TEST(RobotYamlRefusals, TellEverythingThatIsWrong) {
   std::string text = good_yaml();
   for (const Mutation& mutation : {Mutation{"", "    id: 2", "    id: 20", ""},
@@ -151,7 +198,8 @@ TEST(RobotYamlRefusals, TellEverythingThatIsWrong) {
 TEST(RobotYamlRefusals, UnknownRobot) {
   const std::string complaint = testing::complaint_of([] { load_robot("openarn"); });
   EXPECT_NE(complaint.find("did you mean 'openarm'?"), std::string::npos) << complaint;
-  EXPECT_NE(complaint.find("one of: openarm, planar2r"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("one of: desktop2r, ideal7, openarm, planar2r"), std::string::npos)
+      << complaint;
   testing::complaint_of([] { load_robot(""); });
   testing::complaint_of([] { load_robot("/nowhere"); });
 }

@@ -151,11 +151,11 @@ TEST_F(GoodScenario, World) {
 Scenario load_text(const std::string& rest, const LoadedRobot& robot) {
   const testing::TemporaryFolder folder;
   return load_scenario(
-      folder.write("short.yaml", "format: limber-scenario/1\nrobot: planar2r\n" + rest), robot);
+      folder.write("short.yaml", "format: limber-scenario/1\nrobot: desktop2r\n" + rest), robot);
 }
 
 TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
-  const LoadedRobot robot = load_robot("planar2r");
+  const LoadedRobot robot = load_robot("desktop2r");
   const Scenario scenario = load_text("duration_s: 2\n", robot);
   EXPECT_EQ(scenario.name, "short");
   EXPECT_TRUE(scenario.lockstep);
@@ -174,7 +174,7 @@ TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
 }
 
 TEST(LoadScenario, FirstGainsStartFromTheRobots) {
-  const LoadedRobot robot = load_robot("planar2r");
+  const LoadedRobot robot = load_robot("desktop2r");
   const Scenario scenario =
       load_text("duration_s: 2\ntimeline: [{at_s: 0.1, gains: {damping_ratio: 1}}]\n", robot);
   const auto& gains = std::get<compliance_gains_t>(scenario.timeline[0].message);
@@ -186,7 +186,7 @@ TEST(LoadScenario, FirstGainsStartFromTheRobots) {
 }
 
 TEST(LoadScenario, ADiagonalClearsTheCouplingOfItsBlock) {
-  const LoadedRobot robot = load_robot("planar2r");
+  const LoadedRobot robot = load_robot("desktop2r");
   const std::string matrix =
       "[[9, 1, 0, 0, 0, 2], [1, 9, 0, 0, 0, 0], [0, 0, 9, 0, 0, 0], [0, 0, 0, 7, 1, 0], "
       "[0, 0, 0, 1, 7, 0], [2, 0, 0, 0, 0, 7]]";
@@ -203,7 +203,7 @@ TEST(LoadScenario, ADiagonalClearsTheCouplingOfItsBlock) {
 }
 
 TEST(LoadScenario, EntriesMayStandInAnyOrder) {
-  const LoadedRobot robot = load_robot("planar2r");
+  const LoadedRobot robot = load_robot("desktop2r");
   const Scenario scenario = load_text(
       "duration_s: 2\ntimeline:\n  - {at_s: 1, mode: stop}\n  - {at_s: 0.5, mode: hold}\n"
       "  - {at_s: 1, mode: idle}\n",

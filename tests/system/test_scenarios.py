@@ -37,7 +37,16 @@ def numbers(folder) -> dict[str, dict]:
     return {result["name"]: result for result in summary["results"]}
 
 
-@pytest.mark.parametrize("name", ["push", "push_joint", "planar2r_push"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "push",
+        "push_joint",
+        "desktop2r_push",
+        "planar2r_push",
+        "ideal7_push",
+    ],
+)
 def test_stiffness_without_friction(name, tmp_path):
     """Two per cent of what was asked, in every direction (the scenario's own tolerance)."""
     done = limber("lab", f"scenarios/{name}.yaml", "--out", str(tmp_path / "out"))

@@ -58,7 +58,7 @@ TEST(Check, FindsRobotsByFolderAndByEnvironment) {
 }
 
 TEST(Check, WarnsWhereGravityIsTooMuch) {
-  const Outcome outcome = check("robot planar2r");
+  const Outcome outcome = check("robot desktop2r");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(contains(outcome.output, "warning: shoulder: gravity needs up to 7.01"));
 }
@@ -167,7 +167,7 @@ const CommandLine kCommandLines[] = {
     {"RobotEmptyName", "robot ''", "no robot ''"},
     {"RobotUnknown", "robot openarn", "did you mean 'openarm'?"},
     {"RobotIsAFile", "robot " + kUrdf, "expected a folder with robot.yaml"},
-    {"TwoRobots", "robot openarm planar2r", "not expected"},
+    {"TwoRobots", "robot openarm desktop2r", "not expected"},
     {"UnknownOption", "robot openarm --fast", "not expected: --fast"},
     {"UrdfWithoutBase", kBareUrdf + "--tip hand", "--base is required"},
     {"UrdfWithoutTip", kBareUrdf + "--base world", "--tip is required"},

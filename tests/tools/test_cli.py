@@ -54,6 +54,10 @@ WRONG = [
     (["plot", "{dir}/run.lcmlog", "--what", "jiont"], "joint, cartesian, torque, timing"),
     (["plot", "{dir}/run.lcmlog", "--what", "torque"], "CONTROLLER_STATUS"),
     (["watch", "--robot", "unheard_of"], "planar2r"),
+    (["experiment", "run"], "'which'"),
+    (["experiment", "run", "E99"], "E12"),
+    (["experiment", "run", "all", "--jobs", "0"], "--jobs"),
+    (["experiment", "report", "--out", "{dir}"], "experiment run all"),
     (["test", "everything"], "ctest"),
     (["bench", "faster"], "unexpected extra argument"),
 ]

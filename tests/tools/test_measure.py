@@ -188,11 +188,11 @@ def test_friction_band_is_what_the_joints_can_hold(scenario):
 
 
 def test_joint_pd_closed_form(tmp_path, scenario):
-    """planar2r: C = J K_q⁻¹ Jᵀ with the textbook Jacobian."""
+    """desktop2r: C = J K_q⁻¹ Jᵀ with the textbook Jacobian."""
     text = "friction: false\n" + timeline(
         ("+x", "+y"), "  - {at_s: 0.5, gains: {law: joint_pd, K_q_Nm_per_rad: [50, 30]}}"
     )
-    arm = scenario("planar2r", text)
+    arm = scenario("desktop2r", text)
     q1, q2, a1, a2 = 0.4, 1.1, 0.35, 0.3
     J = np.zeros((6, 2))
     J[0] = -a1 * np.sin(q1) - a2 * np.sin(q1 + q2), -a2 * np.sin(q1 + q2)

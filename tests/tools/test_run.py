@@ -14,7 +14,7 @@ from conftest import ROOT
 from limber.logs import Log
 
 QUICK = ROOT / "scenarios" / "quick.yaml"
-LONG = "format: limber-scenario/1\nrobot: planar2r\nmode: realtime\nduration_s: 100\n"
+LONG = "format: limber-scenario/1\nrobot: desktop2r\nmode: realtime\nduration_s: 100\n"
 
 
 def children(pid: int) -> dict[str, int]:

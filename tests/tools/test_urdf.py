@@ -8,17 +8,17 @@ from limber.errors import InputError
 from limber.robot import load_robot
 from limber.urdf import Chain
 
-A1, A2 = 0.35, 0.3  # m, links of planar2r
+A1, A2 = 0.35, 0.3  # m, links of desktop2r
 POSES = [(0.0, 0.0), (0.4, -1.1), (-2.0, 2.3), (1.2, 0.7)]
 
 
 @pytest.fixture(scope="module")
 def planar():
-    return load_robot("planar2r").chain
+    return load_robot("desktop2r").chain
 
 
 @pytest.mark.parametrize("q", POSES)
-def test_planar2r_closed_form(planar, q):
+def test_desktop2r_closed_form(planar, q):
     q1, q2 = q
     s1, c1, s12, c12 = np.sin(q1), np.cos(q1), np.sin(q1 + q2), np.cos(q1 + q2)
     X_BT = planar.forward(np.array(q))

@@ -11,6 +11,7 @@ from typer.exceptions import TyperException
 
 from limber import __version__
 from limber.errors import OUT_OF_TOLERANCE, RUN_FAILED, WRONG_INPUT, LimberError
+from limber.experiments.cli import app as experiment_app
 
 INTERRUPTED = 130
 
@@ -22,6 +23,7 @@ app = typer.Typer(
 )
 log_app = typer.Typer(help="Look into recorded logs.", no_args_is_help=True)
 app.add_typer(log_app, name="log")
+app.add_typer(experiment_app, name="experiment")
 identify_app = typer.Typer(help="Find out about the arm from its runs.", no_args_is_help=True)
 app.add_typer(identify_app, name="identify")
 # into a pipe or file there is no width to keep to
@@ -142,6 +144,23 @@ def record(
 
     output_folder(out.parent)
     command = [str(program("limber-record")), "--out", str(out), "--duration", str(duration)]
+    os.execv(command[0], command)
+
+
+@app.command()
+def ask(
+    entries: Annotated[
+        list[str] | None,
+        typer.Argument(help="Such as 'mode: active' or 'gains: {law: salisbury}'."),
+    ] = None,
+    robot: Annotated[str, typer.Option(help="The arm that runs: name or folder.")] = "openarm",
+) -> None:
+    """Say to a running stack what a scenario would say: mode, gains, goal, push, wall, ..."""
+    from limber.network import require_multicast
+    from limber.paths import program
+
+    require_multicast()
+    command = [str(program("limber-ask")), "--robot", robot, *(entries or [])]
     os.execv(command[0], command)
 
 

@@ -54,7 +54,7 @@ def _parts() -> Iterator[Part]:
     yield Part("vcan", [*ctest, "-L", "vcan", "--no-tests=error"])
     clang_format = str(Path(python).parent / "clang-format")
     yield Part("format", [clang_format, "--dry-run", "-Werror", *map(str, cxx_files())])
-    yield Part("lint", [python, "-m", "ruff", "check", "tools", "tests"])
+    yield Part("lint", [python, "-m", "ruff", "check", "tools", "tests", "experiments"])
 
 
 def cxx_files() -> Iterator[Path]:

@@ -143,6 +143,18 @@ TEST(BusLoad, SevenJointsOnOneClassicBusDoNot) {
   EXPECT_NEAR(highest_safe_rate_hz(robot, 0), 423, 0.5);
 }
 
+// 29-bit command of 48 bytes, 57 us + 519 / 5 us; 11-bit reply of 32, 34 us + 358 / 5 us.
+TEST(BusLoad, ThreeMoteusDrivesFillABusAtOneKilohertz) {
+  Robot robot = seven_joints(true);
+  robot.joints.resize(3);
+  for (JointConfig& joint : robot.joints) {
+    joint.drive.command_id |= 0x8000U;
+    joint.drive.command_bytes = 48;
+    joint.drive.reply_bytes = 32;
+  }
+  EXPECT_NEAR(predicted_bus_load(robot, 0), 3 * (160.8e-6 + 105.6e-6) * 1000, 1e-9);
+}
+
 TEST(BusLoad, CountsOnlyTheBusItself) {
   Robot robot = seven_joints(false);
   robot.buses.push_back(robot.buses[0]);

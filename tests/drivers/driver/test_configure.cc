@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/configure.h"
+#include "drivers/protocols/mit.h"
 #include "tests/drivers/driver/fake_arm.h"
 
 namespace limber {
@@ -108,7 +109,8 @@ TEST(ConfigureTest, AMotorThatCannotBeDisabledIsRefused) {
 
 TEST(ConfigureTest, AnAnswerThatWasNotAskedForYetDoesNotCount) {
   const DriveConfig drive = test_robot(1).joints[0].drive;
-  ConfigureDialogue dialogue(drive, true);
+  const auto family = make_drive_family(test_robot(1).joints[0], true);
+  ConfigureDialogue dialogue(family.get());
   testing::FakeMotor motor(drive);
   dialogue.start();
   dialogue.receive_state(false);

@@ -159,7 +159,7 @@ TEST(JointLinkTest, NoTorqueIsAppliedByRequestsOrToDisabledDrives) {
   (void)link.torque(3.0);
   ASSERT_TRUE(link.receive(state_reply(1, 1, 32767, 2047, 2047)));
   EXPECT_NEAR(link.tau_applied(), 3.0, kTorqueCount);
-  (void)link.special(mit::Special::kDisable);
+  (void)link.disable();
   EXPECT_EQ(link.tau_applied(), 0.0);
 }
 

@@ -14,8 +14,8 @@
 namespace limber::mit {
 namespace {
 
-constexpr MitRange kDm4310{12.5, 30.0, 10.0, 500.0, 5.0};
-constexpr MitRange kAk80{12.5, 50.0, 18.0, 500.0, 5.0};
+constexpr CommandRange kDm4310{12.5, 30.0, 10.0, 500.0, 5.0};
+constexpr CommandRange kAk80{12.5, 50.0, 18.0, 500.0, 5.0};
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array kQuantisers = {Quantiser::kTruncate, Quantiser::kRound};
@@ -43,7 +43,7 @@ CanFrame parse(const std::string& candump) {
   return frame;
 }
 
-std::string encoded(const Command& command, const MitRange& range, std::uint32_t id,
+std::string encoded(const Command& command, const CommandRange& range, std::uint32_t id,
                     Quantiser quantiser) {
   CanFrame frame;
   return encode_command(command, range, id, false, quantiser, &frame) ? text(frame) : "refused";
@@ -237,7 +237,7 @@ TEST(MitQuantiser, BoundariesOfTheTorqueField) {
 
 TEST(MitQuantiser, ATruncatedZeroWithHalfACountIsExactlyZero) {
   for (const double range : {1.0, 5.0, 10.0, 12.5, 12.566, 18.0, 28.0, 30.0, 54.0, 144.0, 0.1}) {
-    const MitRange ranges{range, range, range, 500.0, 5.0};
+    const CommandRange ranges{range, range, range, 500.0, 5.0};
     const CanFrame frame = encode_reply({}, ranges, 0x13, false, Quantiser::kTruncate);
     Reply reply;
     ASSERT_TRUE(decode_reply(frame, ranges, &reply));
@@ -268,7 +268,7 @@ TEST(MitRefusal, NonFiniteFieldsGiveNoFrame) {
 
 TEST(MitRefusal, UnusableRangesGiveNoFrame) {
   for (const double bad : {0.0, -1.0, kNan, kInf}) {
-    MitRange range = kDm4310;
+    CommandRange range = kDm4310;
     range.torque_Nm = bad;
     CanFrame frame;
     EXPECT_FALSE(encode_command({}, range, 3, false, Quantiser::kRound, &frame));

@@ -1,0 +1,133 @@
+#include "drivers/families/damiao_family.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+namespace {
+
+constexpr int kPositionBits = 16;
+constexpr int kBits = 12;
+constexpr std::uint8_t kRead = 0x33;
+constexpr std::uint8_t kWrite = 0x55;
+constexpr std::uint32_t kModeMit = 1;
+constexpr double kTolerance = 1e-4;  // float32 against what people write: 12.566 for 4 pi
+
+std::uint32_t as_float(double value) noexcept { return mit::float_bits(static_cast<float>(value)); }
+
+bool is_range(mit::Register reg) noexcept {
+  return reg == mit::Register::kPositionRange || reg == mit::Register::kVelocityRange ||
+         reg == mit::Register::kTorqueRange;
+}
+
+double value_of(mit::Register reg, std::uint32_t raw) noexcept {
+  return is_range(reg) ? static_cast<double>(mit::bits_float(raw)) : static_cast<double>(raw);
+}
+
+DriveCondition condition_of(mit::DriveError status) noexcept {
+  switch (status) {
+    case mit::DriveError::kEnabled:
+      return DriveCondition::kEnabled;
+    case mit::DriveError::kDisabled:
+      return DriveCondition::kDisabled;
+    default:
+      return DriveCondition::kFailed;
+  }
+}
+
+}  // namespace
+
+DamiaoFamily::DamiaoFamily(const JointConfig& joint, bool fd) : drive_(joint.drive), fd_(fd) {
+  using mit::Register;
+  const CommandRange& range = drive_.range;
+  most_torque_ = std::max(
+      std::min(joint.torque_limit_Nm, range.torque_Nm) - mit::half_count(range.torque_Nm, kBits),
+      0.0);
+  const auto timeout =
+      static_cast<std::uint32_t>(std::lround(drive_.watchdog_s / mit::kTimeoutCount_s));
+  steps_ = {{
+      {Kind::kCompareRange, Register::kPositionRange, as_float(range.position_rad)},
+      {Kind::kCompareRange, Register::kVelocityRange, as_float(range.velocity_rad_per_s)},
+      {Kind::kCompareRange, Register::kTorqueRange, as_float(range.torque_Nm)},
+      {Kind::kWrite, Register::kControlMode, kModeMit},
+      {Kind::kReadBack, Register::kControlMode, kModeMit},
+      {Kind::kWrite, Register::kTimeout, timeout},
+      {Kind::kReadBack, Register::kTimeout, timeout},
+  }};
+}
+
+bool DamiaoFamily::command(const DriveCommand& command, CanFrame* frame,
+                           DriveCommand* sent) noexcept {
+  const double tau = command.torque_Nm + carry_;
+  const double wanted = std::isfinite(tau) ? std::clamp(tau, -most_torque_, most_torque_) : tau;
+  mit::Command decoded;
+  if (!mit::encode_command({command.angle_rad, command.speed_rad_per_s, command.kp_Nm_per_rad,
+                            command.kd_Nms_per_rad, wanted},
+                           drive_.range, drive_.command_id, fd_, mit::Quantiser::kRound, frame) ||
+      !mit::decode_command(*frame, drive_.range, &decoded)) {
+    carry_ = 0.0;
+    return false;
+  }
+  carry_ = wanted - decoded.torque_Nm;
+  *sent = {decoded.position_rad, decoded.velocity_rad_per_s, decoded.kp_Nm_per_rad,
+           decoded.kd_Nms_per_rad, decoded.torque_Nm};
+  return true;
+}
+
+CanFrame DamiaoFamily::special(mit::Special special) noexcept {
+  carry_ = 0.0;
+  return mit::encode_special(special, drive_.command_id, fd_);
+}
+
+CanFrame DamiaoFamily::state_request() const noexcept {
+  return mit::encode_state_request(id(), fd_);
+}
+
+CanFrame DamiaoFamily::presence_request() const noexcept {
+  return mit::encode_register_read(id(), mit::Register::kControlMode, fd_);
+}
+
+bool DamiaoFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
+  const CommandRange& range = drive_.range;
+  mit::Reply reply;
+  if (!mit::decode_reply(frame, range, &reply)) return false;
+  if (reply.id_nibble != (drive_.command_id & 0xF)) return false;
+  report->condition = condition_of(reply.error);
+  report->angle_rad = reply.position_rad + mit::half_count(range.position_rad, kPositionBits);
+  report->speed_rad_per_s =
+      reply.velocity_rad_per_s + mit::half_count(range.velocity_rad_per_s, kBits);
+  report->torque_Nm = reply.torque_Nm + mit::half_count(range.torque_Nm, kBits);
+  report->current_A = report->torque_Nm / drive_.torque_constant_Nm_per_A;
+  report->temperature_degC = reply.rotor_temperature_degC;
+  return true;
+}
+
+double DamiaoFamily::angle_resolution() const noexcept {
+  return 2.0 * mit::half_count(drive_.range.position_rad, kPositionBits);
+}
+
+StartupQuestion DamiaoFamily::question(int index) const noexcept {
+  const Step& step = steps_[static_cast<std::size_t>(index)];
+  return {static_cast<std::uint16_t>(step.reg), value_of(step.reg, step.raw)};
+}
+
+CanFrame DamiaoFamily::ask(int index) const noexcept {
+  const Step& step = steps_[static_cast<std::size_t>(index)];
+  return step.kind == Kind::kWrite ? mit::encode_register_write(id(), step.reg, step.raw, fd_)
+                                   : mit::encode_register_read(id(), step.reg, fd_);
+}
+
+Answer DamiaoFamily::judge(int index, const CanFrame& frame, double* found) const noexcept {
+  const Step& step = steps_[static_cast<std::size_t>(index)];
+  std::uint32_t raw = 0;
+  const std::uint8_t operation = step.kind == Kind::kWrite ? kWrite : kRead;
+  if (!mit::decode_register(frame, id(), operation, step.reg, &raw)) return Answer::kNone;
+  *found = value_of(step.reg, raw);
+  const double expected = value_of(step.reg, step.raw);
+  const bool right = step.kind == Kind::kCompareRange
+                         ? std::abs(*found - expected) <= kTolerance * expected
+                         : raw == step.raw;
+  return right ? Answer::kRight : Answer::kWrong;
+}
+
+}  // namespace limber

@@ -1,0 +1,56 @@
+// Damiao drives: MIT frames, registers for the start-up.
+//
+// Questions: PMAX, VMAX, TMAX equal robot.yaml -> CTRL_MODE := MIT, read back
+//            -> TIMEOUT := watchdog_s, read back
+#pragma once
+
+#include <array>
+
+#include "drivers/families/drive_family.h"
+#include "drivers/protocols/mit.h"
+
+namespace limber {
+
+class DamiaoFamily final : public DriveFamily {
+ public:
+  DamiaoFamily(const JointConfig& joint, bool fd);
+
+  /// The rounding error of the torque field is added to the next torque (first-order noise
+  /// shaping): the mean over the cycles is exact although a count is up to 14 mN m, and there is no
+  /// exact zero. Neither that nor rounding carries a torque over the joint's limit.
+  bool command(const DriveCommand& command, CanFrame* frame, DriveCommand* sent) noexcept override;
+  CanFrame disable() noexcept override { return special(mit::Special::kDisable); }
+  CanFrame clear_error() noexcept override { return special(mit::Special::kClearError); }
+  CanFrame enable(double /*angle_rad*/) noexcept override { return special(mit::Special::kEnable); }
+  CanFrame state_request() const noexcept override;
+  CanFrame presence_request() const noexcept override;
+
+  /// Half a count is added to the fields, because drives truncate.
+  bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
+  double angle_resolution() const noexcept override;
+
+  int questions() const noexcept override { return kQuestions; }
+  StartupQuestion question(int index) const noexcept override;
+  CanFrame ask(int index) const noexcept override;
+  Answer judge(int index, const CanFrame& frame, double* found) const noexcept override;
+
+ private:
+  enum class Kind : std::uint8_t { kCompareRange, kWrite, kReadBack };
+  struct Step {
+    Kind kind;
+    mit::Register reg;
+    std::uint32_t raw;  ///< expected or written
+  };
+  static constexpr int kQuestions = 7;
+
+  CanFrame special(mit::Special special) noexcept;
+  std::uint16_t id() const noexcept { return static_cast<std::uint16_t>(drive_.command_id); }
+
+  DriveConfig drive_;
+  bool fd_;
+  double most_torque_;  ///< N m: the limit less what rounding may add
+  double carry_ = 0.0;  ///< rounding error not sent yet, N m
+  std::array<Step, kQuestions> steps_;
+};
+
+}  // namespace limber

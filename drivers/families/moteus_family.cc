@@ -1,0 +1,110 @@
+#include "drivers/families/moteus_family.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace limber {
+namespace {
+
+using moteus::Mode;
+using moteus::Register;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
+constexpr double kHomedRotor = 1.0;
+constexpr double kHomedOutput = 2.0;
+
+bool all_finite(const DriveCommand& command) noexcept {
+  return std::isfinite(command.angle_rad) && std::isfinite(command.speed_rad_per_s) &&
+         std::isfinite(command.kp_Nm_per_rad) && std::isfinite(command.kd_Nms_per_rad) &&
+         std::isfinite(command.torque_Nm);
+}
+
+DriveCondition condition_of(Mode mode) noexcept {
+  switch (mode) {
+    case Mode::kPosition:
+      return DriveCondition::kEnabled;
+    case Mode::kStopped:
+    case Mode::kEnabling:
+    case Mode::kCalibrating:
+    case Mode::kCalibrationComplete:
+      return DriveCondition::kDisabled;
+    default:  // faults, time-out, and modes that somebody else has chosen
+      return DriveCondition::kFailed;
+  }
+}
+
+}  // namespace
+
+MoteusFamily::MoteusFamily(const JointConfig& joint)
+    : drive_(joint.drive),
+      torque_limit_(std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm)) {}
+
+bool MoteusFamily::command(const DriveCommand& command, CanFrame* frame,
+                           DriveCommand* sent) noexcept {
+  if (!all_finite(command)) return false;
+  const CommandRange& range = drive_.range;
+  const double kd_scale = std::clamp(command.kd_Nms_per_rad / range.kd_Nms_per_rad, 0.0, 1.0);
+  const double kp_scale = std::clamp(command.kp_Nm_per_rad / range.kp_Nm_per_rad, kd_scale, 1.0);
+  *sent = {command.angle_rad, command.speed_rad_per_s, kp_scale * range.kp_Nm_per_rad,
+           kd_scale * range.kd_Nms_per_rad,
+           std::clamp(command.torque_Nm, -torque_limit_, torque_limit_)};
+  moteus::Command out;
+  out.position_turns =
+      kp_scale > 0.0 ? command.angle_rad / kTurn : std::numeric_limits<double>::quiet_NaN();
+  out.velocity_turns_per_s = command.speed_rad_per_s / kTurn;
+  out.torque_Nm = sent->torque_Nm;
+  out.kp_scale = kp_scale;
+  out.kd_scale = kd_scale;
+  out.max_torque_Nm = torque_limit_;
+  out.watchdog_s = drive_.watchdog_s;
+  *frame = moteus::encode_command(out, drive_.command_id);
+  return true;
+}
+
+CanFrame MoteusFamily::enable(double angle_rad) noexcept {
+  CanFrame frame;
+  DriveCommand sent;
+  return command({angle_rad, 0.0, 0.0, 0.0, 0.0}, &frame, &sent) ? frame : state_request();
+}
+
+bool MoteusFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
+  moteus::State state;
+  if (!moteus::decode_state(frame, &state)) return false;
+  *report = {condition_of(state.mode),
+             state.position_turns * kTurn,
+             state.velocity_turns_per_s * kTurn,
+             state.torque_Nm,
+             state.current_q_A,
+             state.temperature_degC};
+  return true;
+}
+
+double MoteusFamily::angle_resolution() const noexcept {
+  const double encoder = std::ldexp(kTurn, -drive_.encoder_bits);
+  return std::max(encoder, kTurn * static_cast<double>(std::numeric_limits<float>::epsilon()));
+}
+
+StartupQuestion MoteusFamily::question(int index) const noexcept {
+  if (index == 0)
+    return {static_cast<std::uint16_t>(Register::kRegisterMap), moteus::kRegisterMapVersion};
+  // Behind a gear, a drive that only knows its rotor's angle may be off by a rotor turn.
+  return {static_cast<std::uint16_t>(Register::kHomeState),
+          drive_.gear_ratio == 1.0 ? kHomedRotor : kHomedOutput};
+}
+
+CanFrame MoteusFamily::ask(int index) const noexcept {
+  return moteus::encode_read(static_cast<Register>(question(index).reg), drive_.command_id);
+}
+
+Answer MoteusFamily::judge(int index, const CanFrame& frame, double* found) const noexcept {
+  const StartupQuestion asked = question(index);
+  if (!moteus::decode_register(frame, static_cast<Register>(asked.reg), found))
+    return Answer::kNone;
+  const bool right =
+      index == 0 ? *found == asked.expected : *found >= asked.expected && *found <= kHomedOutput;
+  return right ? Answer::kRight : Answer::kWrong;
+}
+
+}  // namespace limber

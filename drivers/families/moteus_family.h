@@ -1,0 +1,47 @@
+// moteus drives: registers over CAN-FD, everything in each cycle's frame.
+//
+// Questions: is the register map the one limber knows -> does the drive know where it is.
+// The watchdog is no question: every command carries it.
+#pragma once
+
+#include <array>
+
+#include "drivers/families/drive_family.h"
+#include "drivers/protocols/moteus.h"
+
+namespace limber {
+
+class MoteusFamily final : public DriveFamily {
+ public:
+  explicit MoteusFamily(const JointConfig& joint);
+
+  /// Position mode with scaled gains. Torque alone goes with position NaN and both scales zero.
+  /// Drives hold the kd scale at the kp scale or below: where damping asks for more, kp is raised
+  /// with it. Commands that only damp carry the angle measured last, so that spring lags the joint
+  /// by a cycle and acts like a little more damping.
+  bool command(const DriveCommand& command, CanFrame* frame, DriveCommand* sent) noexcept override;
+  CanFrame disable() noexcept override { return moteus::encode_stop(drive_.command_id); }
+  CanFrame clear_error() noexcept override { return disable(); }
+  /// A command enables the drive, on its way through modes 2 to 4.
+  CanFrame enable(double angle_rad) noexcept override;
+  CanFrame state_request() const noexcept override {
+    return moteus::encode_state_request(drive_.command_id);
+  }
+  CanFrame presence_request() const noexcept override { return state_request(); }
+
+  bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
+  double angle_resolution() const noexcept override;
+
+  int questions() const noexcept override { return kQuestions; }
+  StartupQuestion question(int index) const noexcept override;
+  CanFrame ask(int index) const noexcept override;
+  Answer judge(int index, const CanFrame& frame, double* found) const noexcept override;
+
+ private:
+  static constexpr int kQuestions = 2;
+
+  DriveConfig drive_;
+  double torque_limit_;  ///< N m
+};
+
+}  // namespace limber

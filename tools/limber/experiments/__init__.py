@@ -1,0 +1,1 @@
+"""Experiments: each compares numbers a formula predicts with numbers measured independently."""

@@ -1,0 +1,115 @@
+"""Runs many experiments, two at a time, each in a process of its own; one failure stops nobody."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from limber.errors import OK, OUT_OF_TOLERANCE, RUN_FAILED
+from limber.experiments.catalog import Experiment
+from limber.experiments.run import RESULT, number
+from limber.paths import output_folder
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """`rows` as in result.json; none where the experiment failed, and then `error` says why."""
+
+    experiment: Experiment
+    rows: list[dict]
+    error: str
+    seconds: float
+
+    @property
+    def passed(self) -> bool:
+        return bool(self.rows) and all(row["pass"] for row in self.rows)
+
+
+def run_many(experiments: list[Experiment], out: Path, jobs: int, console: Console) -> int:
+    """Returns the exit code: 0 if all checks of all experiments pass."""
+    outcomes = sorted(_outcomes(experiments, out, jobs, console), key=lambda o: o.experiment.id)
+    console.print(summary(outcomes))
+    console.print(f"results: {out}", highlight=False, soft_wrap=True)
+    if any(outcome.error for outcome in outcomes):
+        return RUN_FAILED
+    return OK if all(outcome.passed for outcome in outcomes) else OUT_OF_TOLERANCE
+
+
+def _outcomes(
+    experiments: list[Experiment], out: Path, jobs: int, console: Console
+) -> list[Outcome]:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    done = []
+    with (
+        ThreadPoolExecutor(jobs) as pool,
+        Progress(*columns, TimeElapsedColumn(), console=console) as progress,
+    ):
+        task = progress.add_task("experiments", total=len(experiments))
+        futures = [pool.submit(_in_process, experiment, out) for experiment in experiments]
+        try:
+            for future in as_completed(futures):
+                outcome = future.result()
+                done.append(outcome)
+                progress.update(task, advance=1)
+                verdict = "ok" if outcome.passed else outcome.error or "NO"
+                line = f"{outcome.experiment.id} {outcome.seconds:6.1f} s  {verdict}"
+                progress.console.print(line, highlight=False, soft_wrap=True)
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return done
+
+
+def _in_process(experiment: Experiment, out: Path) -> Outcome:
+    folder = output_folder(out / experiment.id)
+    root = str(experiment.folder.parent)
+    command = [sys.executable, "-m", "limber", "experiment", "run", experiment.id]
+    # two processes share two cores: linear algebra must not take them all
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    start = time.monotonic()
+    with open(folder / "run.txt", "w", encoding="utf-8") as log:
+        code = subprocess.run(
+            [*command, "--out", str(out), "--root", root],
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            env=environment,
+            check=False,
+        ).returncode
+    seconds = time.monotonic() - start
+    if code in (OK, OUT_OF_TOLERANCE):
+        rows = json.loads((folder / RESULT).read_text(encoding="utf-8"))
+        return Outcome(experiment, rows, "", seconds)
+    said = (folder / "run.txt").read_text(encoding="utf-8").strip().splitlines()
+    return Outcome(experiment, [], said[-1] if said else f"ended with code {code}", seconds)
+
+
+def summary(outcomes: list[Outcome]) -> Table:
+    """One line an experiment, with the first check that fails, else the first of all."""
+    drawn = Table(title="Experiments", title_justify="left", box=None, padding=(0, 2, 0, 0))
+    for name in ("", "claim", "predicted", "measured", "checks", ""):
+        drawn.add_column(name, no_wrap=name != "claim")
+    for outcome in outcomes:
+        good = sum(row["pass"] for row in outcome.rows)
+        shown = next((row for row in outcome.rows if not row["pass"]), None)
+        shown = shown or (outcome.rows[0] if outcome.rows else None)
+        numbers = [number(shown[key], shown["unit"]) if shown else "" for key in _NUMBERS]
+        drawn.add_row(
+            outcome.experiment.id,
+            outcome.experiment.title,
+            *numbers,
+            f"{good} of {len(outcome.rows)}",
+            "[green]ok[/]" if outcome.passed else "[bold red]NO[/]",
+        )
+    return drawn
+
+
+_NUMBERS = ("predicted", "measured")
