@@ -17,25 +17,27 @@ from limber.experiments.pictures import (
     SKY,
 )  # fmt: skip
 
-from . import statics
+from . import snap, statics
 from .equilibria import carried, closed_curve
 from .laws import DIRECT, ORDERS, K, name
 
 TITLE = "Far from the target, the second term of Eq. 4 makes Eq. 7 worse, not better"
 CLAIM = "Leaving out the second term of Eq. 4 leads to errors in the stiffness at large deviations"
 SECTION = "2"
-PLANT = "the controller's laws on planar2r, statics"
-FAST = True
+PLANT = "the controller's laws on planar2r, statics; planar2r pushed, exact equations"
+FAST = False
 
 COLORS = dict(zip([*ORDERS, DIRECT], (BLUE, SKY, GREEN, ORANGE, PINK, AMBER, BLACK), strict=True))
 
 
 def run(context: Context) -> list[Check]:
     checks = statics.checks(context)
-    with context.picture(TITLE, columns=2, size=(12.5, 5.4)) as (left, right):
+    pushed = snap.runs(context)
+    with context.picture(TITLE, columns=3, size=(17.5, 5.4)) as (left, middle, right):
         draw_errors(context, left)
-        draw_forces(context, right)
-    return checks
+        draw_forces(context, middle)
+        snap.draw(pushed, right)
+    return [*checks, *snap.checks(pushed)]
 
 
 def draw_errors(context: Context, ax: Any) -> None:

@@ -1,0 +1,71 @@
+"""Inertia and gravity of a shipped robot, from its URDF, as sums over its links and without C++."""
+
+import xml.etree.ElementTree as ElementTree
+from functools import cache
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.paths import robot_folder
+from limber.robot import load_robot
+from limber.urdf import Chain
+
+
+def joint_inertia(robot: str, q: np.ndarray) -> np.ndarray:
+    """M(q) = Σ J_cᵀ diag(m, I_c) J_c with J_c at each link's centre of mass; base axes."""
+    M = np.zeros((len(q), len(q)))
+    for chain, m, p_LC, I_C in _links(robot):
+        J_c, J_w, R = _at_centre(chain, q, p_LC), chain.jacobian(q)[3:], chain.forward(q)[:3, :3]
+        moving = J_w.shape[1]
+        M[:moving, :moving] += m * J_c.T @ J_c + J_w.T @ R @ I_C @ R.T @ J_w
+    return M
+
+
+def gravity_gradient(robot: str, q: np.ndarray) -> np.ndarray:
+    """∂g/∂q by central differences; g(q) = -Σ m J_cᵀ a holds the arm against gravity a."""
+    step = 1e-5
+    columns = [
+        (_gravity(robot, q + step * axis) - _gravity(robot, q - step * axis)) / (2 * step)
+        for axis in np.eye(len(q))
+    ]
+    return np.column_stack(columns)
+
+
+def _gravity(robot: str, q: np.ndarray) -> np.ndarray:
+    g = np.zeros(len(q))
+    for chain, m, p_LC, _ in _links(robot):
+        J_c = _at_centre(chain, q, p_LC)
+        g[: J_c.shape[1]] -= m * J_c.T @ load_robot(robot).gravity
+    return g
+
+
+def _at_centre(chain: Chain, q: np.ndarray, p_LC: np.ndarray) -> np.ndarray:
+    """Velocity of a link's centre of mass by the joints' before it."""
+    J = chain.jacobian(q)
+    return J[:3] + np.cross(J[3:], chain.forward(q)[:3, :3] @ p_LC, axis=0)
+
+
+def tip_inertia(J: np.ndarray, M: np.ndarray) -> np.ndarray:
+    """Λ = (J M⁻¹ Jᵀ)⁻¹."""
+    return np.linalg.inv(J @ np.linalg.solve(M, J.T))
+
+
+@cache
+def _links(robot: str) -> list[tuple[Chain, float, np.ndarray, np.ndarray]]:
+    """Chain to each link that moves and weighs something, mass, centre, inertia about it."""
+    loaded = load_robot(robot)
+    found = []
+    for link in ElementTree.parse(robot_folder(robot) / loaded.urdf.name).getroot().iter("link"):
+        inertial = link.find("inertial")
+        if inertial is None:
+            continue
+        chain = Chain(loaded.urdf, loaded.base, link.get("name"))
+        origin = inertial.find("origin").attrib
+        R = Rotation.from_euler("xyz", [float(x) for x in origin.get("rpy", "0 0 0").split()])
+        axes = R.as_matrix()
+        about = {key: float(value) for key, value in inertial.find("inertia").attrib.items()}
+        tensor = np.array([[about["i" + "".join(sorted(a + b))] for b in "xyz"] for a in "xyz"])
+        centre = np.array([float(x) for x in origin.get("xyz", "0 0 0").split()])
+        mass = float(inertial.find("mass").get("value"))
+        found.append((chain, mass, centre, axes @ tensor @ axes.T))
+    return found
