@@ -10,6 +10,7 @@ namespace {
 
 // Share of the greatest eigenvalue below which the tip cannot be said to move.
 constexpr double kOutOfReach = 1e-9;
+constexpr double kRounding = 1e-12;
 constexpr double kFloorLinear = 5.0;    // N s/m
 constexpr double kFloorAngular = 0.2;   // N m s/rad
 constexpr double kFloorFadesAt = 10.0;  // N/m
@@ -35,16 +36,41 @@ Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
   return ratio * (product + product.transpose());
 }
 
+// The sum of products of positive matrices need not be positive: what would drive is cut off.
+template <typename Matrix>
+Matrix never_driving(const Matrix& D) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(D);
+  const Matrix& V = eigen.eigenvectors();
+  return V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
 // M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
 template <typename Matrix>
 Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
-  const Eigen::LLT<Matrix> cholesky(M);
+  // Where a direction is lost M has an eigenvalue of zero, or less by rounding.
+  const Matrix least = kRounding * M.trace() * Matrix::Identity(M.rows(), M.cols());
+  const Eigen::LLT<Matrix> cholesky(M + least);
   Matrix S = K;
   cholesky.matrixL().solveInPlace(S);
   S.transposeInPlace();
   cholesky.matrixL().solveInPlace(S);
   const Matrix L = cholesky.matrixL();
   return 2.0 * ratio * L * root(S) * L.transpose();
+}
+
+template <typename Matrix>
+Matrix designed(DampingDesign design, const Matrix& M, const Matrix& K, double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation:
+      return doubly_diagonalised<Matrix>(M, K, ratio);
+    case DampingDesign::kFactorisation:
+      return never_driving<Matrix>(factorised<Matrix>(M, K, ratio));
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<Matrix>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return Matrix::Zero(K.rows(), K.cols());
 }
 
 // L with G = L L^T over the directions within reach, and its pseudo-inverse transposed.
@@ -64,17 +90,18 @@ struct Reach {
 
 MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
                       double ratio) noexcept {
-  switch (design) {
-    case DampingDesign::kDoubleDiagonalisation:
-      return doubly_diagonalised<MatrixJ>(M, K, ratio);
-    case DampingDesign::kFactorisation:
-      return factorised<MatrixJ>(M, K, ratio);
-    case DampingDesign::kWithoutInertia:
-      return 2.0 * ratio * root<MatrixJ>(K);
-    case DampingDesign::kGiven:
-      break;
-  }
-  return MatrixJ::Zero(K.rows(), K.cols());
+  return designed<MatrixJ>(design, M, K, ratio);
+}
+
+Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
+                        double ratio) noexcept {
+  return designed<Matrix6>(design, M_d, K, ratio);
+}
+
+Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
+                               double ratio) noexcept {
+  const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
+  return factorised<Matrix6>(Lambda, K, ratio);
 }
 
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
@@ -86,20 +113,14 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
                         reach.inverse_transpose.transpose();
       return 2.0 * ratio * D;
     }
-    case DampingDesign::kFactorisation: {
-      const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
-      return factorised<Matrix6>(Lambda, K, ratio);
-    }
+    case DampingDesign::kFactorisation:
+      return never_driving<Matrix6>(factorised_tip_damping(mobility, K, ratio));
     case DampingDesign::kWithoutInertia:
       return 2.0 * ratio * root<Matrix6>(K);
     case DampingDesign::kGiven:
       break;
   }
   return Matrix6::Zero();
-}
-
-Matrix6 inertia_damping(const Matrix6& M_d, const Matrix6& K, double ratio) noexcept {
-  return doubly_diagonalised<Matrix6>(M_d, K, ratio);
 }
 
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {

@@ -11,7 +11,8 @@ namespace limber::controller {
 /// K (n x n symmetric positive semidefinite), so that the modes of M s^2 + D s + K have the damping
 /// ratio zeta (Albu-Schaeffer, Ott, Frese, Hirzinger, ICRA 2003):
 ///   double diagonalisation  M = L L^T, S = L^-1 K L^-T, D = 2 zeta L sqrt(S) L^T: every mode
-///   factorisation           D = zeta (sqrt(M) sqrt(K) + sqrt(K) sqrt(M)): if M and K commute
+///   factorisation           D = zeta (sqrt(M) sqrt(K) + sqrt(K) sqrt(M)): if M and K commute;
+///                           negative eigenvalues, which the sum can have, are set to zero
 ///   without inertia         D = 2 zeta sqrt(K): off by the root of the inertia
 /// Directions without stiffness get no damping from any: see joint_damping_floor(). kGiven is no
 /// design and returns zero. May be called in the cycle.
@@ -26,9 +27,14 @@ MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept;
 
-/// Damping of a wanted inertia, given as a matrix: modes of M_d s^2 + D s + K (double
-/// diagonalisation). M_d: 6 x 6 symmetric positive definite.
-Matrix6 inertia_damping(const Matrix6& M_d, const Matrix6& K, double ratio) noexcept;
+/// The factorisation as it stands, with the negative eigenvalues it may have.
+Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
+                               double ratio) noexcept;
+
+/// Damping of a wanted inertia at the tip, given as a matrix: the same for M_d s^2 + D s + K. M_d:
+/// 6 x 6 symmetric positive definite.
+Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
+                        double ratio) noexcept;
 
 /// Stiffness of each double-diagonalised mode, ascending, 1/s^2: squares of the natural
 /// frequencies; zero for directions out of reach.

@@ -31,6 +31,7 @@ void TorqueCycle::describe(controller_status_t* status) noexcept {
     status->term_period_cycles[i] = static_cast<std::int16_t>(settings.period_cycles[i]);
   }
   status->tank_energy_J = settings.tank_J > 0.0 ? tank_.energy_J() : 0.0;
+  status->passivity_energy_J = passivity_.energy_J();
   status->contact = static_cast<std::int8_t>(settings.contact);
   describe_tip(status);
   describe_parts(status);

@@ -55,6 +55,7 @@ LawSettings read_settings(const compliance_gains_t& message) noexcept {
   s.acceleration_filter_s = or_default(message.acceleration_filter_s, s.acceleration_filter_s);
   s.observer_gain_per_s = or_default(message.observer_gain_per_s, s.observer_gain_per_s);
   s.tank_J = static_cast<double>(message.tank_J);
+  s.passivity_damping_Ns_per_m = static_cast<double>(message.passivity_damping_Ns_per_m);
   s.spring_force_N = or_default(message.spring_force_N, s.spring_force_N);
   s.spring_moment_Nm = or_default(message.spring_moment_Nm, s.spring_moment_Nm);
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -104,9 +105,14 @@ void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept {
 }
 
 void GainRamp::start(const Gains& gains, double duration_s) noexcept {
+  const LawSettings before = now_.settings;
+  now_.settings = gains.settings;
+  now_.M_x = gains.M_x;
+  now_.M_q = gains.M_q;
+  if (before.damping != DampingDesign::kGiven) now_.D_x = gains.D_x;
+  if (before.joint_damping != DampingDesign::kGiven) now_.D_q = gains.D_q;
   from_ = now_;
   to_ = gains;
-  now_.settings = gains.settings;
   elapsed_s_ = 0.0;
   duration_s_ = std::max(duration_s, kShortestRamp_s);
 }
@@ -122,10 +128,10 @@ void GainRamp::advance(double dt_s) noexcept {
   const auto mix = [this, s](auto Gains::*part) {
     now_.*part = (1.0 - s) * (from_.*part) + s * (to_.*part);
   };
-  for (auto part : {&Gains::K_x, &Gains::D_x, &Gains::M_x}) mix(part);
+  for (auto part : {&Gains::K_x, &Gains::D_x}) mix(part);
   for (auto part : {&Gains::damping_ratio, &Gains::joint_damping_ratio}) mix(part);
-  for (auto part : {&Gains::K_q, &Gains::D_q, &Gains::M_q, &Gains::K_acc, &Gains::D_acc,
-                    &Gains::K_null, &Gains::D_null}) {
+  for (auto part :
+       {&Gains::K_q, &Gains::D_q, &Gains::K_acc, &Gains::D_acc, &Gains::K_null, &Gains::D_null}) {
     mix(part);
   }
 }

@@ -49,14 +49,15 @@ void read_gains(const compliance_gains_t& message, Gains* gains) noexcept;
 /// T = blkdiag(R_BD, R_BD) for GainFrame::kGoal. In the cycle.
 void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept;
 
-/// Moves from one set of gains to another along a cosine, so that no torque jumps. Mixtures of
-/// allowed gains are allowed gains. May be called in the cycle.
+/// Moves from one set of gains to another along a cosine, so that no torque jumps. What is ramped
+/// are springs and dampers: mixtures of allowed ones are allowed. May be called in the cycle.
 class GainRamp {
  public:
   explicit GainRamp(const Gains& gains) : now_(gains), from_(gains), to_(gains) {}
 
-  /// From the present gains to `gains` in `duration_s`, at least kShortestRamp_s. The settings
-  /// cannot be mixed: they change at once.
+  /// From the present gains to `gains` in `duration_s`, at least kShortestRamp_s. At once, since a
+  /// mixture would not be what either asks for: the settings; M_x and M_q, which divide and pass
+  /// through zero on the way; D_x and D_q where damping was designed before.
   void start(const Gains& gains, double duration_s) noexcept;
   void advance(double dt_s) noexcept;
   const Gains& now() const noexcept { return now_; }

@@ -80,6 +80,7 @@ struct LawSettings {
   double acceleration_filter_s = 0.005;
   double observer_gain_per_s = 50.0;
   double tank_J = 0.0;
+  double passivity_damping_Ns_per_m = 0.0;
   double spring_force_N = 100.0;
   double spring_moment_Nm = 30.0;
   double lost_share = 1e-4;  ///< see kLostShare in nullspace.h; not for users

@@ -30,6 +30,7 @@ JointLimits::JointLimits(const Robot& robot)
       wall_(((position_max_ - position_min_) * kWallShareOfRange).cwiseMin(kWallWidth)),
       velocity_(collect(robot, &JointConfig::velocity_limit)),
       torque_rate_(collect(robot, &JointConfig::torque_rate_limit_Nm_per_s)),
+      power_W_(robot.power_limit_W),
       limiter_(collect(robot, &JointConfig::torque_limit_Nm), kShareOfGateStep * torque_rate_) {}
 
 void JointLimits::set_previous(const VectorJ& tau) noexcept {
@@ -38,6 +39,15 @@ void JointLimits::set_previous(const VectorJ& tau) noexcept {
 
 bool JointLimits::far_from_previous(const VectorJ& tau, double period_s) const noexcept {
   return ((tau - previous()).cwiseAbs().array() > torque_rate_.array() * period_s).any();
+}
+
+bool JointLimits::scale_for_power(const VectorJ& v, const VectorJ& g, VectorJ* tau) const noexcept {
+  const double weight = g.dot(v);
+  const double motion = tau->dot(v) - weight;
+  if (!(motion > 0.0 && motion + weight > power_W_)) return false;
+  const double share = std::clamp((power_W_ - weight) / motion, 0.0, 1.0);
+  *tau = g + share * (*tau - g);
+  return true;
 }
 
 bool JointLimits::scale_for_velocity(const ArmState& state, const VectorJ& g,
@@ -75,6 +85,7 @@ bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* ta
 std::int32_t JointLimits::shape(const ArmState& state, const ArmTerms& terms,
                                 VectorJ* tau) const noexcept {
   std::int32_t acted = 0;
+  if (scale_for_power(state.v, terms.g, tau)) acted |= controller_status_t::LIMIT_POWER;
   if (scale_for_velocity(state, terms.g, tau)) acted |= controller_status_t::LIMIT_VELOCITY;
   if (add_walls(state, terms.M_total, tau)) acted |= controller_status_t::LIMIT_POSITION;
   return acted;

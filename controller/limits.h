@@ -12,6 +12,8 @@
 namespace limber::controller {
 
 /// Limits of every joint, in the order they act. The gate in the driver trips; these shape:
+///   power     where the net power of all joints would exceed the arm's limit, the torque beyond
+///             what carries the weight is scaled down to it, by one factor for all joints;
 ///   velocity  above 80 % of the limit, torque that accelerates further is scaled down, to zero at
 ///   the
 ///             limit (the part that carries the weight is not);
@@ -31,7 +33,8 @@ class JointLimits {
   /// the driver has not followed. May be called in the cycle.
   bool far_from_previous(const VectorJ& tau, double period_s) const noexcept;
 
-  /// Velocity and position: changes `tau`, returns the LIMIT_* bits that acted. In the cycle.
+  /// Power, velocity and position: changes `tau`, returns the LIMIT_* bits that acted. In the
+  /// cycle.
   std::int32_t shape(const ArmState& state, const ArmTerms& terms, VectorJ* tau) const noexcept;
   /// Torque and rate: clamps a finite `tau`, makes it the previous torque, returns the LIMIT_* bits
   /// that acted. In the cycle.
@@ -41,6 +44,7 @@ class JointLimits {
   const VectorJ& previous() const noexcept { return limiter_.previous(); }
 
  private:
+  bool scale_for_power(const VectorJ& v, const VectorJ& g, VectorJ* tau) const noexcept;
   bool scale_for_velocity(const ArmState& state, const VectorJ& g, VectorJ* tau) const noexcept;
   bool add_walls(const ArmState& state, const MatrixJ& M, VectorJ* tau) const noexcept;
 
@@ -49,6 +53,7 @@ class JointLimits {
   VectorJ wall_;  // width of the soft wall, rad or m
   VectorJ velocity_;
   VectorJ torque_rate_;
+  double power_W_;
   TorqueLimiter limiter_;
 };
 

@@ -1,5 +1,6 @@
 #include "controller/nullspace.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
 
@@ -19,6 +20,44 @@ Matrix6J TaskRows::of(Matrix6J J) const noexcept {
   return J;
 }
 
+Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept {
+  for (int i = 0; i < 6; ++i) {
+    if (rows.stiff[i]) continue;
+    M.row(i).setZero();
+    M.col(i).setZero();
+  }
+  return M;
+}
+
+Matrix6 invertible_on_task(const TaskRows& rows, const Matrix6& M) noexcept {
+  Matrix6 result = on_task(rows, M);
+  for (int i = 0; i < 6; ++i) {
+    if (result.row(i).isZero(0.0)) result(i, i) = 1.0;
+  }
+  return result;
+}
+
+const char* refuse_tip_inertia(const Gains& gains) noexcept {
+  if (gains.M_x.isZero(0.0)) return nullptr;
+  TaskRows rows(gains.K_x);
+  if (gains.settings.frame == GainFrame::kGoal) {
+    for (const int first : {0, 3}) {
+      bool* block = rows.stiff + first;
+      block[0] = block[1] = block[2] = block[0] || block[1] || block[2];
+    }
+  }
+  bool positive = invertible_on_task(rows, gains.M_x).llt().info() == Eigen::Success;
+  for (int i = 0; i < 6; ++i) positive = positive && (!rows.stiff[i] || gains.M_x(i, i) > 0.0);
+  return positive ? nullptr
+                  : "M_x must be positive definite in the rows in which K_x has entries (with "
+                    "frame: goal, in the whole block)";
+}
+
+TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept {
+  const MatrixJ6 Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
+  return tip_mobility(rows.of(terms.J), Minv_JT);
+}
+
 Vector6 TaskRows::of(Vector6 F) const noexcept {
   for (int i = 0; i < 6; ++i) {
     if (!stiff[i]) F[i] = 0.0;
@@ -27,8 +66,7 @@ Vector6 TaskRows::of(Vector6 F) const noexcept {
 }
 
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
-  const MatrixJ6 Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
-  const TipMobility mobility = tip_mobility(rows.of(terms.J), Minv_JT);
+  const TipMobility mobility = task_mobility(terms, rows);
   if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
   return damped_tip_inertia(mobility, mobility.threshold(lost_share));
 }

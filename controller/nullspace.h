@@ -28,6 +28,20 @@ struct TaskRows {
 /// lost.
 inline constexpr double kLostShare = 1e-4;
 
+/// M on the task's rows, zero elsewhere.
+Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept;
+
+/// The same with ones on the diagonal of every row left empty, so that it has an inverse: also
+/// while a ramp of K_x still holds rows that M no longer has.
+Matrix6 invertible_on_task(const TaskRows& rows, const Matrix6& M) noexcept;
+
+/// nullptr if M_x is zero or positive definite wherever K_x has entries; in the goal's axes an
+/// entry in one row may turn into any of its block. In the cycle.
+const char* refuse_tip_inertia(const Gains& gains) noexcept;
+
+/// Of the task's rows alone; zero out of them. In the cycle.
+TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept;
+
 /// Tip inertia Lambda = (J_t M^-1 J_t^T)^-1 over the task's rows, 6 x 6 with zeros elsewhere, kg
 /// and kg m^2; M with rotors. Damped near singularities, see damped_tip_inertia(). In the cycle.
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows,

@@ -70,6 +70,7 @@ const char* refuse_tip_matrices(const Message& message) noexcept {
     return "M_x: the diagonal must be within -1e3..1e3 kg and -1e2..1e2 kg m^2";
   }
   if (!is_symmetric(M, kFloatRounding)) return "M_x is not symmetric";
+  if (!(M.cwiseAbs().maxCoeff() <= 1e3)) return "M_x must be within -1e3..1e3";
   return nullptr;
 }
 
@@ -121,6 +122,7 @@ constexpr Setting kSettings[] = {
     {&Message::acceleration_filter_s, 1.0, "acceleration_filter_s must be within 0..1 s"},
     {&Message::observer_gain_per_s, 500.0, "observer_gain must be within 0..500 1/s"},
     {&Message::tank_J, 100.0, "tank_J must be within 0..100 J"},
+    {&Message::passivity_damping_Ns_per_m, 1e3, "passivity_damping must be within 0..1e3 N s/m"},
     {&Message::spring_force_N, 1e4, "spring_force_N must be within 0..1e4 N"},
     {&Message::spring_moment_Nm, 1e4, "spring_moment_Nm must be within 0..1e4 N m"},
 };

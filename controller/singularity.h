@@ -1,6 +1,9 @@
 // Which directions the tip can move in, and how heavy it is there.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "common/types.h"
 
 namespace limber::controller {
@@ -19,8 +22,10 @@ struct TipMobility {
   Vector6 s;
   Vector6 S;
 
-  /// Below this share of the largest eigenvalue a direction counts as lost.
-  double threshold(double share) const noexcept { return share * s[5]; }
+  /// Below this share of the largest eigenvalue a direction counts as lost. Never zero.
+  double threshold(double share) const noexcept {
+    return std::max(share * s[5], std::numeric_limits<double>::min());
+  }
 };
 
 /// J (6 x n), M^-1 J^T (n x 6). Rows of J that are zero count as directions out of reach. May be

@@ -48,6 +48,7 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       asked_(gains_.now()),
       estimation_(robot),
       tank_({0.0, 0.0, 0.0, 0.0}, gains_.now().K_x),
+      passivity_(3, 0.0),
       rows_(gains_.now().K_x),
       blend_(model_.size()),
       limits_(robot.robot),
@@ -101,17 +102,22 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
     goals_.reset(terms_.X_BT, state_.q);
     inverse_kinematics_.reset(state_.q);
   } else if (!joints && follows_joints(entry().follows)) {
-    inverse_kinematics_.reset(state_.q);  // a goal at the tip, followed by the joints from now on
+    // A goal at the tip, followed by the joints from now on.
+    inverse_kinematics_.reset(state_.q);
+    inverse_kinematics_.approach(TaskRows(active_.K_x), goals_.goal().X_BD);
   } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
     goals_.follow_tip(goal_.X_BD);
   }
+  passivity_.reset();
   match_goals();
   refresh_gains();
   laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
 }
 
 const char* TorqueCycle::set_goal(const compliance_goal_t& message) noexcept {
-  const bool to_tip = message.kind != compliance_goal_t::GOAL_JOINT;
+  const bool to_tip = message.kind == compliance_goal_t::GOAL_WRENCH
+                          ? goals_.at_tip()
+                          : message.kind != compliance_goal_t::GOAL_JOINT;
   if (const char* reason = goals_.refuse(message, entry().follows)) return reason;
   if (follows_joints(entry().follows) && to_tip != goals_.at_tip()) {
     // The other kind of goal starts from where this one is.
@@ -138,16 +144,23 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
     if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
   }
 
-  if (asked_.settings != gains_.now().settings) switched_ = true;
+  const Gains& now = gains_.now();
+  if (asked_.settings != now.settings || asked_.M_x != now.M_x || asked_.M_q != now.M_q) {
+    switched_ = true;
+  }
   estimation_.set(asked_.settings);
-  if (asked_.settings.tank_J != gains_.now().settings.tank_J) {
+  if (asked_.settings.passivity_damping_Ns_per_m != now.settings.passivity_damping_Ns_per_m) {
+    passivity_ = {3, asked_.settings.passivity_damping_Ns_per_m};
+  }
+  if (asked_.settings.tank_J != now.settings.tank_J) {
     tank_ =
         EnergyTank({asked_.settings.tank_J, 0.0, asked_.settings.tank_J, kTankShare}, active_.K_x);
   }
   gains_.start(asked_, message.ramp_s);
   selected_ = law;
-  // A law that follows the same kind of goal goes on with it.
-  if (active && law != running_) run(law, !same_goal(wanted.follows, entry().follows));
+  // A law that follows a goal goes on with the one there is.
+  const bool nothing = wanted.follows == Follows::kNothing || entry().follows == Follows::kNothing;
+  if (active && law != running_) run(law, nothing);
   return nullptr;
 }
 
@@ -180,6 +193,20 @@ void TorqueCycle::draw_from_tank() noexcept {
   active_.K_x = tank_.update(active_.K_x, D, error.e, V, state_.period_s);
 }
 
+// Energy of spring and damper against the goal; the feed-forward wrench is the user's own.
+void TorqueCycle::keep_passive() noexcept {
+  if (entry().follows != Follows::kPoseGoal) {
+    passivity_.reset();
+    return;
+  }
+  passivity_.observe(terms_.X_BT.p - goal_.X_BD.p);
+  const Eigen::Vector3d V = (terms_.V_BT - goal_.V_BD).head<3>();
+  const Eigen::Vector3d F_added = -passivity_.damping(V, state_.period_s) * V;
+  law_.tau_damping += terms_.J.topRows<3>().transpose() * F_added;
+  law_.F.head<3>() += F_added;
+  passivity_.hold((law_.F - goal_.F_ff).head<3>());
+}
+
 VectorJ TorqueCycle::friction() const noexcept {
   if (active_.settings.friction == FrictionCompensation::kNone) return none_;
   VectorJ v_d = goal_.v_d;
@@ -203,6 +230,7 @@ bool TorqueCycle::control(double dt_s) noexcept {
   const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
   laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
+  keep_passive();
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
   tau_coriolis_ = add.coriolis ? terms_.Cv : none_;

@@ -18,6 +18,7 @@
 #include "controller/laws/registry.h"
 #include "controller/limits.h"
 #include "controller/nullspace.h"
+#include "controller/observers/passivity_observer.h"
 #include "controller/torque_blend.h"
 
 namespace limber::controller {
@@ -64,6 +65,7 @@ class TorqueCycle {
   void match_goals() noexcept;
   void refresh_gains() noexcept;
   void draw_from_tank() noexcept;
+  void keep_passive() noexcept;
   VectorJ friction() const noexcept;
   VectorJ null_space() noexcept;
   void describe_tip(controller_status_t* status) const noexcept;
@@ -88,6 +90,7 @@ class TorqueCycle {
   Gains asked_;   // where a gains message is read into
   Estimation estimation_;
   EnergyTank tank_;
+  PassivityObserver<Eigen::Vector3d> passivity_;
   TaskRows rows_;
   std::int64_t cycles_ = 0;
   TorqueBlend blend_;

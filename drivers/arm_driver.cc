@@ -180,6 +180,7 @@ GateSituation ArmDriver::Impl::situation() const noexcept {
   now.powered = machine.powered();
   now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
   now.torque_present = tau_present;
+  std::copy_n(published.v, kMaxJoints, now.velocity.begin());
   return now;
 }
 

@@ -14,6 +14,7 @@ namespace {
 constexpr double kGreatestLoad = 0.9;
 constexpr double kLease_s = 0.25;
 constexpr double kRefusals_s = 0.1;
+constexpr double kPowerSlack = 1.25;
 constexpr double kRoundingSlack = 1e-9;  // a step of exactly the limit may differ in its last bits
 
 }  // namespace
@@ -61,6 +62,8 @@ GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
   limits.n = robot.size();
   limits.session = session;
   limits.lease_cycles = cycles_of(kLease_s, robot.rate_hz);
+  // The controller shapes at the limit itself; a noisy velocity shall not trip the arm.
+  limits.power_W = kPowerSlack * robot.power_limit_W;
   limits.refusal_cycles = cycles_of(kRefusals_s, robot.rate_hz);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const JointConfig& joint = robot.joints[i];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,8 @@ struct Robot {
   std::string tip;
   double gravity[3] = {0.0, 0.0, -9.81};  ///< m/s^2 in axes of the base link
   double rate_hz = 1000.0;
+  /// Net power the motors may put into the arm; infinite: no limit.
+  double power_limit_W = std::numeric_limits<double>::infinity();
   std::vector<BusConfig> buses;
   std::vector<JointConfig> joints;
   DefaultGains gains;

@@ -66,6 +66,9 @@ void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   Complaints complaints(yaml.file());
   robot->rate_hz = 1000.0;
   complaints.collect([&] { robot->rate_hz = yaml.number("rate_hz", {1.0, 10'000.0}); });
+  complaints.collect([&] {
+    robot->power_limit_W = yaml.number_or("power_limit_W", {1.0, 1e5}, robot->power_limit_W);
+  });
   std::map<std::string, DriveConfig> motors;
   const bool buses_known = complaints.collect([&] { robot->buses = read_buses(yaml); });
   const bool motors_known = complaints.collect([&] { motors = read_motors(yaml); });

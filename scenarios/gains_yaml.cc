@@ -17,6 +17,7 @@ constexpr Range kJointStiffness = {0.0, 1e4};
 constexpr Range kJointDamping = {0.0, 1e3};
 constexpr Range kTranslation = {0.0, 1e5};
 constexpr Range kRotation = {0.0, 1e4};
+constexpr float kDefaultStiffnessPerInertia_per_s2 = 100.0F;
 
 void set_block(const std::vector<double>& diagonal, int first, compliance_gains_t* gains) {
   for (int i = 0; i < 3; ++i) {
@@ -55,23 +56,43 @@ Matrix6d read_semidefinite(const YamlMap& yaml, const std::string& key, Range ra
   return K;
 }
 
-void read_matrix(const YamlMap& yaml, compliance_gains_t* gains) {
-  const Matrix6d K =
-      read_semidefinite(yaml, "K_x", {-1e5, 1e5}, "such a spring would push the arm away");
+// The diagonal's bounds differ between translation and rotation.
+void check_diagonal(const YamlMap& yaml, const std::string& key, const Matrix6d& M, double linear,
+                    double angular) {
   for (int i = 0; i < 6; ++i) {
-    const Range range = i < 3 ? kTranslation : kRotation;
-    if (!(K(i, i) <= range.high)) {
-      yaml.refuse("K_x", fmt::format("row {} column {}: {} is above {}", i + 1, i + 1, K(i, i),
-                                     range.high));
+    const double high = i < 3 ? linear : angular;
+    if (!(std::abs(M(i, i)) <= high)) {
+      yaml.refuse(key,
+                  fmt::format("row {} column {}: {} is above {}", i + 1, i + 1, M(i, i), high));
     }
-    for (int j = 0; j < 6; ++j) gains->K_x[i][j] = K(i, j);
   }
 }
 
-void store(const Matrix6d& M, float (&field)[6][6]) {
+template <typename T>
+void store(const Matrix6d& M, T (&field)[6][6]) {
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) field[i][j] = static_cast<float>(M(i, j));
+    for (int j = 0; j < 6; ++j) field[i][j] = static_cast<T>(M(i, j));
   }
+}
+
+void read_stiffness(const YamlMap& yaml, compliance_gains_t* gains) {
+  const Matrix6d K =
+      read_semidefinite(yaml, "K_x", {-1e5, 1e5}, "such a spring would push the arm away");
+  check_diagonal(yaml, "K_x", K, kTranslation.high, kRotation.high);
+  store(K, gains->K_x);
+}
+
+void read_damping_and_inertia(const YamlMap& yaml, compliance_gains_t* gains) {
+  if (yaml.has("D_x")) {
+    const Matrix6d D =
+        read_semidefinite(yaml, "D_x", {-1e4, 1e4}, "such a damper would drive the arm");
+    check_diagonal(yaml, "D_x", D, 1e4, 1e3);
+    store(D, gains->D_x);
+  }
+  if (!yaml.has("M_x")) return;
+  const Matrix6d M = read_symmetric(yaml, "M_x", {-1e3, 1e3});
+  check_diagonal(yaml, "M_x", M, 1e3, 1e2);
+  store(M, gains->M_x);
 }
 
 template <typename T>
@@ -127,6 +148,8 @@ void read_settings(const YamlMap& yaml, compliance_gains_t* gains) {
   read_float(yaml, "acceleration_filter_s", {0.0, 1.0}, &gains->acceleration_filter_s);
   read_float(yaml, "observer_gain_per_s", {0.0, 500.0}, &gains->observer_gain_per_s);
   read_float(yaml, "tank_J", {0.0, 100.0}, &gains->tank_J);
+  read_float(yaml, "passivity_damping_Ns_per_m", {0.0, 1e3},
+             &gains->passivity_damping_Ns_per_m);
   read_float(yaml, "spring_force_N", {0.0, 1e4}, &gains->spring_force_N);
   read_float(yaml, "spring_moment_Nm", {0.0, 1e4}, &gains->spring_moment_Nm);
   if (!yaml.has("period_cycles")) return;
@@ -159,6 +182,7 @@ compliance_gains_t default_gains(const Robot& robot) {
   gains.stiffness_pose = compliance_gains_t::POSE_MID;
   gains.follow_velocity = 1;
   gains.friction_share = 0.8F;
+  std::fill_n(gains.K_acc, robot.size(), kDefaultStiffnessPerInertia_per_s2);
   gains.num_joints = static_cast<std::int8_t>(robot.size());
   for (int i = 0; i < 6; ++i) {
     gains.K_x[i][i] = i < 3 ? defaults.K_x_translation_N_per_m : defaults.K_x_rotation_Nm_per_rad;
@@ -182,16 +206,12 @@ void read_gains_entry(const YamlMap& yaml, const Robot& robot, compliance_gains_
   if (yaml.has("K_x")) {
     if (translation || rotation)
       yaml.refuse("K_x", "is the whole matrix; give either it or its diagonal blocks");
-    read_matrix(yaml, gains);
+    read_stiffness(yaml, gains);
   }
   if (translation)
     set_block(yaml.numbers("K_x_translation_N_per_m", 3, kTranslation, true), 0, gains);
   if (rotation) set_block(yaml.numbers("K_x_rotation_Nm_per_rad", 3, kRotation, true), 3, gains);
-  if (yaml.has("D_x")) {
-    store(read_semidefinite(yaml, "D_x", {-1e4, 1e4}, "such a damper would drive the arm"),
-          gains->D_x);
-  }
-  if (yaml.has("M_x")) store(read_symmetric(yaml, "M_x", {-1e3, 1e3}), gains->M_x);
+  read_damping_and_inertia(yaml, gains);
   gains->damping_ratio = yaml.number_or("damping_ratio", kRatio, gains->damping_ratio);
   read_joint_values(yaml, "K_q_Nm_per_rad", n, kJointStiffness, gains->K_q);
   gains->joint_damping_ratio =

@@ -1,9 +1,10 @@
 // Cartesian impedance with acceleration feedback: changes the inertia a hand feels by M_x.
 //   F = -A^T K_x e - D_x V - M_x dV/dt,   tau = J^T F + C v + g + null space
-//   tip:  (Lambda + M_x) dV/dt + D_x V + A^T K_x e = F_ext
+//   tip:  (Lambda + M_x) dV/dt - Lambda Jdot v + D_x V + A^T K_x e = F_ext
 // dV/dt is the filtered difference of the tip's twist (see Estimates). M_x adds to Lambda, it does
 // not replace it. Sampled at T with a filter p = exp(-T / tau_a), a mass m allows
-// -m < M_x < m (1 + p) / (1 - p), about 2 m tau_a / T. D_x as for cartesian_impedance.
+// -m < M_x < m (1 + p) / (1 - p), about 2 m tau_a / T. D_x as for cartesian_impedance,
+// without the floor.
 #include "controller/chosen_damping.h"
 #include "controller/damping_design.h"
 #include "controller/laws/law.h"

@@ -19,17 +19,6 @@
 namespace limber::controller {
 namespace {
 
-// Rows that are no part of the task: a mass that nothing pushes.
-Matrix6 with_ones_off_task(const TaskRows& rows, Matrix6 M) noexcept {
-  for (int i = 0; i < 6; ++i) {
-    if (rows.stiff[i]) continue;
-    M.row(i).setZero();
-    M.col(i).setZero();
-    M(i, i) = 1.0;
-  }
-  return M;
-}
-
 class Admittance : public Law {
  public:
   explicit Admittance(const LoadedRobot& robot)
@@ -57,7 +46,7 @@ class Admittance : public Law {
     inverse_kinematics_.track(rows, in.dt_s, &goal_);
 
     const VectorJ error = in.state.q - goal_.q_d;
-    out->F = F;
+    out->F = in.goal.F_ff;  // the position loop acts at the joints
     out->tau_stiffness = -in.gains.K_q * error;
     out->tau_damping = -D_q_ * (in.state.v - goal_.v_d);
     out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);
@@ -67,10 +56,11 @@ class Admittance : public Law {
   void design(const LawInputs& in) noexcept {
     const TaskRows rows(in.gains.K_x);
     const Matrix6& wanted = in.gains.M_x.isZero(0.0) ? M_start_ : in.gains.M_x;
-    const Matrix6 M = with_ones_off_task(rows, wanted);
-    const bool given = in.gains.settings.damping == DampingDesign::kGiven;
+    const Matrix6 M = invertible_on_task(rows, wanted);
+    const DampingDesign design = in.gains.settings.damping;
+    const bool given = design == DampingDesign::kGiven;
     const Matrix6 D =
-        given ? in.gains.D_x : inertia_damping(M, in.gains.K_x, in.gains.damping_ratio);
+        given ? in.gains.D_x : inertia_damping(design, M, in.gains.K_x, in.gains.damping_ratio);
     filter_.set(M, D, in.gains.K_x);
     D_q_ = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
   }
@@ -90,11 +80,7 @@ const char* refuse(const Gains& gains, int joints) {
   if (gains.settings.contact == ContactSource::kNone) {
     return "admittance needs a contact source: contact is none";
   }
-  if (gains.M_x.isZero(0.0)) return nullptr;
-  const Eigen::LLT<Matrix6> cholesky(with_ones_off_task(rows, gains.M_x));
-  return cholesky.info() == Eigen::Success
-             ? nullptr
-             : "M_x must be positive definite in the rows in which K_x has entries";
+  return refuse_tip_inertia(gains);
 }
 
 }  // namespace

@@ -27,7 +27,10 @@ class CartesianImpedance : public Law {
   }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
-    if (in.gains.K_x != K_x_) read_stiffness(in.gains);
+    if (in.gains.K_x != K_x_ || force_N_ != in.gains.settings.spring_force_N ||
+        moment_Nm_ != in.gains.settings.spring_moment_Nm) {
+      read_stiffness(in.gains);
+    }
     if (in.damping_due) D_x_ = chosen_tip_damping(in.gains, in.terms);
     const auto JT = in.terms.J.transpose();
     const PoseError error = pose_error(in.terms.X_BT, in.goal.X_BD, in.gains.settings.orientation);
@@ -49,7 +52,9 @@ class CartesianImpedance : public Law {
   void read_stiffness(const Gains& gains) noexcept {
     K_x_ = gains.K_x;
     floor_ = tip_damping_floor(K_x_);
-    limit_ = SpringLimit(K_x_, gains.settings.spring_force_N, gains.settings.spring_moment_Nm);
+    force_N_ = gains.settings.spring_force_N;
+    moment_Nm_ = gains.settings.spring_moment_Nm;
+    limit_ = SpringLimit(K_x_, force_N_, moment_Nm_);
   }
 
   Matrix6 damping(const Gains& gains) const noexcept {
@@ -67,6 +72,8 @@ class CartesianImpedance : public Law {
   Matrix6 K_x_ = Matrix6::Zero();
   Matrix6 D_x_ = Matrix6::Zero();
   Matrix6 floor_ = Matrix6::Zero();
+  double force_N_ = 0.0;
+  double moment_Nm_ = 0.0;
   SpringLimit limit_{Matrix6::Zero(), 0.0, 0.0};
 };
 

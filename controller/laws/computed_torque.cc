@@ -2,7 +2,8 @@
 //   tau = M (a_d - K_acc (q - q_d) - D_acc (v - v_d)) + C v + g       recursive Newton-Euler
 // Gains in 1/s^2 and 1/s: the error of every joint is a linear oscillator of its own, in free
 // motion. What a hand feels is M(q) K_acc, which turns with the arm. With `literal_stiffness` the
-// matrix J^T K_x J stands in the place of K_acc, unit or not, to show what that does.
+// matrix J^T K_x J stands in the place of K_acc, unit or not, to show what that does. The law gives
+// M a; C v + g comes from the cycle, so that `bias` can take it away.
 #include "controller/laws/law.h"
 
 namespace limber::controller {
@@ -23,7 +24,8 @@ class ComputedTorque : public Law {
     out->tau_stiffness = in.terms.M_total * spring;
     out->tau_damping = in.terms.M_total * damper;
     out->tau_feedforward =
-        model_.inverse_dynamics(in.state.q, in.state.v, a) - out->tau_stiffness - out->tau_damping;
+        model_.inverse_dynamics(in.state.q, in.state.v, a) - in.terms.g - in.terms.Cv;
+    out->tau_feedforward -= out->tau_stiffness + out->tau_damping;
   }
 
  private:
@@ -37,7 +39,7 @@ LawEntry computed_torque_law() {
           .summary = "inverse dynamics: joints as oscillators of their own",
           .needs = sensors::kLinkEncoder,
           .follows = Follows::kJointGoal,
-          .composition = {.gravity = false},
+          .composition = {.gravity = true, .coriolis = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<ComputedTorque>(robot);
           }};

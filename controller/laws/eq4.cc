@@ -4,7 +4,7 @@
 // J_d at the joint goal q_d. In equilibrium the world pushes with -F_ff; without the geometric term
 // K_G the tip then presents J^-T (K_q - K_G) J^-1 instead of K_x. `stiffness_terms: first` leaves
 // it out. A constant spring, hence conservative; exact for small deviations. K_v by the joint
-// damping design.
+// damping design; it has nothing to say in the null space, which K_null and D_null look after.
 #include "controller/chosen_damping.h"
 #include "controller/laws/law.h"
 #include "controller/stiffness_mapping.h"
@@ -57,7 +57,7 @@ LawEntry eq4_law() {
           .summary = "joint stiffness for a Cartesian one around a loaded posture",
           .needs = sensors::kLinkEncoder,
           .follows = Follows::kJointGoalAndWrench,
-          .composition = {.gravity = true},
+          .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<Eq4>(robot);
           }};

@@ -40,11 +40,6 @@ inline bool follows_joints(Follows follows) noexcept {
   return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench;
 }
 
-/// Whether a law can go on with the goal another one had.
-inline bool same_goal(Follows a, Follows b) noexcept {
-  return a == b || (follows_joints(a) && follows_joints(b));
-}
-
 /// What the observers say of this instant; zero where LawSettings::contact names no source.
 struct Estimates {
   explicit Estimates(int joints) : tau_ext(VectorJ::Zero(joints)) {}

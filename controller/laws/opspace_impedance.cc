@@ -2,8 +2,8 @@
 //   a   = dV_d/dt + M_d^-1 (F_ext + F_ff - A^T K_x e - D_x (V - V_d))
 //   tau = J^T (Lambda (a - Jdot v) - F_ext) + C v + g + null space
 //   =>  M_d (dV/dt - dV_d/dt) + D_x (V - V_d) + A^T K_x e = F_ext + F_ff
-// over the rows in which K_x has an entry. M_d = M_x; where that is zero the inertia stays Lambda
-// and no force is needed. D_x for (M_d, K_x), or as given. A force that comes late by t_d bounds
+// over the rows in which K_x has an entry. M_d = M_x; if that is zero the inertia stays Lambda and
+// no force is needed. D_x for (M_d, K_x), or as given. A force that comes late by t_d bounds
 // how light the tip can be made against a stiff world: see docs/control_laws.md.
 #include <Eigen/Cholesky>
 
@@ -15,39 +15,21 @@
 namespace limber::controller {
 namespace {
 
-// Ones on the rows that are no part of the task, so that inverses exist.
-Matrix6 off_task(const TaskRows& rows) noexcept {
-  Matrix6 ones = Matrix6::Zero();
-  for (int i = 0; i < 6; ++i) ones(i, i) = rows.stiff[i] ? 0.0 : 1.0;
-  return ones;
-}
-
-Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept {
-  for (int i = 0; i < 6; ++i) {
-    if (rows.stiff[i]) continue;
-    M.row(i).setZero();
-    M.col(i).setZero();
-  }
-  return M;
-}
-
 class OpspaceImpedance : public Law {
  public:
-  void start(const LawInputs& in) noexcept override {
-    D_x_ = damping(in, Lambda_of(in), TaskRows(in.gains.K_x));
-  }
+  void start(const LawInputs& in) noexcept override { D_x_ = damping(in, TaskRows(in.gains.K_x)); }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     const TaskRows rows(in.gains.K_x);
     const Matrix6 Lambda = Lambda_of(in);
-    if (in.damping_due) D_x_ = damping(in, Lambda, rows);
+    if (in.damping_due) D_x_ = damping(in, rows);
     const PoseError error = pose_error(in.terms.X_BT, in.goal.X_BD, in.gains.settings.orientation);
     const Vector6 Ke = in.gains.K_x * error.e;
     const Matrix6 gain = shaping(in, Lambda, rows);
 
     const Vector6 F_spring = -gain * (error.A.transpose() * Ke);
     const Vector6 F_damping = -gain * (D_x_ * (in.terms.V_BT - in.goal.V_BD));
-    const Vector6 F_ext = on_task(rows, Matrix6::Identity()) * in.estimates.F_ext;
+    const Vector6 F_ext = rows.of(in.estimates.F_ext);
     const Vector6 F_other =
         gain * (F_ext + in.goal.F_ff) - F_ext + Lambda * (in.goal.A_BD - in.terms.Jdot_v);
     const auto JT = in.terms.J.transpose();
@@ -67,31 +49,29 @@ class OpspaceImpedance : public Law {
   static Matrix6 shaping(const LawInputs& in, const Matrix6& Lambda,
                          const TaskRows& rows) noexcept {
     if (in.gains.M_x.isZero(0.0)) return on_task(rows, Matrix6::Identity());
-    const Matrix6 M_d = on_task(rows, in.gains.M_x) + off_task(rows);
-    return M_d.ldlt().solve(Lambda).transpose();
+    return invertible_on_task(rows, in.gains.M_x).llt().solve(Lambda).transpose();
   }
 
-  static Matrix6 damping(const LawInputs& in, const Matrix6& Lambda,
-                         const TaskRows& rows) noexcept {
-    if (in.gains.settings.damping == DampingDesign::kGiven) return in.gains.D_x;
-    const Matrix6 M_d = in.gains.M_x.isZero(0.0) ? Lambda : on_task(rows, in.gains.M_x);
-    return inertia_damping(M_d + off_task(rows), in.gains.K_x, in.gains.damping_ratio);
+  static Matrix6 damping(const LawInputs& in, const TaskRows& rows) noexcept {
+    const Gains& gains = in.gains;
+    const DampingDesign design = gains.settings.damping;
+    if (design == DampingDesign::kGiven) return gains.D_x;
+    if (gains.M_x.isZero(0.0)) {
+      return tip_damping(design, task_mobility(in.terms, rows), gains.K_x, gains.damping_ratio);
+    }
+    return inertia_damping(design, invertible_on_task(rows, gains.M_x), gains.K_x,
+                           gains.damping_ratio);
   }
 
   Matrix6 D_x_ = Matrix6::Zero();
 };
 
 const char* refuse(const Gains& gains, int joints) {
-  const TaskRows rows(gains.K_x);
-  if (rows.count() > joints) {
+  if (TaskRows(gains.K_x).count() > joints) {
     return "K_x has entries in more rows than the arm has joints: it cannot shape the inertia of "
            "all of them";
   }
-  if (gains.M_x.isZero(0.0)) return nullptr;
-  const Eigen::LLT<Matrix6> cholesky(on_task(rows, gains.M_x) + off_task(rows));
-  return cholesky.info() == Eigen::Success
-             ? nullptr
-             : "M_x must be positive definite in the rows in which K_x has entries";
+  return refuse_tip_inertia(gains);
 }
 
 }  // namespace

@@ -40,6 +40,12 @@ class PdPlus : public Law {
   MatrixJ D_;
 };
 
+const char* refuse(const Gains& gains, int /*joints*/) {
+  return gains.settings.bias == Bias::kGravityCoriolis
+             ? "bias: pd_plus has its own Coriolis torque; choose of_law, gravity or none"
+             : nullptr;
+}
+
 }  // namespace
 
 LawEntry pd_plus_law() {
@@ -48,6 +54,7 @@ LawEntry pd_plus_law() {
           .needs = sensors::kLinkEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true},
+          .refuse = refuse,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<PdPlus>(robot);
           }};

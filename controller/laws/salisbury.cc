@@ -2,10 +2,9 @@
 //   tau = -J^T K_x J (q - q_d) - K_v (v - v_d) + g
 // J at the present pose, K_v constant: as given, or the joint damping design for J^T K_x J at the
 // pose where the law started. Holds for small deviations; not conservative, since J turns with the
-// arm; the null space has damping only.
+// arm. Without K_null and D_null a redundant arm's null space has neither stiffness nor damping.
 #include "controller/chosen_damping.h"
 #include "controller/laws/law.h"
-#include "controller/stiffness_mapping.h"
 
 namespace limber::controller {
 namespace {
@@ -13,25 +12,35 @@ namespace {
 class Salisbury : public Law {
  public:
   explicit Salisbury(int joints)
-      : K_q_(MatrixJ::Zero(joints, joints)), K_v_(MatrixJ::Zero(joints, joints)) {}
+      : J_start_(Matrix6J::Zero(6, joints)),
+        M_start_(MatrixJ::Identity(joints, joints)),
+        K_q_(MatrixJ::Zero(joints, joints)),
+        K_v_(K_q_) {}
 
   void start(const LawInputs& in) noexcept override {
-    map(in);
-    K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
+    J_start_ = in.terms.J;
+    M_start_ = in.terms.M_total;
+    K_q_ = mapped(in.terms.J, in.gains.K_x);
+    K_v_ = chosen_joint_damping(in.gains, M_start_, K_q_);
   }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
-    if (in.stiffness_due) map(in);
-    const bool given = in.gains.settings.joint_damping == DampingDesign::kGiven;
+    if (in.stiffness_due) K_q_ = mapped(in.terms.J, in.gains.K_x);
+    // Constant over the workspace, not over the gains.
+    if (in.damping_due) {
+      K_v_ = chosen_joint_damping(in.gains, M_start_, mapped(J_start_, in.gains.K_x));
+    }
     out->tau_stiffness = -K_q_ * (in.state.q - in.goal.q_d);
-    out->tau_damping = -(given ? in.gains.D_q : K_v_) * (in.state.v - in.goal.v_d);
+    out->tau_damping = -K_v_ * (in.state.v - in.goal.v_d);
   }
 
  private:
-  void map(const LawInputs& in) noexcept {
-    K_q_.noalias() = in.terms.J.transpose() * in.gains.K_x * in.terms.J;
+  static MatrixJ mapped(const Matrix6J& J, const Matrix6& K_x) noexcept {
+    return J.transpose() * K_x * J;
   }
 
+  Matrix6J J_start_;
+  MatrixJ M_start_;
   MatrixJ K_q_;
   MatrixJ K_v_;
 };
@@ -43,7 +52,7 @@ LawEntry salisbury_law() {
           .summary = "Cartesian stiffness mapped to the joints, constant joint damping",
           .needs = sensors::kLinkEncoder,
           .follows = Follows::kJointGoal,
-          .composition = {.gravity = true},
+          .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<Salisbury>(robot.robot.size());
           }};

@@ -72,6 +72,12 @@ bool torque_step_within_limits(const Question& ask) noexcept {
   });
 }
 
+bool power_within_limit(const Question& ask) noexcept {
+  double power_W = 0.0;
+  for (int i = 0; i < ask.limits.n; ++i) power_W += ask.command.tau[i] * ask.situation.velocity[i];
+  return !ask.situation.followed || power_W <= ask.limits.power_W;
+}
+
 struct Check {
   int verdict;
   bool (*passes)(const Question&) noexcept;
@@ -89,6 +95,7 @@ constexpr Check kChecks[] = {
     {driver_status_t::VERDICT_NOT_ON, request_possible},
     {driver_status_t::VERDICT_TORQUE, torque_within_limits},
     {driver_status_t::VERDICT_RATE, torque_step_within_limits},
+    {driver_status_t::VERDICT_POWER, power_within_limit},
 };
 
 }  // namespace

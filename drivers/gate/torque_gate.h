@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <limber/joint_torque_t.hpp>
+#include <limits>
 
 #include "common/joints.h"
 #include "drivers/gate/event_window.h"
@@ -21,8 +22,9 @@ struct GateLimits {
   std::int64_t session = 0;  ///< this run of the driver
   int lease_cycles = 250;    ///< a controller that was not obeyed for so long has lost the arm
   int refusal_cycles = 100;  ///< three refusals within so many cycles are too many
-  std::array<double, kMaxJoints> torque_Nm{};       ///< greatest |tau| and |tau_gravity|
-  std::array<double, kMaxJoints> torque_step_Nm{};  ///< greatest |tau - torque present|
+  std::array<double, kMaxJoints> torque_Nm{};                ///< greatest |tau| and |tau_gravity|
+  std::array<double, kMaxJoints> torque_step_Nm{};           ///< greatest |tau - torque present|
+  double power_W = std::numeric_limits<double>::infinity();  ///< greatest sum of tau v
 };
 
 /// What the driver knows at the moment a command comes in.
@@ -33,6 +35,7 @@ struct GateSituation {
   /// absolute limits, but not against the torque present, and goes nowhere.
   bool followed = false;
   std::array<double, kMaxJoints> torque_present{};  ///< what left for the drives last, N m
+  std::array<double, kMaxJoints> velocity{};        ///< as reported last, rad/s or m/s
 };
 
 /// What the gate remembers of the commands it accepted.
@@ -57,6 +60,7 @@ inline constexpr std::int64_t kOldestAnswer = 5;
 ///   NOT_ON      no REQUEST_HOLD to drives that are off: what does not stand cannot be held
 ///   TORQUE      |tau| and |tau_gravity| within the limit
 ///   RATE        |tau - torque present| within the step, where the torque is followed
+///   POWER       sum of tau v within the limit, where the torque is followed
 int check_command(const GateLimits& limits, const GateMemory& memory,
                   const GateSituation& situation, const joint_torque_t& command) noexcept;
 

@@ -35,7 +35,7 @@ def damping_ratios(context: Context) -> Ratios:
 def _answers(context: Context) -> list[dict[str, Any]]:
     """At random poses."""
     poses = context.rng.uniform(-1.6, 1.6, (POSES, 7))
-    return context.eval([case("damping_design", ROBOT, q=q, Kx=K, zeta=[ZETA] * 6) for q in poses])
+    return context.eval([case("damping_design", ROBOT, q=q, Kx=K, zeta=ZETA) for q in poses])
 
 
 def _modes(L: np.ndarray, D: np.ndarray) -> np.ndarray:

@@ -13,8 +13,27 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
       gains(controller::default_gains(robot.robot)),
       estimates(model.size()),
       output(model.size()),
-      law_(controller::laws()[static_cast<std::size_t>(controller::find_law(name))].make(robot)) {
-  law_->start({state, terms, goal, gains, estimates});
+      entry(controller::laws()[static_cast<std::size_t>(controller::find_law(name))]),
+      law_(entry.make(robot)) {
+  law_->start(inputs());
+}
+
+LawInputs LawBench::inputs() const {
+  return {.state = state,
+          .terms = terms,
+          .goal = goal,
+          .gains = gains,
+          .estimates = estimates,
+          .dt_s = 1e-3,
+          .stiffness_due = due,
+          .damping_due = due};
+}
+
+void LawBench::start(const VectorJ& q, const VectorJ& v) {
+  state.q = q;
+  state.v = v;
+  model.evaluate(q, v, &terms);
+  law_->start(inputs());
 }
 
 const controller::LawOutput& LawBench::at(const VectorJ& q, const VectorJ& v) {
@@ -22,12 +41,20 @@ const controller::LawOutput& LawBench::at(const VectorJ& q, const VectorJ& v) {
   state.v = v;
   model.evaluate(q, v, &terms);
   output.reset();
-  law_->compute(LawInputs{state, terms, goal, gains, estimates}, &output);
+  law_->compute(inputs(), &output);
   return output;
 }
 
 VectorJ LawBench::with_gravity(const VectorJ& q, const VectorJ& v) {
   return at(q, v).tau() + terms.g;
+}
+
+VectorJ LawBench::composed(const VectorJ& q, const VectorJ& v) {
+  VectorJ tau = at(q, v).tau();
+  const controller::Composition add = controller::with_bias(entry.composition, gains.settings.bias);
+  if (add.gravity) tau += terms.g;
+  if (add.coriolis) tau += terms.Cv;
+  return tau;
 }
 
 void LawBench::set_goal(const VectorJ& q) {

@@ -16,6 +16,10 @@ class LawBench {
   const controller::LawOutput& at(const VectorJ& q, const VectorJ& v);
   /// Its torque with gravity, without Coriolis and null space: a continuous-time feedback.
   VectorJ with_gravity(const VectorJ& q, const VectorJ& v);
+  /// As the cycle composes it, without the null space.
+  VectorJ composed(const VectorJ& q, const VectorJ& v);
+  /// The law starts at (q, v).
+  void start(const VectorJ& q, const VectorJ& v);
   /// The goal is where the arm is at q.
   void set_goal(const VectorJ& q);
 
@@ -27,8 +31,12 @@ class LawBench {
   controller::Gains gains;
   controller::Estimates estimates;
   controller::LawOutput output;
+  bool due = true;  ///< what the law derives from stiffness and damping, it may derive anew
+  const controller::LawEntry& entry;
 
  private:
+  controller::LawInputs inputs() const;
+
   std::unique_ptr<controller::Law> law_;
 };
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "controller/laws/registry.h"
 #include "tests/controller/rig.h"
 #include "tests/support/allocation_counter.h"
 
@@ -23,32 +22,6 @@ constexpr double kGateStep = 1.0;
 constexpr int kClamped = int{Status::LIMIT_RATE} | int{Status::LIMIT_TORQUE};
 
 LoadedRobot arm() { return limber::testing::seven_joint_arm(); }
-
-// Which limits act is on record, so a jump hidden by the rate limiter would be seen.
-TEST(Continuity, SwitchingLawsNeverJumps) {
-  const auto names = law_names();
-  for (const std::string& from : names) {
-    for (const std::string& to : names) {
-      SCOPED_TRACE(from + " -> " + to);
-      Rig rig(arm(), from);
-      rig.to_active();
-      rig.plant.F_ext << 6.0, -4.0, 3.0, 0.2, 0.0, 0.1;  // a short push: the arm moves
-      rig.run(0.05);
-      rig.plant.F_ext.setZero();
-      rig.clear_jumps();
-      compliance_gains_t gains = rig.gains();
-      gains.law = to;
-      ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
-      const VectorJ before = rig.tau();
-      rig.step();
-      EXPECT_LT((rig.tau() - before).cwiseAbs().maxCoeff(), 0.1 * kGateStep);
-      rig.run(0.7);
-      EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
-      EXPECT_EQ(rig.limits() & kClamped, 0);
-      EXPECT_EQ(rig.controller.status().law, controller::find_law(to));
-    }
-  }
-}
 
 TEST(Continuity, GainsAndGoalsNeverJump) {
   Rig rig(arm());
@@ -95,10 +68,14 @@ TEST(Continuity, GainsAndGoalsNeverJump) {
 // Whatever comes in, what goes out is finite, within the limits and no step larger than the gate
 // allows.
 TEST(Continuity, TorqueIsBoundedUnderRandomInput) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  const auto names = law_names();
+  for (unsigned seed = 0; seed < 2 * names.size(); ++seed) {
     std::mt19937 generator(seed);
     std::uniform_real_distribution<double> chance(0.0, 1.0);
-    Rig rig(limber::testing::random_arm(1 + static_cast<int>(seed) % 7, seed, true));
+    const std::string& law = names[seed % names.size()];
+    const int joints = 1 + static_cast<int>(seed) % 7;
+    SCOPED_TRACE(law + ", joints: " + std::to_string(joints));
+    Rig rig(limber::testing::random_arm(joints, seed, true), law);
     rig.to_active();
     const int n = rig.state.num_joints;
     VectorJ before = rig.tau();

@@ -48,6 +48,19 @@ TEST_F(Limits, InTheMiddleNothingActs) {
   EXPECT_EQ(l.previous(), tau);
 }
 
+TEST_F(Limits, PowerIsLimitedAsAWhole) {
+  robot.robot.power_limit_W = 20.0;
+  const JointLimits l = limits();
+  state.v << 4.0, -2.0;           // the weight takes 3 * 4 + 1 * 2 = 14 W
+  VectorJ tau = both(9.0, -4.0);  // 6 N m and -3 N m beyond the weight: 30 W more
+  EXPECT_EQ(l.shape(state, terms, &tau), +Status::LIMIT_POWER);
+  EXPECT_NEAR(tau.dot(state.v), 20.0, 1e-12);
+  EXPECT_NEAR((tau[0] - 3.0) / (tau[1] + 1.0), -2.0, 1e-12) << "one factor for all joints";
+  VectorJ braking = both(-9.0, 4.0);
+  EXPECT_EQ(l.shape(state, terms, &braking), 0);
+  EXPECT_EQ(braking, both(-9.0, 4.0)) << "taking energy out is not limited";
+}
+
 TEST_F(Limits, RateKeepsToFourFifthsOfTheGatesStep) {
   JointLimits l = limits();
   VectorJ tau = both(19.0, -19.0);

@@ -52,10 +52,8 @@ TEST(CoriolisTranspose, IsTheGradientOfTheKineticEnergy) {
     const VectorJ CTv = coriolis_transpose(&model, terms, q, v);
     constexpr double h = 1e-5;
     for (int i = 0; i < n; ++i) {
-      MatrixJ ahead(n, n);
-      MatrixJ behind(n, n);
-      model.inertia(q + h * VectorJ::Unit(n, i), &ahead);
-      model.inertia(q - h * VectorJ::Unit(n, i), &behind);
+      const MatrixJ ahead = model.mass(q + h * VectorJ::Unit(n, i));
+      const MatrixJ behind = model.mass(q - h * VectorJ::Unit(n, i));
       const double gradient = 0.5 * v.dot((ahead - behind) * v) / (2.0 * h);
       EXPECT_NEAR(CTv[i], gradient, 1e-8 * (1.0 + terms.Cv.norm())) << n << " joints";
     }
@@ -76,9 +74,7 @@ TEST(MomentumObserver, SeesAWrenchOnAMovingArm) {
   VectorJ expected = VectorJ::Zero(7);
   VectorJ r;
   const auto torque = [&](const VectorJ& q, const VectorJ&) -> VectorJ {
-    VectorJ g(7);
-    arm.model.gravity(q, &g);
-    return 0.5 * g;
+    return 0.5 * arm.model.gravity(q);
   };
   for (int k = 0; k < 1000; ++k) {
     arm.model.evaluate(arm.q, arm.v, &terms);

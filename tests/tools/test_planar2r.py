@@ -33,3 +33,21 @@ def test_inertia_is_that_of_many_small_masses(q):
         second = inner * v[0] + along * outer * (v[0] + v[1])
         energy += (arm.MASSES[0] * first @ first + arm.MASSES[1] * second @ second) / (2 * pieces)
     assert v @ arm.inertia(q) @ v / 2 == pytest.approx(energy, rel=1e-6)
+
+
+@pytest.mark.parametrize("q", POSES)
+def test_weight_is_the_slope_of_the_height(q):
+    def potential(x):
+        inner, outer = arm.elbow(x) / 2, arm.elbow(x) + arm.elbow_to_tip(x) / 2
+        return np.array([9.81 * (arm.MASSES[0] * inner[1] + arm.MASSES[1] * outer[1])])
+
+    assert arm.derivative(potential, q)[0] == pytest.approx(arm.weight(q), abs=1e-12)
+
+
+@pytest.mark.parametrize("q", POSES)
+def test_coriolis_torque_follows_from_the_kinetic_energy(q):
+    """Lagrange: Ṁ v - ∂(½ vᵀM v)/∂q."""
+    v = np.array([0.7, -1.3])
+    rate = arm.derivative(lambda x: arm.inertia(x) @ v, q) @ v
+    slope = arm.derivative(lambda x: np.array([v @ arm.inertia(x) @ v / 2]), q)[0]
+    assert arm.coriolis(q, v) == pytest.approx(rate - slope, abs=1e-12)

@@ -138,6 +138,23 @@ def record(
     os.execv(command[0], command)
 
 
+@app.command()
+def ask(
+    entries: Annotated[
+        list[str] | None,
+        typer.Argument(help="Such as 'mode: active' or 'gains: {law: salisbury}'."),
+    ] = None,
+    robot: Annotated[str, typer.Option(help="The arm that runs: name or folder.")] = "openarm",
+) -> None:
+    """Say to a running stack what a scenario would say: mode, gains, goal, push, wall, ..."""
+    from limber.network import require_multicast
+    from limber.paths import program
+
+    require_multicast()
+    command = [str(program("limber-ask")), "--robot", robot, *(entries or [])]
+    os.execv(command[0], command)
+
+
 @log_app.command("info")
 def log_info(path: LogPath) -> None:
     """What a log holds, what was lost, what is damaged."""

@@ -59,6 +59,23 @@ class TorqueGateTest : public ::testing::Test {
 
 TEST_F(TorqueGateTest, AcceptsWhatIsInOrder) { EXPECT_EQ(check(good_), kAccepted); }
 
+TEST_F(TorqueGateTest, PowerUpToTheLimit) {
+  situation_.velocity = {2.0, -1.0, 4.0};  // 0.5 * 2 + 1 * 1 + 0.25 * 4 = 3 W
+  for (const auto& [power_W, verdict] :
+       std::vector<std::pair<double, int>>{{3.0, kAccepted},
+                                           {std::nextafter(3.0, 0.0), Status::VERDICT_POWER},
+                                           {kInf, kAccepted}}) {
+    limits_.power_W = power_W;
+    EXPECT_EQ(check(good_), verdict) << power_W;
+  }
+  limits_.power_W = 1.0;
+  situation_.followed = false;
+  EXPECT_EQ(check(good_), kAccepted) << "it goes nowhere";
+  situation_.followed = true;
+  situation_.velocity[1] = kNan;
+  EXPECT_EQ(check(good_), Status::VERDICT_POWER + 0);
+}
+
 TEST_F(TorqueGateTest, SizeMustBeThisArms) {
   for (int n : {-32768, -1, 0, 1, 2, 4, 16, 17, 32767}) {
     EXPECT_EQ(check_with([n](auto& c) { c.num_joints = static_cast<std::int16_t>(n); }),

@@ -11,6 +11,7 @@ import numpy as np
 ROBOT = "planar2r"
 LENGTHS = np.array([0.5, 0.4])  # m
 MASSES = np.array([4.0, 2.5])  # kg
+GRAVITY = 9.81  # m/s²
 
 
 def tip(q: np.ndarray) -> np.ndarray:
@@ -66,6 +67,19 @@ def inertia(q: np.ndarray) -> np.ndarray:
             [outer + coupling, outer],
         ]
     )
+
+
+def coriolis(q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """C(q, v) v; the inertia depends on the elbow alone."""
+    bend = MASSES[1] * LENGTHS[0] * LENGTHS[1] / 2 * np.sin(q[1])
+    return bend * np.array([-v[1] * (2 * v[0] + v[1]), v[0] ** 2])
+
+
+def weight(q: np.ndarray) -> np.ndarray:
+    """g(q): the torque that holds the arm, gravity along -y."""
+    outer = MASSES[1] * elbow_to_tip(q)[0] / 2
+    inner = (MASSES[0] / 2 + MASSES[1]) * elbow(q)[0]
+    return GRAVITY * np.array([inner + outer, outer])
 
 
 def derivative(function: Callable[[np.ndarray], np.ndarray], q: np.ndarray) -> np.ndarray:

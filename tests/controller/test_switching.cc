@@ -1,0 +1,203 @@
+// From every law to every other, between kinds of goals and through every setting: the torque goes
+// on where it was, and no limit had to hide a jump.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "controller/laws/registry.h"
+#include "tests/controller/rig.h"
+
+namespace limber {
+namespace {
+
+using controller::Follows;
+using limber::testing::Rig;
+using Gains = compliance_gains_t;
+using Goal = compliance_goal_t;
+using Status = controller_status_t;
+
+// with_drives(): what the gate lets pass in a cycle.
+constexpr double kGateStep = 1.0;
+constexpr int kClamped = int{Status::LIMIT_RATE} | int{Status::LIMIT_TORQUE};
+
+const controller::LawEntry& entry(const std::string& law) {
+  return controller::laws()[static_cast<std::size_t>(controller::find_law(law))];
+}
+
+class Switching : public ::testing::Test {
+ protected:
+  explicit Switching(const std::string& law = "joint_pd")
+      : rig(limber::testing::seven_joint_arm(), law) {
+    rig.to_active();
+  }
+
+  void push(double size) { rig.plant.F_ext << 3.0 * size, -2.0, 1.5 * size, 0.1, 0.0, 0.05; }
+
+  // The first torque after a change, and all that follow.
+  void expect_smooth(const std::string& what, double seconds) {
+    SCOPED_TRACE(what);
+    const VectorJ before = rig.tau();
+    rig.clear_jumps();
+    rig.step();
+    EXPECT_LT((rig.tau() - before).cwiseAbs().maxCoeff(), 0.1 * kGateStep);
+    rig.run(seconds);
+    EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
+    EXPECT_EQ(rig.limits() & kClamped, 0);
+  }
+
+  // The robot's, with the contact that an admittance needs.
+  Gains gains_of(const std::string& law) const {
+    Gains gains = rig.gains();
+    gains.law = law;
+    if (law == "admittance") gains.contact = Gains::CONTACT_JOINT_TORQUE;
+    return gains;
+  }
+
+  void switch_to(const std::string& law) {
+    const Gains gains = gains_of(law);
+    const char* refused = rig.controller.on_gains(gains);
+    ASSERT_EQ(refused, nullptr) << law << ": " << refused;
+  }
+
+  // A goal of the kind the law follows, on its way for a while.
+  void move_goal(const std::string& law, bool at_tip) {
+    if (entry(law).follows == Follows::kNothing) return;
+    Goal goal = rig.goal();
+    sign = -sign;
+    if (at_tip || !follows_joints(entry(law).follows)) {
+      goal.offset[1] = 0.02 * sign;
+      goal.offset[5] = 0.1 * sign;
+    } else {
+      goal.kind = Goal::GOAL_JOINT;
+      for (int i = 0; i < 7; ++i) goal.q[i] = rig.state.q[i] + 0.05 * sign;
+    }
+    goal.duration_s = 0.3;
+    const char* refused = rig.controller.on_goal(goal);
+    ASSERT_EQ(refused, nullptr) << law << ": " << refused;
+  }
+
+  Rig rig;
+  double sign = 1.0;
+};
+
+// A walk that takes every ordered pair once: there and back for each pair of laws.
+TEST_F(Switching, LawsNeverJump) {
+  const auto names = law_names();
+  bool at_tip = true;
+  for (const std::string& from : names) {
+    for (const std::string& to : names) {
+      if (to <= from) continue;
+      switch_to(from);
+      rig.run(0.55);
+      for (const auto& [law, next] : {std::pair{from, to}, std::pair{to, from}}) {
+        at_tip = !at_tip;
+        move_goal(law, at_tip);
+        rig.run(0.05);
+        push(at_tip ? 1.0 : -1.0);
+        rig.run(0.05);
+        rig.plant.F_ext.setZero();  // one of the laws floats
+        switch_to(next);
+        expect_smooth(law + " -> " + next, 0.4);
+        EXPECT_EQ(rig.controller.status().law, controller::find_law(next));
+      }
+    }
+  }
+}
+
+// From joints to tip and back under every law for the joints, in the middle of a motion.
+TEST_F(Switching, KindsOfGoalsNeverJump) {
+  for (const std::string& law : law_names()) {
+    if (!follows_joints(entry(law).follows)) continue;
+    switch_to(law);
+    push(1.0);
+    rig.run(0.6);
+    for (const bool at_tip : {true, false, true, true, false, false}) {
+      move_goal(law, at_tip);
+      expect_smooth(law + (at_tip ? ", tip" : ", joints"), 0.2);
+    }
+    Goal wrench = rig.goal();
+    wrench.kind = Goal::GOAL_WRENCH;
+    ASSERT_EQ(rig.controller.on_goal(wrench), nullptr);
+    expect_smooth(law + ", wrench", 0.2);
+  }
+}
+
+struct Change {
+  const char* name;
+  void (*make)(Gains*);
+};
+
+const Change kChanges[] = {
+    {"quat", [](Gains* g) { g->orientation = Gains::ORIENTATION_QUAT; }},
+    {"log_simple", [](Gains* g) { g->orientation = Gains::ORIENTATION_LOG_SIMPLE; }},
+    {"quat_simple", [](Gains* g) { g->orientation = Gains::ORIENTATION_QUAT_SIMPLE; }},
+    {"goal axes", [](Gains* g) { g->frame = Gains::FRAME_GOAL; }},
+    {"gravity", [](Gains* g) { g->bias = Gains::BIAS_GRAVITY; }},
+    {"gravity and Coriolis", [](Gains* g) { g->bias = Gains::BIAS_GRAVITY_CORIOLIS; }},
+    {"factorisation",
+     [](Gains* g) { g->damping = g->joint_damping = Gains::DAMPING_FACTORISATION; }},
+    {"without inertia",
+     [](Gains* g) { g->damping = g->joint_damping = Gains::DAMPING_WITHOUT_INERTIA; }},
+    {"damping given",
+     [](Gains* g) {
+       g->damping = g->joint_damping = Gains::DAMPING_GIVEN;
+       g->ramp_s = 5.0;
+       for (int i = 0; i < 6; ++i) g->D_x[i][i] = i < 3 ? 15.0F : 0.5F;
+       for (float& D : g->D_q) D = 1.0F;
+     }},
+    {"first term", [](Gains* g) { g->stiffness_terms = Gains::STIFFNESS_FIRST; }},
+    {"geometric term", [](Gains* g) { g->stiffness_terms = Gains::STIFFNESS_GEOMETRIC; }},
+    {"present pose", [](Gains* g) { g->stiffness_pose = Gains::POSE_CURRENT; }},
+    {"goal pose", [](Gains* g) { g->stiffness_pose = Gains::POSE_GOAL; }},
+    {"mean of poses", [](Gains* g) { g->stiffness_pose = Gains::POSE_MEAN; }},
+    {"partials", [](Gains* g) { g->damping_partials = Gains::PARTIALS_IN_STIFFNESS; }},
+    {"kinematic projector", [](Gains* g) { g->projector = Gains::PROJECTOR_KINEMATIC; }},
+    {"no projector", [](Gains* g) { g->projector = Gains::PROJECTOR_NONE; }},
+    {"contact from the joints", [](Gains* g) { g->contact = Gains::CONTACT_JOINT_TORQUE; }},
+    {"inertia fed forward", [](Gains* g) { g->inertia_feedforward = 1; }},
+    {"velocity not followed", [](Gains* g) { g->follow_velocity = 0; }},
+    {"spring bounds",
+     [](Gains* g) {
+       g->spring_force_N = 1.0F;
+       g->spring_moment_Nm = 0.1F;
+     }},
+    {"wanted inertia",
+     [](Gains* g) {
+       for (int i = 0; i < 6; ++i) g->M_x[i][i] = i < 3 ? 2.0F : 0.05F;
+       for (float& M : g->M_q) M = 0.2F;
+       g->ramp_s = 0.3;
+     }},
+    {"periods",
+     [](Gains* g) {
+       for (std::int16_t& period : g->period_cycles) period = 3;
+     }},
+};
+
+// There and back, while the arm is pushed away from its goal.
+TEST_F(Switching, SettingsNeverJump) {
+  for (const std::string& law : law_names()) {
+    if (entry(law).follows == Follows::kNothing) continue;  // and knows no gains
+    switch_to(law);
+    push(1.0);
+    rig.run(0.6);
+    for (const Change& change : kChanges) {
+      Gains gains = gains_of(law);
+      change.make(&gains);
+      const controller::Gains parsed = [&] {
+        controller::Gains result(7);
+        read_gains(gains, &result);
+        return result;
+      }();
+      const auto refuse = entry(law).refuse;
+      if (refuse != nullptr && refuse(parsed, 7) != nullptr) continue;
+      ASSERT_EQ(rig.controller.on_gains(gains), nullptr) << law << ", " << change.name;
+      expect_smooth(law + ", " + change.name, 0.1);
+      switch_to(law);  // the defaults again
+      expect_smooth(law + ", no longer " + change.name, 0.1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber

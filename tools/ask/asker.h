@@ -1,0 +1,36 @@
+// Sends entries of a scenario to a running stack and tells what became of them.
+#pragma once
+
+#include <limber/controller_status_t.hpp>
+#include <optional>
+#include <string>
+
+#include "common/lcm_port.h"
+#include "robots/load_robot.h"
+#include "scenarios/entry_yaml.h"
+
+namespace limber {
+
+/// A user with a lease of its own. Gains entries build on each other, the first on robot.yaml.
+class Asker {
+ public:
+  /// Throws ConfigError if there is no multicast route.
+  Asker(const LoadedRobot& robot, std::int64_t client);
+
+  /// Sends one entry, such as `gains: {law: salisbury}`, and waits for the controller's next status
+  /// (for a push, wall, payload or fault, which the simulator takes, for nothing). Throws
+  /// ConfigError if the entry is wrong, no controller answers, or it refuses.
+  void ask(const std::string& entry);
+
+ private:
+  void send(const ScenarioMessage& message);
+  bool wait_for_status(std::int64_t timeout_ns);
+
+  const LoadedRobot& robot_;
+  std::int64_t client_;
+  EntryContext context_;
+  LcmPort port_;
+  std::optional<controller_status_t> status_;
+};
+
+}  // namespace limber
