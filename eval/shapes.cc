@@ -34,7 +34,8 @@ std::string describe(const Json& value) {
   if (value.is_array()) return describe_list(value);
   if (value.is_object()) return "an object";
   const std::string text = value.dump();
-  return text.size() > kLongestText ? text.substr(0, kLongestText) + "..." : text;
+  if (text.size() <= kLongestText) return text;
+  return fmt::format("{}...", text.substr(0, kLongestText));
 }
 
 void refuse(const std::string& where, const std::string& expected, const Json& found) {
