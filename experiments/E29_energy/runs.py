@@ -28,11 +28,12 @@ class Fall:
     """From the moment the push is over."""
 
     t: np.ndarray
-    kinetic: np.ndarray
-    spring: np.ndarray
-    off: np.ndarray  # pose error, m and rad
     q: np.ndarray
     v: np.ndarray
+    kinetic: np.ndarray
+    spring: np.ndarray
+    distance: float  # from the goal at the start, m
+    goal: tuple[np.ndarray, Rotation]
 
     @property
     def total(self) -> np.ndarray:
@@ -96,39 +97,40 @@ def fall(context: Context, rate_hz: int, damped: bool) -> Fall:
     told = status(log, LET_GO_S, end)
     rows = motion(log, LET_GO_S, end)
     rows = rows[np.abs(rows["F_push"]).max(axis=1) == 0]
-    goal = Rotation.from_quat(np.roll(told["quat_BD"][0], -1))
-    turned = (Rotation.from_quat(np.roll(rows["quat_BT"], -1, axis=1)) * goal.inv()).as_rotvec()
-    e = np.hstack([rows["p_BT"] - told["p_BD"][0], turned])
+    goal = told["p_BD"][0], Rotation.from_quat(np.roll(told["quat_BD"][0], -1))
+    turned = Rotation.from_quat(np.roll(rows["quat_BT"], -1, axis=1))
     return Fall(
         t=seconds(rows) - seconds(rows)[0],
-        kinetic=rows["kinetic_energy_J"],
-        spring=(e**2 * K).sum(axis=1) / 2,
-        off=e,
         q=joints(rows),
         v=joints(rows, "v"),
+        kinetic=rows["kinetic_energy_J"],
+        spring=energy(rows["p_BT"], turned, goal),
+        distance=float(np.linalg.norm(rows["p_BT"][0] - goal[0])),
+        goal=goal,
     )
 
 
 def fed_in(run: Fall, rate_hz: int) -> np.ndarray:
     """What delay feeds in over time: -t_d ∫ vᵀ (∂τ/∂q) v dt, with t_d = 1.5 periods and τ all that
-    the controller takes from the position: -∂τ/∂q = Jᵀ AᵀKA J - ∂g/∂q.
+    the controller takes from the position: -∂τ/∂q = ∂²U/∂q² - ∂g/∂q, U the spring's energy.
     """
     chain = load_robot("ideal7").chain
+
+    def spring(q: np.ndarray) -> float:
+        X = chain.forward(q)
+        return float(energy(X[None, :3, 3], Rotation.from_matrix(X[None, :3, :3]), run.goal)[0])
+
     few = slice(None, None, rate_hz // 250)
+    step = 1e-3  # s
     power = []
-    for q, v, e in zip(run.q[few], run.v[few], run.off[few], strict=True):
-        rate = error_rate(e) @ chain.jacobian(q) @ v
-        power.append(rate @ (K * rate) - v @ gravity_rate("ideal7", q, v))
+    for q, v in zip(run.q[few], run.v[few], strict=True):
+        curved = spring(q + step * v) - 2 * spring(q) + spring(q - step * v)
+        power.append(curved / step**2 - v @ gravity_rate("ideal7", q, v))
     gained = cumulative_trapezoid(power, run.t[few], initial=0.0)
     return np.interp(run.t, run.t[few], 1.5 / rate_hz * gained)
 
 
-def error_rate(e: np.ndarray) -> np.ndarray:
-    """A: ė = A V for e = (p - p_d, Log R R_dᵀ); inverse left Jacobian of the rotation."""
-    phi = np.linalg.norm(e[3:])
-    x, y, z = e[3:]
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    third = (1 / phi**2 - (1 + np.cos(phi)) / (2 * phi * np.sin(phi))) if phi > 1e-4 else 1 / 12
-    A = np.eye(6)
-    A[3:, 3:] += -cross / 2 + third * cross @ cross
-    return A
+def energy(p: np.ndarray, R: Rotation, goal: tuple[np.ndarray, Rotation]) -> np.ndarray:
+    """½ eᵀ K e with e = (p - p_d, Log R R_dᵀ), for many poses."""
+    e = np.hstack([p - goal[0], (R * goal[1].inv()).as_rotvec()])
+    return (e**2 * K).sum(axis=1) / 2
