@@ -148,8 +148,7 @@ void read_settings(const YamlMap& yaml, compliance_gains_t* gains) {
   read_float(yaml, "acceleration_filter_s", {0.0, 1.0}, &gains->acceleration_filter_s);
   read_float(yaml, "observer_gain_per_s", {0.0, 500.0}, &gains->observer_gain_per_s);
   read_float(yaml, "tank_J", {0.0, 100.0}, &gains->tank_J);
-  read_float(yaml, "passivity_damping_Ns_per_m", {0.0, 1e3},
-             &gains->passivity_damping_Ns_per_m);
+  read_float(yaml, "passivity_damping_Ns_per_m", {0.0, 1e3}, &gains->passivity_damping_Ns_per_m);
   read_float(yaml, "spring_force_N", {0.0, 1e4}, &gains->spring_force_N);
   read_float(yaml, "spring_moment_Nm", {0.0, 1e4}, &gains->spring_moment_Nm);
   if (!yaml.has("period_cycles")) return;

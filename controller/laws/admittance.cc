@@ -7,8 +7,6 @@
 // inertia where the law started. D_x for (M_x, K_x), or as given. Without delay and without K_x and
 // D_x this is stable only if M_x is heavier than the arm; a stiff contact raises the least K_x: see
 // docs/control_laws.md.
-#include <Eigen/Cholesky>
-
 #include "controller/admittance_filter.h"
 #include "controller/chosen_damping.h"
 #include "controller/damping_design.h"

@@ -40,10 +40,11 @@ class CartesianImpedance : public Law {
     const Vector6 F_spring = -spring.scale * (error.A.transpose() * Ke);
     const Vector6 F_damping = -damping(in.gains) * (in.terms.V_BT - in.goal.V_BD);
 
-    out->F = F_spring + F_damping + in.goal.F_ff;
+    const Vector6 F_other = in.goal.F_ff + inertia_force(in);
+    out->F = F_spring + F_damping + F_other;
     out->tau_stiffness = JT * F_spring;
     out->tau_damping = JT * F_damping;
-    out->tau_feedforward = JT * (in.goal.F_ff + inertia_force(in));
+    out->tau_feedforward = JT * F_other;
     out->spring_energy_J = spring.energy_J;
     if (spring.scale < 1.0) out->limits |= controller_status_t::LIMIT_ERROR;
   }

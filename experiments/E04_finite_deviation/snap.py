@@ -8,7 +8,7 @@ import numpy as np
 from limber.experiments import planar2r as arm
 from limber.experiments.check import Check
 from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, PINK
+from limber.experiments.pictures import BLACK, ORANGE
 from limber.experiments.truth import joints, motion, status
 
 from .equilibria import closed_curve
@@ -91,7 +91,7 @@ def checks(found: dict[Form, Pushed]) -> list[Check]:
 
 def draw(found: dict[Form, Pushed], ax: Any) -> None:
     """The elbow's angle over the load; the arm's motion is what is measured."""
-    for form, color in ((SNAPS, PINK), (DIRECT, BLACK)):
+    for form, color in ((SNAPS, ORANGE), (DIRECT, BLACK)):
         run = found[form]
         ax.plot(run.load, np.degrees(run.elbow), color=color, label=f"{name(form)}, the arm")
     limit_N = limit()

@@ -1,4 +1,4 @@
-"""Contact torque from the motors' torques and the arm's momentum: how fast, and what friction does."""
+"""Contact torque from motor torques and momentum: how fast it is, and what friction does."""
 
 from typing import Any
 

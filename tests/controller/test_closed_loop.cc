@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "controller/nullspace.h"
 #include "controller/pose_error.h"
 #include "controller/stiffness_mapping.h"
 #include "tests/controller/law_bench.h"

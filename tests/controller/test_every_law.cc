@@ -7,9 +7,7 @@
 #include <string>
 
 #include "controller/chosen_damping.h"
-#include "controller/inverse_kinematics.h"
 #include "controller/limits.h"
-#include "controller/nullspace.h"
 #include "tests/controller/law_bench.h"
 #include "tests/support/allocation_counter.h"
 

@@ -161,7 +161,7 @@ const Mutation kMoteus[] = {
      "pid_position: is for motors with protocol: moteus only", 1},
     {"TimeoutTorqueOfAnotherProtocol", kRanges, kRanges + "    timeout_torque_Nm: 3\n",
      "timeout_torque_Nm: is for motors with protocol: moteus only", 1},
-    {"GainsMissing", kGains, "", "'pid_position' is missing", -9},
+    {"GainsMissing", kGains, "", "'pid_position' is missing", -8},
     {"GainsInRadians", "kp_Nm_per_turn", "kp_Nm_per_rad", "'kp_Nm_per_turn' is missing"},
     {"GainZero", "kp_Nm_per_turn: 400", "kp_Nm_per_turn: 0", "'0' is out of range"},
     {"TimeoutTorqueAbovePeak", "timeout_torque_Nm: 3", "timeout_torque_Nm: 16", "from 0 to 15"},

@@ -101,7 +101,7 @@ TEST_F(MoteusNodeTest, StopIsAnsweredWithTheState) {
             "CDCCCC3D"
             "00000000"
             "9A99593F"
-            "230D601E0050");
+            "230D601E005050");
   EXPECT_EQ(reply_.id, 0x400U);
   EXPECT_FALSE(reply_.extended);
   EXPECT_TRUE(reply_.fd && reply_.bitrate_switch);
@@ -277,9 +277,9 @@ TEST_F(MoteusNodeTest, TorqueStaysWithinTheCommandsMostAndThePeak) {
 
 TEST_F(MoteusNodeTest, TheWatchdogLatchesAndBrakes) {
   come_up(1.0);
-  advance(17 * kMs);  // 20 ms since the command
+  advance(16 * kMs + kMs / 2);  // 19.5 ms since the command
   EXPECT_EQ(node_.mode(), Mode::kPosition);
-  advance(kMs / 4);
+  advance(kMs);
   EXPECT_EQ(node_.mode(), Mode::kTimeout);
   EXPECT_NEAR(torque_at(0.5, 0.5 * kTurn), -2.0, 1e-9);  // kd 4 N m per turn/s
   EXPECT_EQ(torque_at(0.5, 100.0 * kTurn), -5.0);
@@ -403,12 +403,13 @@ TEST_F(MoteusNodeTest, OtherFaults) {
 
   command(kNan, 0.0, 0.0, 1.0);
   node_.inject(scenario_event_t::FAULT_DROP_COMMANDS, joint_, now_ + 30 * kMs);
-  for (int i = 0; i < 21; ++i) {
+  for (int i = 0; i < 20; ++i) {
     command(kNan, 0.0, 0.0, 3.0);
     EXPECT_EQ(torque_at(0.0, 0.0), 1.0);
     EXPECT_EQ(send("1100"), "21000A");
-    advance(i < 20 ? kMs : kMs / 2);
+    advance(kMs);
   }
+  advance(kMs);
   EXPECT_EQ(node_.mode(), Mode::kTimeout);
   node_.clear_faults();
   send("010000");

@@ -123,6 +123,22 @@ def check(
     raise typer.Exit(module.check(what, base, tip))
 
 
+@app.command(
+    "eval",
+    context_settings={
+        "ignore_unknown_options": True,
+        "allow_extra_args": True,
+        "help_option_names": [],
+    },
+)
+def evaluate(context: typer.Context) -> None:
+    """Evaluate control laws: a JSON file or standard input in, JSON out (see docs/eval.md)."""
+    from limber.paths import program
+
+    command = [str(program("limber-eval")), *context.args]
+    os.execv(command[0], command)
+
+
 @app.command()
 def record(
     out: Annotated[Path, typer.Option("--out", help="Log file to write.")],

@@ -14,7 +14,10 @@ from limber import network
 from limber.errors import InputError, RunError
 from limber.paths import ROOT
 
-FOLDERS = ("common", "robots", "scenarios", "controller", "drivers", "sim", "lab", "tools", "tests")
+FOLDERS = (
+    *("common", "robots", "scenarios", "controller", "eval", "drivers", "sim", "lab"),
+    *("tools", "tests"),
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ def _parts() -> Iterator[Part]:
     build = str(ROOT / "build" / "dev")
     ctest = ["ctest", "--test-dir", build, "--output-on-failure"]
     yield Part("ctest", [*ctest, "-LE", "vcan", "-j", jobs])
-    yield Part("pytest", [python, "-m", "pytest", "tests/tools"])
+    yield Part("pytest", [python, "-m", "pytest", "tests/tools", "tests/eval"])
     prefix = [] if network.is_private() else network.private_command()
     if prefix is None:
         raise RunError(

@@ -22,21 +22,27 @@ def joint_inertia(robot: str, q: np.ndarray) -> np.ndarray:
 
 
 def gravity_gradient(robot: str, q: np.ndarray) -> np.ndarray:
-    """∂g/∂q by central differences; g(q) = -Σ m J_cᵀ a holds the arm against gravity a."""
+    """∂g/∂q by central differences."""
+    return np.column_stack([gravity_rate(robot, q, axis) for axis in np.eye(len(q))])
+
+
+def gravity_rate(robot: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(∂g/∂q) v by a central difference; g(q) = -Σ m J_cᵀ a holds the arm against gravity a."""
     step = 1e-5
-    columns = [
-        (_gravity(robot, q + step * axis) - _gravity(robot, q - step * axis)) / (2 * step)
-        for axis in np.eye(len(q))
-    ]
-    return np.column_stack(columns)
+    return (_gravity(robot, q + step * v) - _gravity(robot, q - step * v)) / (2 * step)
 
 
 def _gravity(robot: str, q: np.ndarray) -> np.ndarray:
     g = np.zeros(len(q))
     for chain, m, p_LC, _ in _links(robot):
         J_c = _at_centre(chain, q, p_LC)
-        g[: J_c.shape[1]] -= m * J_c.T @ load_robot(robot).gravity
+        g[: J_c.shape[1]] -= m * J_c.T @ _acceleration(robot)
     return g
+
+
+@cache
+def _acceleration(robot: str) -> np.ndarray:
+    return load_robot(robot).gravity
 
 
 def _at_centre(chain: Chain, q: np.ndarray, p_LC: np.ndarray) -> np.ndarray:

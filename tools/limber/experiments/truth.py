@@ -7,7 +7,7 @@ from limber.errors import RunError
 from limber.logs import Log
 
 MODE_ACTIVE = 4
-RAMP = "RAMP"  # gains on their way, or a new law taking over
+RAMP = frozenset({"RAMP"})  # gains on their way, or a new law taking over
 
 
 def motion(log: Log, start_s: float, end_s: float) -> np.ndarray:
@@ -15,9 +15,9 @@ def motion(log: Log, start_s: float, end_s: float) -> np.ndarray:
     return _between(log, "SIM_TRUTH", start_s, end_s)
 
 
-def status(log: Log, start_s: float, end_s: float) -> np.ndarray:
-    """Rows of CONTROLLER_STATUS, one every fifth cycle. Refuses a run in which a limit was active,
-    or in which the controller did not do what it was asked for.
+def status(log: Log, start_s: float, end_s: float, allowed: frozenset[str] = RAMP) -> np.ndarray:
+    """Rows of CONTROLLER_STATUS, one every fifth cycle. Refuses a run in which a limit was active
+    that is not `allowed`, or in which the controller did not do what it was asked for.
     """
     rows = _between(log, "CONTROLLER_STATUS", start_s, end_s)
     if not (rows["mode"] == MODE_ACTIVE).all():
@@ -25,7 +25,7 @@ def status(log: Log, start_s: float, end_s: float) -> np.ndarray:
     names = messages.bit_names(
         "controller_status_t", "LIMIT_", int(np.bitwise_or.reduce(rows["limits"]))
     )
-    if others := [name for name in names if name != RAMP]:
+    if others := [name for name in names if name not in allowed]:
         raise RunError(f"{log.path}: limits act: {', '.join(others)}")
     if refused := rows["requests_refused"].max():
         raise RunError(f"{log.path}: the controller refused {refused} requests")

@@ -1,0 +1,31 @@
+// The words of the inputs that choose something.
+#pragma once
+
+#include "controller/law_settings.h"
+#include "eval/inputs.h"
+
+namespace limber::eval {
+
+/// How the rotation error is measured; `log` if nothing is said.
+inline controller::Orientation orientation(Inputs& in) {
+  using controller::Orientation;
+  return in.choice<Orientation>("mode",
+                                {{"log", Orientation::kLog},
+                                 {"quat", Orientation::kQuat},
+                                 {"log_simple", Orientation::kLogSimple},
+                                 {"quat_simple", Orientation::kQuatSimple},
+                                 {"rpy", Orientation::kRollPitchYaw}},
+                                Orientation::kLog);
+}
+
+/// The model torque; what the law adds by itself if nothing is said.
+inline controller::Bias bias(Inputs& in) {
+  using controller::Bias;
+  return in.choice<Bias>("bias",
+                         {{"none", Bias::kNone},
+                          {"gravity", Bias::kGravity},
+                          {"gravity+coriolis", Bias::kGravityCoriolis}},
+                         Bias::kOfLaw);
+}
+
+}  // namespace limber::eval
