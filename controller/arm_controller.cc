@@ -181,6 +181,7 @@ const joint_torque_t& ArmController::step(const joint_state_t& state) noexcept {
   if (judgement.repeated) return self.answer;
   if (judgement.new_session && self.timeline) self.timeline->rewind();
 
+  if (judgement.new_session || judgement.silent) self.cycle.restart();
   if (judgement.usable) {
     self.period_s = static_cast<double>(state.period_ns) * 1e-9;
     self.cycle.measure(state);

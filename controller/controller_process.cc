@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <limber/request_answer_t.hpp>
 #include <limits>
 
 #include "common/clock.h"
@@ -36,17 +37,17 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       arm_(arm_plane_url()) {
   arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
                                 [this](const joint_state_t& state) { on_state(state); });
-  user_.subscribe<mode_request_t>(channels::kModeRequest, kRequestQueue,
-                                  [this](const mode_request_t& request) {
-                                    complain("mode request refused", controller_->on_mode(request));
-                                  });
+  user_.subscribe<mode_request_t>(
+      channels::kModeRequest, kRequestQueue, [this](const mode_request_t& request) {
+        reply(request, "mode request refused", controller_->on_mode(request));
+      });
   user_.subscribe<compliance_goal_t>(channels::kComplianceGoal, kRequestQueue,
                                      [this](const compliance_goal_t& goal) {
-                                       complain("goal refused", controller_->on_goal(goal));
+                                       reply(goal, "goal refused", controller_->on_goal(goal));
                                      });
   user_.subscribe<compliance_gains_t>(channels::kComplianceGains, kRequestQueue,
                                       [this](const compliance_gains_t& gains) {
-                                        complain("gains refused", controller_->on_gains(gains));
+                                        reply(gains, "gains refused", controller_->on_gains(gains));
                                       });
 }
 
@@ -99,6 +100,19 @@ void ControllerProcess::watch_silence() noexcept {
   heard_ns_ = now_ns;
   controller_->on_silence();
   user_.publish(channels::kControllerStatus, controller_->status());
+}
+
+template <typename Request>
+void ControllerProcess::reply(const Request& request, const char* what,
+                              const char* reason) noexcept {
+  request_answer_t answer;
+  answer.time_ns = controller_->status().time_ns;
+  answer.client = request.client;
+  answer.seq = request.seq;
+  answer.accepted = reason == nullptr ? 1 : 0;
+  answer.reason = reason == nullptr ? "" : reason;
+  user_.publish(channels::kRequestAnswer, answer);
+  complain(what, reason);
 }
 
 void ControllerProcess::complain(const char* what, const char* reason) noexcept {

@@ -32,6 +32,9 @@ class ControllerProcess {
   void answer(const joint_state_t& state) noexcept;
   void handle_waiting() noexcept;
   void watch_silence() noexcept;
+  /// Tells the user what became of a request, and the log if it was refused.
+  template <typename Request>
+  void reply(const Request& request, const char* what, const char* reason) noexcept;
   void complain(const char* what, const char* reason) noexcept;
 
   ArmController* controller_;

@@ -26,7 +26,7 @@ void TorqueCycle::describe(controller_status_t* status) noexcept {
   status->limits = limits_active_;
   status->kinetic_energy_J = terms_.kinetic_energy(state_.v);
   status->spring_energy_J = law_.spring_energy_J;
-  const LawSettings& settings = active_.settings;
+  const LawSettings& settings = gains_.now().settings;
   for (std::size_t i = 0; i < kTerms; ++i) {
     status->term_period_cycles[i] = static_cast<std::int16_t>(settings.period_cycles[i]);
   }

@@ -44,6 +44,8 @@ MomentumObserver momentum_observer(int joints, double gain, double T) {
 Estimation::Estimation(const LoadedRobot& robot)
     : joints_(robot.robot.size()),
       T_(1.0 / robot.robot.rate_hz),
+      q_(VectorJ::Zero(joints_)),
+      v_(q_),
       position_noise_(rounding_noise(robot.robot)),
       friction_(friction_model(robot.robot)),
       filtered_difference_(joints_, settings_.velocity_cutoff_rad_per_s, T_),
@@ -55,44 +57,76 @@ Estimation::Estimation(const LoadedRobot& robot)
   if (robot.robot.has_tip_sensor) tip_force_.emplace(robot.robot);
 }
 
+void Estimation::make_velocity_estimators() noexcept {
+  const double acceleration = settings_.velocity_acceleration_rad_per_s2;
+  filtered_difference_ = {joints_, settings_.velocity_cutoff_rad_per_s, T_};
+  alpha_beta_ = {joints_, {acceleration, position_noise_, T_}, T_};
+  levant_ = {joints_, acceleration, T_};
+  if (!started_) return;
+  filtered_difference_.start(q_, v_);
+  alpha_beta_.start(q_, v_);
+  levant_.start(q_, v_);
+}
+
+void Estimation::make_contact_observers() noexcept {
+  // Beyond 1 / T the sampled observer would ring.
+  momentum_ = momentum_observer(joints_, std::min(settings_.observer_gain_per_s, 1.0 / T_), T_);
+  estimates_.tau_ext.setZero();
+  estimates_.F_ext.setZero();
+}
+
 void Estimation::set(const LawSettings& settings) noexcept {
   const LawSettings before = settings_;
   settings_ = settings;
-  const double acceleration = settings.velocity_acceleration_rad_per_s2;
   if (settings.velocity != before.velocity ||
       settings.velocity_cutoff_rad_per_s != before.velocity_cutoff_rad_per_s ||
-      acceleration != before.velocity_acceleration_rad_per_s2) {
-    filtered_difference_ = {joints_, settings.velocity_cutoff_rad_per_s, T_};
-    alpha_beta_ = {joints_, {acceleration, position_noise_, T_}, T_};
-    levant_ = {joints_, acceleration, T_};
+      settings.velocity_acceleration_rad_per_s2 != before.velocity_acceleration_rad_per_s2) {
+    make_velocity_estimators();
   }
   if (settings.contact != before.contact ||
       settings.observer_gain_per_s != before.observer_gain_per_s) {
-    // Beyond 1 / T the sampled observer would ring.
-    momentum_ = momentum_observer(joints_, std::min(settings.observer_gain_per_s, 1.0 / T_), T_);
-    estimates_ = Estimates(joints_);
+    make_contact_observers();
   }
   if (settings.acceleration_filter_s != before.acceleration_filter_s) {
-    tip_acceleration_ = {6, 1.0 / settings.acceleration_filter_s, T_};
+    tip_acceleration_.set_corner(1.0 / settings.acceleration_filter_s);
   }
   friction_.share =
       settings.friction == FrictionCompensation::kModel ? settings.friction_share : 0.0;
 }
 
+void Estimation::restart() noexcept {
+  started_ = false;
+  make_velocity_estimators();
+  make_contact_observers();
+  tip_acceleration_ = {6, 1.0 / settings_.acceleration_filter_s, T_};
+  estimates_.A_BT.setZero();
+}
+
+// The driver may run at another rate than robot.yaml's.
+void Estimation::set_period(double T) noexcept {
+  if (T == T_) return;
+  T_ = T;
+  restart();
+}
+
 void Estimation::estimate_velocity(ArmState* state) noexcept {
+  set_period(state->period_s);
   switch (settings_.velocity) {
     case VelocitySource::kDrive:
-      return;
+      break;
     case VelocitySource::kFilteredDifference:
       state->v = filtered_difference_.update(state->q);
-      return;
+      break;
     case VelocitySource::kAlphaBeta:
       state->v = alpha_beta_.update(state->q);
-      return;
+      break;
     case VelocitySource::kLevant:
       state->v = levant_.update(state->q);
-      return;
+      break;
   }
+  q_ = state->q;
+  v_ = state->v;
+  started_ = true;
 }
 
 void Estimation::observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,

@@ -22,8 +22,11 @@ class Estimation {
  public:
   explicit Estimation(const LoadedRobot& robot);
 
-  /// Takes new settings; observers that they change start over. In the cycle.
+  /// Takes new settings. A new velocity estimator goes on from the velocity there is, so that no
+  /// torque jumps; contact observers that change start over. In the cycle.
   void set(const LawSettings& settings) noexcept;
+  /// The next state does not follow on the last one: all observers start over. In the cycle.
+  void restart() noexcept;
 
   /// Puts the chosen estimate in the place of the drives' velocities. In the cycle, before the
   /// terms are evaluated.
@@ -37,11 +40,17 @@ class Estimation {
   const Estimates& estimates() const noexcept { return estimates_; }
 
  private:
+  void make_velocity_estimators() noexcept;
+  void make_contact_observers() noexcept;
+  void set_period(double T) noexcept;
   void observe_joint_torque(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
                             ArmModel* model) noexcept;
 
   int joints_;
-  double T_;
+  double T_;   // s
+  VectorJ q_;  // of the state before
+  VectorJ v_;
+  bool started_ = false;
   double position_noise_;  // rad
   LawSettings settings_;
   FrictionFeedforward friction_;

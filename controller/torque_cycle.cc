@@ -108,7 +108,7 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
   } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
     goals_.follow_tip(goal_.X_BD);
   }
-  passivity_.reset();
+  forget_energy();
   match_goals();
   refresh_gains();
   laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
@@ -186,25 +186,32 @@ void TorqueCycle::refresh_gains() noexcept {
 void TorqueCycle::draw_from_tank() noexcept {
   const PoseError error = pose_error(terms_.X_BT, goal_.X_BD, active_.settings.orientation);
   const Vector6 V = terms_.V_BT - goal_.V_BD;
-  const double dissipated = -law_.tau_damping.dot(state_.v);
   // As a matrix that dissipates just that along V.
-  const double along = V.squaredNorm();
-  const Matrix6 D = std::max(dissipated, 0.0) / std::max(along, kSlowest) * Matrix6::Identity();
+  const Matrix6 D = dissipated_W_ / std::max(V.squaredNorm(), kSlowest) * Matrix6::Identity();
+  dissipated_W_ = 0.0;  // counts once
   active_.K_x = tank_.update(active_.K_x, D, error.e, V, state_.period_s);
 }
 
-// Energy of spring and damper against the goal; the feed-forward wrench is the user's own.
+void TorqueCycle::forget_energy() noexcept {
+  passivity_.reset();
+  F_on_its_way_.setZero();
+  dissipated_W_ = 0.0;
+}
+
+// Energy of spring and damper against the goal; the feed-forward wrench is the user's own. What was
+// computed in the cycle before acts from now on.
 void TorqueCycle::keep_passive() noexcept {
   if (entry().follows != Follows::kPoseGoal) {
     passivity_.reset();
     return;
   }
   passivity_.observe(terms_.X_BT.p - goal_.X_BD.p);
+  passivity_.hold(F_on_its_way_);
   const Eigen::Vector3d V = (terms_.V_BT - goal_.V_BD).head<3>();
   const Eigen::Vector3d F_added = -passivity_.damping(V, state_.period_s) * V;
   law_.tau_damping += terms_.J.topRows<3>().transpose() * F_added;
   law_.F.head<3>() += F_added;
-  passivity_.hold((law_.F - goal_.F_ff).head<3>());
+  F_on_its_way_ = (law_.F - goal_.F_ff).head<3>();
 }
 
 VectorJ TorqueCycle::friction() const noexcept {
@@ -230,6 +237,7 @@ bool TorqueCycle::control(double dt_s) noexcept {
   const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
   laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
+  dissipated_W_ = std::max(-law_.tau_damping.dot(state_.v), 0.0);
   keep_passive();
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
@@ -257,7 +265,9 @@ VectorJ TorqueCycle::null_space() noexcept {
 void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {
   VectorJ tau = target;
   goals_.reset(terms_.X_BT, state_.q);
+  goal_ = goals_.goal();
   law_.reset();
+  forget_energy();
   tau_null_.setZero();
   tau_gravity_ = gravity_;
   tau_coriolis_.setZero();

@@ -32,6 +32,8 @@ class TorqueCycle {
 
   /// The state of this cycle, judged usable, and the terms that follow from it.
   void measure(const joint_state_t& message) noexcept;
+  /// The next state does not follow on the last one: nothing estimated from the past is left.
+  void restart() noexcept { estimation_.restart(); }
 
   /// Runs joint_pd, or the selected law, around the place where the arm is. The torque
   /// continues from the last one and fades over to the law (TorqueBlend).
@@ -66,6 +68,7 @@ class TorqueCycle {
   void refresh_gains() noexcept;
   void draw_from_tank() noexcept;
   void keep_passive() noexcept;
+  void forget_energy() noexcept;
   VectorJ friction() const noexcept;
   VectorJ null_space() noexcept;
   void describe_tip(controller_status_t* status) const noexcept;
@@ -91,6 +94,8 @@ class TorqueCycle {
   Estimation estimation_;
   EnergyTank tank_;
   PassivityObserver<Eigen::Vector3d> passivity_;
+  Eigen::Vector3d F_on_its_way_ = Eigen::Vector3d::Zero();
+  double dissipated_W_ = 0.0;  // by the law's damper in the cycle before
   TaskRows rows_;
   std::int64_t cycles_ = 0;
   TorqueBlend blend_;

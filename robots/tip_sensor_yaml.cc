@@ -14,6 +14,9 @@ namespace {
 constexpr double kMostForce_N = 1e5;
 constexpr double kMostTorque_Nm = 1e4;
 constexpr int kMostId = 0x7FE;  // 0x7FF is Damiao's register identifier
+// A moteus drive takes every frame to itself whose identifier ends in its node number.
+constexpr std::uint32_t kMoteusNode = 0x7F;
+constexpr std::uint32_t kMoteusEverybody = 0x7F;
 
 /// `name: {force_N: ..., torque_Nm: ...}`, one number each or three.
 SixAxes read_axes(const YamlMap& yaml, double least_N, double least_Nm) {
@@ -100,6 +103,12 @@ void check_free(const YamlMap& yaml, const std::string& key, std::uint32_t id, c
     if (joint.drive.bus != bus) continue;
     if (joint.drive.command_id == id || joint.drive.reply_id == id)
       yaml.refuse(key, fmt::format("{} is taken by {} on the same bus", id, joint.name));
+    if (joint.drive.protocol != DriveProtocol::kMoteus) continue;
+    const std::uint32_t node = id & kMoteusNode;
+    if (node == (joint.drive.command_id & kMoteusNode) || node == kMoteusEverybody)
+      yaml.refuse(key, fmt::format("{} has the low seven bits {}, to which {} on the same bus "
+                                   "listens",
+                                   id, node, joint.name));
   }
 }
 

@@ -7,7 +7,8 @@
 namespace limber {
 
 /// Fills robot->tip_sensor from the section `yaml`; buses and drives of the robot are known.
-/// Identifiers must be free on their bus; robotous_rft needs a classic bus (its nodes would answer
+/// Identifiers must be free on their bus, and with moteus drives their low seven bits no node
+/// number there; robotous_rft needs a classic bus (its nodes would answer
 /// FD frames with error frames), limber_ft an FD one. Throws ConfigError. Set-up only.
 void read_tip_sensor(const YamlMap& yaml, Robot* robot);
 

@@ -26,6 +26,12 @@ void AlphaBeta::reset() noexcept {
   v_.setZero();
 }
 
+void AlphaBeta::start(const VectorJ& x, const VectorJ& v) noexcept {
+  x_ = x;
+  v_ = v;
+  started_ = true;
+}
+
 const VectorJ& AlphaBeta::update(const VectorJ& z) noexcept {
   const bool usable = z.allFinite();
   if (!started_) {

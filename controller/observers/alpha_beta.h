@@ -26,6 +26,8 @@ class AlphaBeta {
 
   /// The next sample is the first. May be called in the cycle.
   void reset() noexcept;
+  /// The last sample was x, moving at v: an estimate that goes on. May be called in the cycle.
+  void start(const VectorJ& x, const VectorJ& v) noexcept;
   /// z: measured position, n. Returns v. May be called in the cycle.
   const VectorJ& update(const VectorJ& z) noexcept;
 

@@ -24,10 +24,20 @@ class FilteredDifference {
         x_(Vector::Zero(size)),
         v_(Vector::Zero(size)) {}
 
+  /// Another corner for the estimate that goes on. May be called in the cycle.
+  void set_corner(double corner_rad_per_s) noexcept { pole_ = std::exp(-corner_rad_per_s * T_); }
+
   /// The next sample is the first. May be called in the cycle.
   void reset() noexcept {
     started_ = false;
     v_.setZero();
+  }
+
+  /// The last sample was x, moving at v: an estimate that goes on. May be called in the cycle.
+  void start(const Vector& x, const Vector& v) noexcept {
+    x_ = x;
+    v_ = v;
+    started_ = true;
   }
 
   /// May be called in the cycle.

@@ -17,6 +17,12 @@ void LevantDifferentiator::reset() noexcept {
   z1_.setZero();
 }
 
+void LevantDifferentiator::start(const VectorJ& x, const VectorJ& v) noexcept {
+  z0_ = x;
+  z1_ = v;
+  started_ = true;
+}
+
 const VectorJ& LevantDifferentiator::update(const VectorJ& x) noexcept {
   if (!x.allFinite()) return z1_;
   if (!started_) {

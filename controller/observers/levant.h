@@ -17,6 +17,8 @@ class LevantDifferentiator {
 
   /// The next sample is the first. May be called in the cycle.
   void reset() noexcept;
+  /// The last sample was x, moving at v: an estimate that goes on. May be called in the cycle.
+  void start(const VectorJ& x, const VectorJ& v) noexcept;
   /// x: measured position, n. Returns the velocity. May be called in the cycle.
   const VectorJ& update(const VectorJ& x) noexcept;
 

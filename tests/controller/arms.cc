@@ -58,6 +58,16 @@ LoadedRobot planar_arm(const PlanarParameters& p) {
   return robot;
 }
 
+LoadedRobot slider() {
+  constexpr double kRotor = 0.01;
+  KDL::Chain chain;
+  chain.addSegment(KDL::Segment(joint(KDL::Joint::TransX), KDL::Frame::Identity(),
+                                inertia(kSliderMass - kRotor, KDL::Vector::Zero(), 1, 1, 1)));
+  LoadedRobot robot = with_drives(chain, Eigen::Vector3d::Zero());
+  robot.robot.joints[0].drive.rotor_inertia_kgm2 = kRotor;
+  return robot;
+}
+
 LoadedRobot seven_joint_arm() {
   const KDL::Joint::JointType axes[] = {KDL::Joint::RotZ, KDL::Joint::RotX, KDL::Joint::RotZ,
                                         KDL::Joint::RotY, KDL::Joint::RotZ, KDL::Joint::RotX,

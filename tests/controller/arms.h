@@ -20,6 +20,10 @@ inline constexpr PlanarParameters kDesktop{0.35,  0.3,  0.175, 0.15, 1.2,    0.8
 
 LoadedRobot planar_arm(const PlanarParameters& parameters);
 
+/// A mass on a rail along x without gravity: one prismatic joint, kSliderMass with the rotor's.
+LoadedRobot slider();
+inline constexpr double kSliderMass = 2.0;
+
 /// Seven joints like a human arm's, all axes different, no symmetric inertia.
 LoadedRobot seven_joint_arm();
 

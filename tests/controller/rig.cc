@@ -21,6 +21,7 @@ ArmControllerOptions options_for(const std::string& law, int bridged_cycles) {
 Rig::Rig(const LoadedRobot& given, const std::string& law, int bridged_cycles)
     : robot(given), controller(robot, options_for(law, bridged_cycles)), plant(robot) {
   const int n = robot.robot.size();
+  viscous = VectorJ::Zero(n);
   plant.q.setConstant(0.4);
   state.seq = -1;
   state.session = 11;
@@ -44,7 +45,9 @@ const joint_torque_t& Rig::step() {
     state.tau_applied[i] = state.tau[i] = sent[i];
   }
   if (on) {
-    plant.advance(1e-3, [&](const VectorJ&, const VectorJ&) { return sent; });
+    plant.advance(1e-3, [&](const VectorJ&, const VectorJ& v) {
+      return VectorJ(sent - viscous.cwiseProduct(v));
+    });
   } else {
     plant.v.setZero();
   }

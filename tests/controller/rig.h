@@ -37,6 +37,7 @@ class Rig {
   LoadedRobot robot;
   ArmController controller;
   Plant plant;
+  VectorJ viscous;  ///< friction of the plant's joints, N m s/rad; none unless set
   joint_state_t state{};
   joint_torque_t answer{};
 

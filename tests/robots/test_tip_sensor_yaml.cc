@@ -119,5 +119,35 @@ const Mutation kSlips[] = {
 INSTANTIATE_TEST_SUITE_P(Slips, TipSensorRefusal, ::testing::ValuesIn(kSlips),
                          testing::MutationName());
 
+// moteus nodes 3 and 12 on the bus: 0x103 and 0x18C end in them, 0x27F in everybody's number.
+class MoteusSensorRefusal : public ::testing::TestWithParam<Mutation> {};
+
+std::string beside_moteus() {
+  return testing::read_text(kData + "moteus/robot.yaml") +
+         "tip_sensor:\n  model: FT-2\n  protocol: limber_ft\n  bus: left\n  id: 100\n"
+         "  reply_id: 101\n  pose: {position_m: [0, 0, 0], rpy_rad: [0, 0, 0]}\n"
+         "  range: {force_N: 100, torque_Nm: 10}\n";
+}
+
+TEST(TipSensorYaml, LivesBesideMoteusDrives) {
+  const Folder good(beside_moteus());
+  EXPECT_EQ(load_robot(good.folder.path()).robot.tip_sensor.reply_ids[0], 101U);
+}
+
+TEST_P(MoteusSensorRefusal, NamesTheDriveThatListens) {
+  const testing::Mutated bad = testing::apply(beside_moteus(), GetParam());
+  const Folder folder(bad.text);
+  const std::string complaint = testing::complaint_of([&] { load_robot(folder.folder.path()); });
+  testing::expect_complaint(complaint, folder.file, bad.line, GetParam().expect);
+}
+
+const Mutation kListeners[] = {
+    {"Request", "id: 100", "id: 259", "259 has the low seven bits 3, to which turn"},
+    {"Reply", "reply_id: 101", "reply_id: 396", "396 has the low seven bits 12, to which roll"},
+    {"Everybody", "id: 100", "id: 639", "639 has the low seven bits 127, to which turn"},
+};
+INSTANTIATE_TEST_SUITE_P(Moteus, MoteusSensorRefusal, ::testing::ValuesIn(kListeners),
+                         testing::MutationName());
+
 }  // namespace
 }  // namespace limber

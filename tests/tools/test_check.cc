@@ -111,6 +111,42 @@ TEST(Check, RefusesALawThatDoesNotExist) {
       << outcome.output;
 }
 
+TEST(Check, TellsOfATipSensor) {
+  const testing::TemporaryFolder folder;
+  folder.write("robot.urdf", testing::read_text(kUrdf));
+  folder.write("robot.yaml", testing::read_text(kArm + "/robot.yaml") +
+                                 testing::read_text(kArm + "/../tip_sensor.yaml"));
+  EXPECT_TRUE(
+      contains(check("robot " + folder.path()).output, "tip sensor: FT-1 on right, id 100"));
+  EXPECT_TRUE(contains(check("robot " + folder.path() + " --json").output,
+                       "\"tip_sensor\": {\"model\": \"FT-1\", \"bus\": \"right\", \"id\": 100, "
+                       "\"reply_ids\": [5, 6], \"range_N_Nm\": [200, 200, 300, 10, 10, 10]"));
+  EXPECT_TRUE(contains(check("robot " + kArm + " --json").output, "\"tip_sensor\": null"));
+}
+
+std::string gains_scenario(const std::string& gains) {
+  return "format: limber-scenario/1\nrobot: openarm\nduration_s: 2\ntimeline:\n"
+         "  - {at_s: 0.5, gains: {" +
+         gains + "}}\n";
+}
+
+TEST(Check, SaysHowStiffTheGainsAre) {
+  const testing::TemporaryFolder folder;
+  const auto outcome_of = [&](const std::string& gains) {
+    return check("scenario " + folder.write("s.yaml", gains_scenario(gains)));
+  };
+  const Outcome soft = outcome_of("K_x_translation_N_per_m: 300");
+  EXPECT_EQ(soft.status, 0);
+  EXPECT_TRUE(contains(soft.output, "% of the stiffest: ok")) << soft.output;
+  EXPECT_FALSE(contains(soft.output, "warning")) << soft.output;
+  const Outcome stiff = outcome_of("K_x_translation_N_per_m: 100000, damping_ratio: 0.05");
+  EXPECT_EQ(stiff.status, 0) << "a warning is no error";
+  EXPECT_TRUE(contains(stiff.output, "warning: gains at 0.5 s: K_x is")) << stiff.output;
+  const Outcome undamped = outcome_of("damping_ratio: 0");
+  EXPECT_TRUE(contains(undamped.output, "K_x is unstable with this damping, however soft"))
+      << undamped.output;
+}
+
 TEST(Check, SpeaksJson) {
   for (const std::string& arguments :
        {std::string("robot openarm"), "urdf " + kUrdf + " --base world --tip hand",

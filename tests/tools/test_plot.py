@@ -57,6 +57,22 @@ def test_charts_hold_the_logs_numbers(log):
     np.testing.assert_array_equal(drawn(counted, "late cycles"), [0, 1, 1, 3])
 
 
+def test_contact_only_where_there_is_a_source(log, tmp_path):
+    silent = charts.build(log, "torque")
+    assert not any("contact" in chart.title for chart in silent)
+    assert all("ext" not in chart.series for chart in silent)
+    status = records("controller_status_t", COUNT, num_joints=7, contact=1)
+    status["time_ns"] = np.arange(COUNT) * 1_000_000
+    status["F_ext"][:, 1], status["F_ext"][:, 5] = 3.5, -0.25
+    status["tau_ext"][:, 4] = 1.5
+    touched = Log(write_log(tmp_path / "run.lcmlog", {"CONTROLLER_STATUS": status}))
+    force, torque, *joints = charts.build(touched, "torque")
+    assert (force.unit, torque.unit) == ("N", "N m")
+    np.testing.assert_allclose(drawn(force, "y"), 3.5)
+    np.testing.assert_allclose(drawn(torque, "z"), -0.25)
+    np.testing.assert_allclose(drawn(joints[4], "ext"), 1.5)
+
+
 @pytest.mark.parametrize("topic", charts.TOPICS)
 def test_every_axis_has_name_and_unit(log, topic):
     built = charts.build(log, topic)

@@ -65,6 +65,25 @@ def test_tells_mode_law_drives_joints():
     assert "STALE: no" not in text
 
 
+def test_only_settings_that_are_not_default():
+    text = text_of(listening())
+    assert "contact" not in text and "cycles" not in text
+
+
+def test_contact_settings_and_energies():
+    listener = listening()
+    status = records("controller_status_t", 1, mode=4, law=2, num_joints=2, contact=2)[0]
+    status["quat_BT"][0] = status["quat_BD"][0] = 1
+    status["F_ext"] = 4.26, -1.5, 0, 0.31, 0, -0.22
+    status["term_period_cycles"] = 1, 4, 1, 1, 25
+    status["tank_energy_J"], status["passivity_energy_J"] = 0.125, -0.031
+    listener.hear("CONTROLLER_STATUS", status)
+    text = text_of(listener)
+    assert "joint torque" in text and "M 4, D 25 cycles" in text
+    assert "+4.3" in text and "-1.5" in text and "+0.31" in text and "-0.22" in text
+    assert "+0.125" in text and "-0.031" in text
+
+
 def test_bar_shows_where_between_the_limits():
     line = next(line for line in text_of(listening()).splitlines() if "shoulder" in line)
     bar = line[line.index("─") : line.rindex("─") + 1]

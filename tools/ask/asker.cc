@@ -13,9 +13,8 @@
 namespace limber {
 namespace {
 
-constexpr std::int64_t kFirstStatus_ns = 1'000'000'000;
-constexpr std::int64_t kAnswer_ns = 500'000'000;
-constexpr int kStatusQueue = 16;
+constexpr std::int64_t kAnswer_ns = 1'000'000'000;
+constexpr int kAnswerQueue = 16;
 
 template <typename... Handlers>
 struct Overloaded : Handlers... {
@@ -37,20 +36,22 @@ Asker::Asker(const LoadedRobot& robot, std::int64_t client)
     : robot_(robot),
       client_(client),
       context_{robot_, 0.0, default_gains(robot.robot)},
-      port_(user_plane_url()) {
-  port_.subscribe<controller_status_t>(
-      channels::kControllerStatus, kStatusQueue,
-      [this](const controller_status_t& status) { status_ = status; });
+      port_(user_plane_url()),
+      seq_(monotonic_ns()) {  // those of an asker before this one are smaller
+  port_.subscribe<request_answer_t>(channels::kRequestAnswer, kAnswerQueue,
+                                    [this](const request_answer_t& answer) {
+                                      if (answer.client == client_ && answer.seq == seq_)
+                                        answer_ = answer;
+                                    });
 }
 
-bool Asker::wait_for_status(std::int64_t timeout_ns) {
-  const std::int64_t end_ns = monotonic_ns() + timeout_ns;
+bool Asker::wait_for_answer() {
+  const std::int64_t end_ns = monotonic_ns() + kAnswer_ns;
   const std::array descriptors{port_.descriptor()};
-  status_.reset();
-  while (!status_ && monotonic_ns() < end_ns) {
+  while (!answer_ && monotonic_ns() < end_ns) {
     if (wait_readable(descriptors, end_ns)) port_.handle_waiting();
   }
-  return status_.has_value();
+  return answer_.has_value();
 }
 
 void Asker::ask(const std::string& entry) {
@@ -58,25 +59,20 @@ void Asker::ask(const std::string& entry) {
   const TimedMessage timed = read_entry(yaml, &context_);
   const bool to_controller = !std::holds_alternative<push_t>(timed.message) &&
                              !std::holds_alternative<scenario_event_t>(timed.message);
-  if (!to_controller) {
-    send(timed.message);
-    return;
-  }
-  if (!wait_for_status(kFirstStatus_ns)) throw ConfigError("no controller is heard");
-  const std::int64_t refused = status_->requests_refused;
+  answer_.reset();
   send(timed.message);
-  // The first status may have been on its way already.
-  if (!wait_for_status(kAnswer_ns) || !wait_for_status(kAnswer_ns)) {
-    throw ConfigError("the controller has fallen silent");
-  }
-  if (status_->requests_refused > refused) {
-    throw ConfigError("refused by the controller; its output says why");
+  if (!to_controller) return;
+  if (!wait_for_answer()) throw ConfigError("no controller answers");
+  if (answer_->accepted == 0) {
+    throw ConfigError("refused by the controller: " + answer_->reason);
   }
 }
 
 void Asker::send(const ScenarioMessage& message) {
+  ++seq_;
   const auto publish = [this](const char* channel, auto copy) {
     copy.time_ns = monotonic_ns();
+    if constexpr (requires { copy.seq; }) copy.seq = seq_;
     if constexpr (requires { copy.client; }) copy.client = client_;
     if (!port_.publish(channel, copy)) throw ConfigError("the message could not be sent");
   };

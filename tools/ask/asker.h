@@ -1,7 +1,8 @@
 // Sends entries of a scenario to a running stack and tells what became of them.
 #pragma once
 
-#include <limber/controller_status_t.hpp>
+#include <cstdint>
+#include <limber/request_answer_t.hpp>
 #include <optional>
 #include <string>
 
@@ -17,20 +18,21 @@ class Asker {
   /// Throws ConfigError if there is no multicast route.
   Asker(const LoadedRobot& robot, std::int64_t client);
 
-  /// Sends one entry, such as `gains: {law: salisbury}`, and waits for the controller's next status
-  /// (for a push, wall, payload or fault, which the simulator takes, for nothing). Throws
-  /// ConfigError if the entry is wrong, no controller answers, or it refuses.
+  /// Sends one entry, such as `gains: {law: salisbury}`, and waits for the controller's answer (for
+  /// a push, wall, payload or fault, which the simulator takes, for nothing). Throws ConfigError if
+  /// the entry is wrong, no controller answers, or it refuses, with its reason.
   void ask(const std::string& entry);
 
  private:
   void send(const ScenarioMessage& message);
-  bool wait_for_status(std::int64_t timeout_ns);
+  bool wait_for_answer();
 
   const LoadedRobot& robot_;
   std::int64_t client_;
   EntryContext context_;
   LcmPort port_;
-  std::optional<controller_status_t> status_;
+  std::int64_t seq_ = 0;
+  std::optional<request_answer_t> answer_;
 };
 
 }  // namespace limber

@@ -37,6 +37,19 @@ std::string tip_sensor_text(const Robot& robot) {
       sensor.range[2], sensor.range[5], sensor.tool_mass_kg);
 }
 
+std::string tip_sensor_json(const Robot& robot) {
+  if (!robot.has_tip_sensor) return "null";
+  const TipSensorConfig& sensor = robot.tip_sensor;
+  std::vector<double> replies(sensor.reply_ids.begin(),
+                              sensor.reply_ids.begin() + sensor.replies());
+  return json::object({{"model", json::text(sensor.model)},
+                       {"bus", json::text(robot.buses[static_cast<std::size_t>(sensor.bus)].name)},
+                       {"id", json::number(sensor.command_id)},
+                       {"reply_ids", json::numbers(replies)},
+                       {"range_N_Nm", json::numbers({sensor.range.begin(), sensor.range.end()})},
+                       {"tool_mass_kg", json::number(sensor.tool_mass_kg)}});
+}
+
 std::string joint_table(const Robot& robot, const ArmReport& report) {
   std::string table =
       fmt::format("  {:<14} {:<10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9}", "joint", "type",
@@ -142,6 +155,7 @@ std::string arm_json(const LoadedRobot& robot, const ArmReport& report) {
               {"home_quat_BT", json::numbers(report.home_quat_BT)},
               {"joints", json::list(joints)},
               {"buses", json::list(buses)},
+              {"tip_sensor", tip_sensor_json(arm)},
               {"warnings", json::texts(report.warnings)},
               {"notes", json::texts(robot.notes)}}) +
          "\n";

@@ -4,6 +4,7 @@
 
 #include "tools/check/json.h"
 #include "tools/check/print.h"
+#include "tools/check/stiffness_report.h"
 
 namespace limber {
 namespace {
@@ -26,7 +27,7 @@ std::string describe(const compliance_gains_t& gains) {
 }
 
 std::string describe(const compliance_goal_t& goal) {
-  const char* const names[] = {"pose", "joints", "offset", "wrench"};
+  const char* const names[] = {"pose", "joints", "offset", "wrench", "circle"};
   return fmt::format("goal: {} within {:g} s", names[goal.kind], goal.duration_s);
 }
 
@@ -76,6 +77,11 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
     text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
                         describe(timed));
   }
+  if (!robot.robot.has_drives) return text;
+  const auto reports = make_stiffness_reports(scenario, robot);
+  text += stiffness_text(reports, robot.robot.rate_hz);
+  for (const std::string& warning : stiffness_warnings(reports, robot.robot.rate_hz))
+    text += "  warning: " + warning + "\n";
   return text;
 }
 
@@ -86,6 +92,8 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
         json::object({{"at_s", json::number(static_cast<double>(timed.time_ns) * 1e-9)},
                       {"what", json::text(describe(timed))}}));
   }
+  std::vector<StiffnessReport> reports;
+  if (robot.robot.has_drives) reports = make_stiffness_reports(scenario, robot);
   return json::object({{"ok", "true"},
                        {"name", json::text(scenario.name)},
                        {"robot", json::text(robot.robot.name)},
@@ -97,6 +105,8 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
                        {"seed", fmt::format("{}", scenario.seed)},
                        {"start_q", json::numbers(scenario.start_q)},
                        {"timeline", json::list(timeline)},
+                       {"stiffness", stiffness_json(reports)},
+                       {"warnings", json::texts(stiffness_warnings(reports, robot.robot.rate_hz))},
                        {"notes", json::texts(robot.notes)}}) +
          "\n";
 }

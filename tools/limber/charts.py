@@ -101,11 +101,22 @@ def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
     return [*charts, Chart("energy", "J", t, energy)]
 
 
+def _contact_charts(status: np.ndarray) -> list[Chart]:
+    t, F_ext, axes = time_s(status), status["F_ext"], list(AXES)
+    return [
+        Chart("contact force at the tip (controller)", "N", t, _columns(F_ext[:, :3], axes)),
+        Chart("contact torque at the tip (controller)", "N m", t, _columns(F_ext[:, 3:], axes)),
+    ]
+
+
 def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
-    """The terms of every joint's torque; one chart a joint."""
+    """The terms of every joint's torque; one chart a joint. Contact, if it has a source."""
     status = log.read("CONTROLLER_STATUS")
-    terms = ("stiffness", "damping", "null", "gravity", "coriolis", "sent")
+    terms = ["stiffness", "damping", "null", "gravity", "coriolis", "friction", "sent"]
     charts = []
+    if status["contact"].any():
+        terms.append("ext")
+        charts = _contact_charts(status)
     for i, label in enumerate(_labels(_joint_count(status), names)):
         series = {term: status[f"tau_{term}"][:, i] for term in terms}
         charts.append(Chart(f"torque of {label}", "N m", time_s(status), series))

@@ -8,11 +8,13 @@
         arm.goal(offset_m=[0, 0, 0.05], duration_s=2)
 
 The words are those of a scenario's timeline (scenarios/README.md), read and checked by the same
-code. A call returns when the controller has taken the request, and raises `Refused` if it has not.
+code. A call returns when the controller has taken the request, and raises `RefusedError` if it has
+not.
 """
 
 import json
 import subprocess
+from contextlib import suppress
 from types import TracebackType
 from typing import Any
 
@@ -20,16 +22,20 @@ from limber.errors import RunError
 from limber.paths import program
 
 
-class Refused(RunError):
+class RefusedError(RunError):
     """The request was wrong, nobody was there to take it, or the controller would not."""
 
 
 class Client:
-    """One lease on the arm; gains build on each other, the first on robot.yaml."""
+    """One lease on the arm; gains build on each other, the first on robot.yaml.
 
-    def __init__(self, robot: str = "openarm") -> None:
+    `client` is the lease's number; without one it is that of `limber ask`.
+    """
+
+    def __init__(self, robot: str = "openarm", client: int | None = None) -> None:
+        lease = [] if client is None else ["--client", str(client)]
         self._process = subprocess.Popen(
-            [str(program("limber-ask")), "--robot", robot],
+            [str(program("limber-ask")), "--robot", robot, *lease],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -60,16 +66,14 @@ class Client:
         except BrokenPipeError:
             answer = ""
         if answer != "ok":
-            raise Refused(answer.removeprefix("error: ") or "limber-ask ended")
+            raise RefusedError(answer.removeprefix("error: ") or "limber-ask ended")
 
     def close(self) -> None:
         """Gives the lease back and ends."""
         if self._process.poll() is not None:
             return
-        try:
+        with suppress(RefusedError):  # somebody else has it, or nobody is there
             self.mode("release")
-        except Refused:
-            pass  # somebody else has it, or nobody is there
         self._process.communicate()
 
     def __enter__(self) -> "Client":

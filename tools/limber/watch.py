@@ -29,6 +29,20 @@ def law_names() -> list[str]:
     return [line.split()[0] for line in lines if line.strip()]
 
 
+def _settings(status: np.void) -> dict[str, str]:
+    """What the status says of the law's settings, where they are not the default."""
+    settings = {}
+    if status["contact"]:
+        sources = messages.constants("compliance_gains_t", "CONTACT_")
+        settings["contact"] = sources[int(status["contact"])].lower().replace("_", " ")
+    terms = messages.constants("compliance_gains_t", "PERIOD_")
+    held = {terms[i]: int(cycles) for i, cycles in enumerate(status["term_period_cycles"])}
+    periods = [f"{term} {cycles}" for term, cycles in held.items() if cycles > 1]
+    if periods:
+        settings["periods"] = ", ".join(periods) + " cycles"
+    return settings
+
+
 class View:
     """Draws what the listener knows; the joints give names, and the position bars their ends."""
 
@@ -67,6 +81,8 @@ class View:
             if reason != "NONE":
                 table.add_row("because", Text(reason, style=BAD))
             table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
+            for name, setting in _settings(status).items():
+                table.add_row(name, setting)
         if state is None or self._stale("JOINT_STATE"):
             table.add_row("drives", Text("STALE: no driver", style=BAD))
         if state is not None:
@@ -90,7 +106,11 @@ class View:
         table.add_row("away", *(f"{v:+.2f}" for v in away), "mm")
         table.add_row("turned", *(f"{v:+.2f}" for v in np.degrees(turned)), "°")
         table.add_row("force", *(f"{v:+.1f}" for v in status["F_law"][:3]), "N")
-        table.add_row("spring", f"{float(status['spring_energy_J']):.3f}", "", "", "J")
+        if status["contact"]:
+            table.add_row("contact", *(f"{v:+.1f}" for v in status["F_ext"][:3]), "N")
+            table.add_row("", *(f"{v:+.2f}" for v in status["F_ext"][3:]), "N m")
+        for energy in ("spring", "tank", "passivity"):
+            table.add_row(energy, f"{float(status[f'{energy}_energy_J']):+.3f}", "", "", "J")
         return table
 
     def _joint_name(self, index: int) -> str:

@@ -1,0 +1,81 @@
+// What the loop's sampling and its one cycle of delay do to an undamped spring is seen and taken
+// back.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/controller/rig.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::kSliderMass;
+using limber::testing::Rig;
+using Gains = compliance_gains_t;
+
+constexpr double kK = 500.0;
+constexpr double kT = 1e-3;
+
+// A slider on an undamped spring, pulled 4 cm away and let go.
+struct Undamped {
+  explicit Undamped(double passivity_damping) : rig(limber::testing::slider()) {
+    rig.to_active();
+    Gains gains = rig.gains();
+    for (auto& row : gains.K_x) std::fill(std::begin(row), std::end(row), 0.0);
+    gains.K_x[0][0] = kK;
+    gains.damping = Gains::DAMPING_GIVEN;
+    for (auto& row : gains.D_x) std::fill(std::begin(row), std::end(row), 0.0F);
+    gains.D_x[0][0] = 100.0F;
+    EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+    rig.plant.F_ext[0] = 0.04 * kK;
+    rig.run(3.0);
+    gains.D_x[0][0] = 0.0F;
+    gains.passivity_damping_Ns_per_m = static_cast<float>(passivity_damping);
+    EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+    rig.run(1.0);  // the gains' ramp is over
+    rig.plant.F_ext[0] = 0.0;
+    rig.step();
+    x_0 = rig.controller.status().p_BD[0];
+  }
+  double energy_J() const {
+    const double x = rig.plant.q[0] - x_0;
+    return 0.5 * kSliderMass * rig.plant.v[0] * rig.plant.v[0] + 0.5 * kK * x * x;
+  }
+
+  Rig rig;
+  double x_0 = 0.0;
+};
+
+// A spring that is held for T after a delay t_d makes K (T/2 + t_d) times the integral of v^2:
+// pi K (T/2 + t_d) a^2 w a cycle (Colgate, Schenkel 1997). The chain's delay is one cycle.
+TEST(PassivityInCycle, SeesTheEnergyThatSamplingMakes) {
+  Undamped loop(0.0);
+  const double start = loop.energy_J();
+  const double seen_before = loop.rig.controller.status().passivity_energy_J;
+  double v2 = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    loop.rig.step();
+    v2 += kT * loop.rig.plant.v[0] * loop.rig.plant.v[0];
+  }
+  const double made = kK * 1.5 * kT * v2;
+  const double seen = loop.rig.controller.status().passivity_energy_J - seen_before;
+  EXPECT_NEAR(seen, -made, 0.02 * made);
+  EXPECT_NEAR(loop.energy_J() - start, made, 0.02 * made) << "and the mass has it";
+  EXPECT_GT(made, start) << "it has more than doubled";
+}
+
+TEST(PassivityInCycle, DampingKeepsTheAmplitude) {
+  Undamped loop(60.0);
+  const double start = loop.energy_J();
+  double most = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    loop.rig.step();
+    most = std::max(most, loop.energy_J());
+  }
+  EXPECT_LT(most, 1.03 * start);
+  EXPECT_GT(most, 0.5 * start) << "and no more damping than it takes";
+}
+
+}  // namespace
+}  // namespace limber
