@@ -54,6 +54,13 @@ void check_inertia(const XMLElement& inertia, const std::string& where, Complain
   }
 }
 
+// Exporters write the links that are mere frames so.
+bool is_nothing(const XMLElement& mass, const XMLElement& inertia) {
+  const auto value = attribute_numbers(mass, "value");
+  const auto tensor = read_tensor(inertia);
+  return value.size() == 1 && value[0] == 0.0 && tensor && tensor->isZero(0.0);
+}
+
 }  // namespace
 
 void check_urdf_inertial(const XMLElement& inertial, const std::string& where,
@@ -67,6 +74,7 @@ void check_urdf_inertial(const XMLElement& inertial, const std::string& where,
                                 "link without mass",
                                 name));
   }
+  if (mass != nullptr && inertia != nullptr && is_nothing(*mass, *inertia)) return;
   if (mass != nullptr) check_mass(*mass, where, complaints);
   if (inertia != nullptr) check_inertia(*inertia, where, complaints);
 }

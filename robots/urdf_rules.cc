@@ -61,8 +61,9 @@ constexpr NumberRule kNumberRules[] = {
 
 /// Elements whose attributes are all in the table: another name there is a slip that would be
 /// ignored.
-constexpr const char* kClosedElements[] = {"origin", "mass",  "inertia",
-                                           "axis",   "limit", "dynamics"};
+constexpr const char* kClosedElements[] = {"origin", "mass", "inertia", "axis", "limit"};
+/// Simulators keep figures of their own here, as "mu_viscous"; what is close to ours is a slip.
+constexpr const char* kSharedElement = "dynamics";
 /// Elements that may stand only once in their parent: the library reads the first.
 constexpr const char* kSingleElements[] = {"origin", "mass",  "inertia",  "axis",  "limit",
                                            "parent", "child", "inertial", "mimic", "dynamics"};
@@ -113,13 +114,15 @@ void check_number(const XMLElement& element, const NumberRule& rule, const std::
 
 void check_attribute_names(const XMLElement& element, const std::string& where,
                            Complaints* complaints) {
-  if (!is_one_of(element.Name(), kClosedElements)) return;
+  const bool shared = std::strcmp(element.Name(), kSharedElement) == 0;
+  if (!shared && !is_one_of(element.Name(), kClosedElements)) return;
   std::vector<std::string> allowed;
   for (const NumberRule& rule : kNumberRules) {
     if (std::strcmp(rule.element, element.Name()) == 0) allowed.push_back(rule.attribute);
   }
   for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
     if (std::find(allowed.begin(), allowed.end(), attribute->Name()) != allowed.end()) continue;
+    if (shared && nearest_word(attribute->Name(), allowed).empty()) continue;
     complaints->add(attribute->GetLineNum(), where,
                     fmt::format("<{}>: unknown attribute '{}'; allowed here: {}", element.Name(),
                                 attribute->Name(), joined(allowed)));

@@ -55,7 +55,8 @@ def scenario(mode: str) -> dict[str, Any]:
         "orientation": mode,
         "K_x_translation_N_per_m": K,
         "K_x_rotation_Nm_per_rad": K_TURN,
-        "spring_moment_Nm": 100.0,
+        "spring_force_N": 1000.0,
+        "spring_moment_Nm": 1000.0,
     }
     return {
         "robot": "ideal7",
@@ -112,7 +113,7 @@ def draw_forces(ax: Any, log: Log) -> None:
     for i, (axis, color) in enumerate(zip("xyz", (BLUE, ORANGE, GREEN), strict=True)):
         applied = FORCE[i] * np.array([0.0, *SHARES])
         moved = [0.0] + [rest(log, k)[0][i] * 1e3 for k in range(len(SHARES))]
-        ax.plot(applied, applied / K * 1e3, color=color, label=f"{axis}: force / stiffness")
+        ax.plot(applied, applied / K * 1e3, color=color, label=f"along {axis}: force / stiffness")
         ax.plot(applied, moved, **MEASURED, color=color)
     ax.set_title("Pushed (circles: measured)")
     ax.set_xlabel("force (N)")
@@ -136,8 +137,8 @@ def draw_moments(ax: Any, logs: dict[str, Log]) -> None:
 
 
 def draw_works(ax: Any, works: dict[str, float]) -> None:
-    names = {"log": "angle", "quat": "sine", "log_simple": "angle,\nwithout rate",
-             "quat_simple": "half angle,\nwithout rate"}  # fmt: skip
+    names = {"log": "angle", "quat": "sine", "log_simple": "angle, its rate\nleft out",
+             "quat_simple": "half angle, its\nrate left out"}  # fmt: skip
     colors = (BLUE, BLUE, ORANGE, ORANGE)
     bars = ax.bar(list(names.values()), [-turn.turn_work(mode) for mode in names], width=0.5,
                   color=colors, alpha=0.6)  # fmt: skip

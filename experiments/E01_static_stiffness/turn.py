@@ -2,14 +2,15 @@
 
 The moment goes around a rectangle: up about x, up about y, down about x, down about y. In the
 other order the damper takes the same, but what the spring gives changes its sign: half of the
-difference of the hand's work is the spring's alone.
+difference of the hand's work is the spring's alone, but for what lag adds. That goes with the
+square of the speed, and two speeds tell it.
 """
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.optimize import fsolve
+from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
 from limber.experiments.check import Check
@@ -18,8 +19,9 @@ from limber.experiments.truth import motion, status
 
 K_O = np.diag([10.0, 60.0, 30.0])  # N m/rad
 SIDES = np.array([[9.0, 0.0, 0.0], [0.0, 45.0, 0.0]])  # N m
-LEG_S = 4.0
-STARTS_AT = (2.0, 20.0)  # about x first; about y first
+LEGS_S = (4.0, 8.0)  # how long a side takes: fast and slow
+DAMPING_RATIO = 0.2
+FIRST_AT, RESTS_S = 2.0, 3.5
 
 Spring = Callable[[np.ndarray], np.ndarray]
 
@@ -56,7 +58,7 @@ def turn_work(mode: str) -> float:
 
 
 def _balance(spring: Spring, moment: np.ndarray, start: np.ndarray) -> np.ndarray:
-    return fsolve(lambda r: spring(r) - moment, start, xtol=1e-12)
+    return root(lambda r: spring(r) - moment, start).x
 
 
 def _log(r: np.ndarray) -> np.ndarray:
@@ -82,7 +84,7 @@ SPRINGS: dict[str, Spring] = {
 
 
 def cross(r: np.ndarray) -> np.ndarray:
-    return np.cross(np.eye(3), -r)
+    return np.cross(np.eye(3), r)
 
 
 def left_jacobian_inverse(r: np.ndarray) -> np.ndarray:
@@ -95,31 +97,43 @@ def left_jacobian_inverse(r: np.ndarray) -> np.ndarray:
 
 
 def _net_work(context: Context, start_q: list[float], mode: str) -> float:
-    log = context.lab(_scenario(start_q, mode), f"turn_{mode}")
+    """Of an infinitely slow turn."""
+    fast, slow = (_half_difference(context, start_q, mode, leg_s) for leg_s in LEGS_S)
+    return slow + (slow - fast) / ((LEGS_S[1] / LEGS_S[0]) ** 2 - 1)
+
+
+def _half_difference(context: Context, start_q: list[float], mode: str, leg_s: float) -> float:
+    turn_s = 4 * leg_s + RESTS_S
+    starts = FIRST_AT, FIRST_AT + turn_s
+    log = context.lab(_scenario(start_q, mode, leg_s, starts), f"turn_{mode}_{leg_s:g}s")
     hand = []
-    for start in STARTS_AT:
-        end = start + 4 * LEG_S + 1.5
-        status(log, start, end)
-        rows = motion(log, start, end)
+    for start in starts:
+        status(log, start, start + turn_s)
+        rows = motion(log, start, start + turn_s)
         hand.append(rows["work_external_J"][-1] - rows["work_external_J"][0])
     return float(hand[0] - hand[1]) / 2
 
 
-def _scenario(start_q: list[float], mode: str) -> dict[str, Any]:
+def _scenario(
+    start_q: list[float], mode: str, leg_s: float, starts: tuple[float, float]
+) -> dict[str, Any]:
+    """Two turns: about x first, then about y first."""
     gains = {
         "law": "cartesian_impedance",
         "orientation": mode,
         "K_x_rotation_Nm_per_rad": np.diag(K_O).tolist(),
-        "spring_moment_Nm": 200.0,
+        "damping_ratio": DAMPING_RATIO,
+        "spring_force_N": 1000.0,
+        "spring_moment_Nm": 1000.0,
     }
     pushes = []
-    for start, order in zip(STARTS_AT, (SIDES, SIDES[::-1]), strict=True):
+    for start, order in zip(starts, (SIDES, SIDES[::-1]), strict=True):
         for i, moment in enumerate(order):
-            push = {"torque_Nm": moment.tolist(), "ramp_s": LEG_S, "for_s": 3 * LEG_S, "id": i + 1}
-            pushes.append({"at_s": start + i * LEG_S, "push": push})
+            push = {"torque_Nm": moment.tolist(), "ramp_s": leg_s, "for_s": 3 * leg_s, "id": i + 1}
+            pushes.append({"at_s": start + i * leg_s, "push": push})
     return {
         "robot": "ideal7",
-        "duration_s": STARTS_AT[1] + 4 * LEG_S + 1.6,
+        "duration_s": starts[1] + 4 * leg_s + RESTS_S + 0.1,
         "integrator": "reference",
         "start_q": start_q,
         "timeline": [

@@ -10,7 +10,7 @@ from limber.experiments.context import Context
 from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE
 from limber.robot import load_robot
 
-from .probe import Case
+from .loaded import Loaded
 
 TITLE = "Under load, a joint stiffness gives the stiffness asked for only with the second term"
 CLAIM = "The second term of Eq. 4 keeps the stiffness right where the arm is soft and loaded"
@@ -48,9 +48,9 @@ def run(context: Context) -> list[Check]:
     return checks + seven_checks(seven)
 
 
-def planar_case(load: float) -> Case:
+def planar_case(load: float) -> Loaded:
     gains = {"K_x_translation_N_per_m": K, "K_x_rotation_Nm_per_rad": 0.0}
-    return Case("planar2r", Q, np.array([load, 0.0, 0.0]), gains, axes=2, settles_s=2.4)
+    return Loaded("planar2r", Q, np.array([load, 0.0, 0.0]), gains, axes=2, settles_s=2.4)
 
 
 def felt(terms: str, load: float) -> np.ndarray:
@@ -74,14 +74,14 @@ def planar_checks(measured: Measured) -> list[Check]:
     return found
 
 
-def seven_case() -> Case:
+def seven_case() -> Loaded:
     gains = {
         "K_x_translation_N_per_m": K7,
         "K_x_rotation_Nm_per_rad": K7_TURN,
         "joint_damping": "given",
         "D_q_Nms_per_rad": D7,
     }
-    return Case("ideal7", Q7, LOAD7, gains, axes=3, settles_s=8.0)
+    return Loaded("ideal7", Q7, LOAD7, gains, axes=3, settles_s=8.0)
 
 
 def felt_seven(terms: str) -> np.ndarray:

@@ -70,7 +70,10 @@ REFUSED = [
         "Kx: expected 6 rows of 6 numbers (or 6 numbers for a diagonal), found a list",
     ),
     (eq4(Kx=[[1] * 6] * 5), "found 5 rows of 6"),
-    (eq4(Kx=[[1, 2, 0, 0, 0, 0]] + [[0] * 6] * 5), "Kx: expected a symmetric matrix, found [0][1]"),
+    (
+        eq4(Kx=[[1, 2, 0, 0, 0, 0]] + [[0] * 6] * 5),
+        "Kx: expected a symmetric matrix, found [1][0] = 0 but [0][1] = 2",
+    ),
     (eq4(Kx=[[0] * 6] * 5 + [[0] * 5 + ["x"]]), 'Kx[5][5]: expected a number, found "x"'),
     (eq4(mode="quaternion"), "mode: 'quaternion' is none of log, quat"),
     (case("eq4", {"q": [0, 1], "p_d": [0, 0, 0], "Kx": [1, 1]}, PLANAR), "p_d: expected 2 numbers"),

@@ -272,6 +272,18 @@ TEST(LoadUrdf, MasslessLinksBetweenJointsAreFine) {
   EXPECT_NEAR(terms.M(2, 2), 0.01, 1e-14);
 }
 
+// As exporters write frames that are no bodies, and other simulators their friction.
+TEST(LoadUrdf, LinksOfNoMassAndFiguresOfOtherProgramsAreFine) {
+  const std::string arm = bare("base") + body("link", "2", "xyz='0.1 0 0.2'");
+  const std::string hinge = joint("hinge", "revolute", "base", "link", "xyz='0 0 1'", "0 1 0");
+  const std::string mount = joint("mount", "fixed", "link", "tip", "xyz='0.3 0 0'", "");
+  const std::string zero = body("tip", "0.0", "xyz='0 0 0'", "0 0 0");
+  const std::string figures = "<dynamics damping='1' mu_viscous='x' D='0' K='7000'/></joint>";
+  const std::string annotated = hinge.substr(0, hinge.rfind("</joint>")) + figures;
+  expect_same(load(arm + annotated + mount + zero, "base", "tip"),
+              load(arm + hinge + mount + bare("tip"), "base", "tip"));
+}
+
 TEST(LoadUrdf, TwoJointsOnOneLineCannotBeToldApart) {
   const std::string parts = bare("base") + joint("a", "revolute", "base", "one", "", "0 0 1") +
                             bare("one") + joint("b", "revolute", "one", "hand", "", "0 0 1") +

@@ -96,6 +96,7 @@ const Mutation kJoints[] = {
      "parent link 'uper' does not exist; did you mean 'upper'?", -1},
     {"ChildUnknown", R"(<child link="fore"/>)", R"(<child link="nothing"/>)",
      "child link 'nothing' does not exist", -2},
+    {"DynamicsMisspelt", "<dynamics damping=", "<dynamics dampng=", "unknown attribute 'dampng'"},
     {"ElementMisspelt", "<dynamics ", "<dynamcs ", "did you mean <dynamics>?"},
 };
 INSTANTIATE_TEST_SUITE_P(Joints, UrdfRefusal, ::testing::ValuesIn(kJoints),

@@ -123,7 +123,14 @@ def check(
     raise typer.Exit(module.check(what, base, tip))
 
 
-@app.command("eval", context_settings={"ignore_unknown_options": True, "allow_extra_args": True})
+@app.command(
+    "eval",
+    context_settings={
+        "ignore_unknown_options": True,
+        "allow_extra_args": True,
+        "help_option_names": [],
+    },
+)
 def evaluate(context: typer.Context) -> None:
     """Evaluate control laws: a JSON file or standard input in, JSON out (see docs/eval.md)."""
     from limber.paths import program
