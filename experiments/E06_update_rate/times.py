@@ -55,7 +55,7 @@ def measure(context: Context) -> dict[str, float]:
 def checks(found: dict[str, float]) -> list[Check]:
     """Nothing that is done in a cycle can take longer than the cycle."""
     return [
-        Check(f"time of {label.replace(chr(10), ' ')} over a whole cycle of computed_torque",
+        Check(f"time of {' '.join(label.split())} over a whole cycle of computed_torque",
               1.0, found[name] / found[CYCLE], "", 0.0, "at_most")
         for name, label in TERMS.items()
         if found and name != "term_stiffness"
