@@ -149,9 +149,7 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
     switched_ = true;
   }
   estimation_.set(asked_.settings);
-  if (asked_.settings.passivity_damping_Ns_per_m != now.settings.passivity_damping_Ns_per_m) {
-    passivity_ = {3, asked_.settings.passivity_damping_Ns_per_m};
-  }
+  passivity_.set_max_damping(asked_.settings.passivity_damping_Ns_per_m);
   if (asked_.settings.tank_J != now.settings.tank_J) {
     tank_ =
         EnergyTank({asked_.settings.tank_J, 0.0, asked_.settings.tank_J, kTankShare}, active_.K_x);
@@ -205,6 +203,7 @@ void TorqueCycle::keep_passive() noexcept {
     passivity_.reset();
     return;
   }
+  if (!passivity_.started()) passivity_.reset(law_.spring_energy_J);
   passivity_.observe(terms_.X_BT.p - goal_.X_BD.p);
   passivity_.hold(F_on_its_way_);
   const Eigen::Vector3d V = (terms_.V_BT - goal_.V_BD).head<3>();

@@ -21,11 +21,13 @@ class PassivityObserver {
   PassivityObserver(int size, double max_damping)
       : max_damping_(max_damping), x_(Vector::Zero(size)), f_(x_) {}
 
-  /// The next sample is the first; E = 0.
-  void reset() noexcept {
+  /// The next sample is the first. E_0: what the controller has in store, such as a stretched
+  /// spring's energy, which it may give away.
+  void reset(double E_0 = 0.0) noexcept {
     started_ = false;
-    E_ = 0.0;
+    E_ = E_0;
   }
+  void set_max_damping(double max_damping) noexcept { max_damping_ = max_damping; }
 
   /// The robot is at x now. Returns E, J. A sample that is not finite is left out: its step is
   /// counted with the next one.
@@ -51,6 +53,8 @@ class PassivityObserver {
     started_ = true;
   }
 
+  /// False until a force is held.
+  bool started() const noexcept { return started_; }
   double energy_J() const noexcept { return E_; }
 
  private:

@@ -1,7 +1,7 @@
 // Where the contact wrench comes from: a sensor, the motors' torque, or nowhere.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "controller/singularity.h"
 #include "tests/controller/rig.h"
@@ -14,6 +14,7 @@ using Gains = compliance_gains_t;
 
 struct Touched {
   explicit Touched(std::int8_t contact) : rig(arm()) {
+    rig.plant.q << 0.4, -0.8, 0.5, 1.2, -0.6, 0.9, 0.7;
     rig.to_active();
     Gains gains = rig.gains();
     gains.contact = contact;

@@ -44,19 +44,18 @@ TEST(FreshStart, NeitherIsALongSilence) {
 TEST(FreshStart, AtRestTheGoalIsWhereTheArmIs) {
   Rig rig(limber::testing::slider());
   rig.to_active();
-  compliance_goal_t goal = rig.goal();
-  goal.offset[0] = 0.1;
-  ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
-  rig.run(0.2);
-  ASSERT_GT(rig.controller.status().kinetic_energy_J, 0.0);
+  rig.ask(mode_request_t::REQUEST_HOLD);
+  rig.run(0.5);
+  rig.plant.F_ext[0] = 10.0;
+  rig.run(0.5);
+  ASSERT_GT(rig.controller.status().p_BT[0] - rig.controller.status().p_BD[0], 0.05);
   rig.ask(mode_request_t::REQUEST_IDLE);
   rig.run(0.1);
-  ASSERT_EQ(rig.mode(), +Status::MODE_IDLE);
   const Status& status = rig.controller.status();
+  ASSERT_EQ(rig.mode(), +Status::MODE_IDLE);
   EXPECT_EQ(status.p_BD[0], status.p_BT[0]);
   EXPECT_EQ(status.e[0], 0.0);
   EXPECT_EQ(status.F_law[0], 0.0);
-  EXPECT_EQ(status.passivity_energy_J, 0.0);
 }
 
 // In HOLD the law for the joints runs, and counts no energy at the tip.
@@ -66,14 +65,14 @@ TEST(FreshStart, HoldLeavesNothingOfTheLawBefore) {
   rig.plant.F_ext[0] = 10.0;
   rig.run(0.3);
   rig.plant.F_ext[0] = 0.0;
-  ASSERT_NE(rig.controller.status().passivity_energy_J, 0.0);
+  ASSERT_GT(rig.controller.status().passivity_energy_J, 0.01);
   rig.ask(mode_request_t::REQUEST_HOLD);
-  rig.run(0.01);
+  rig.run(1.0);
   ASSERT_EQ(rig.mode(), +Status::MODE_HOLD);
   EXPECT_EQ(rig.controller.status().passivity_energy_J, 0.0);
   rig.ask(mode_request_t::REQUEST_ACTIVE);
-  rig.step();
-  rig.step();
+  rig.run(0.01);
+  ASSERT_EQ(rig.mode(), +Status::MODE_ACTIVE);
   EXPECT_NEAR(rig.controller.status().passivity_energy_J, 0.0, 1e-6);
 }
 

@@ -22,6 +22,7 @@ Eigen::Vector3d goal_of(const Rig& rig) {
 
 TEST(GoalAcrossLaws, TheCircleGoesOn) {
   Rig rig(limber::testing::seven_joint_arm());
+  rig.plant.q << 0.4, -0.8, 0.5, 1.2, -0.6, 0.9, 0.7;
   rig.to_active();
   const Eigen::Vector3d centre = goal_of(rig) + Eigen::Vector3d(kRadius, 0.0, 0.0);
   compliance_goal_t circle = rig.goal();

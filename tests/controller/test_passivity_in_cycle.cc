@@ -17,7 +17,7 @@ using Gains = compliance_gains_t;
 constexpr double kK = 500.0;
 constexpr double kT = 1e-3;
 
-// A slider on an undamped spring, pulled 4 cm away and let go.
+// A slider on an undamped spring at rest, struck.
 struct Undamped {
   explicit Undamped(double passivity_damping) : rig(limber::testing::slider()) {
     rig.to_active();
@@ -25,22 +25,19 @@ struct Undamped {
     for (auto& row : gains.K_x) std::fill(std::begin(row), std::end(row), 0.0);
     gains.K_x[0][0] = kK;
     gains.damping = Gains::DAMPING_GIVEN;
-    for (auto& row : gains.D_x) std::fill(std::begin(row), std::end(row), 0.0F);
-    gains.D_x[0][0] = 100.0F;
-    EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
-    rig.plant.F_ext[0] = 0.04 * kK;
-    rig.run(3.0);
-    gains.D_x[0][0] = 0.0F;
     gains.passivity_damping_Ns_per_m = static_cast<float>(passivity_damping);
     EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
     rig.run(1.0);  // the gains' ramp is over
-    rig.plant.F_ext[0] = 0.0;
-    rig.step();
-    x_0 = rig.controller.status().p_BD[0];
+    x_0 = rig.plant.q[0];
+    rig.plant.v[0] = 0.6;
   }
   double energy_J() const {
     const double x = rig.plant.q[0] - x_0;
     return 0.5 * kSliderMass * rig.plant.v[0] * rig.plant.v[0] + 0.5 * kK * x * x;
+  }
+  /// Made by the law: what the observer sees besides the spring's own store.
+  double made_J() const {
+    return rig.controller.status().spring_energy_J - rig.controller.status().passivity_energy_J;
   }
 
   Rig rig;
@@ -52,15 +49,13 @@ struct Undamped {
 TEST(PassivityInCycle, SeesTheEnergyThatSamplingMakes) {
   Undamped loop(0.0);
   const double start = loop.energy_J();
-  const double seen_before = loop.rig.controller.status().passivity_energy_J;
   double v2 = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    loop.rig.step();
     v2 += kT * loop.rig.plant.v[0] * loop.rig.plant.v[0];
+    loop.rig.step();
   }
   const double made = kK * 1.5 * kT * v2;
-  const double seen = loop.rig.controller.status().passivity_energy_J - seen_before;
-  EXPECT_NEAR(seen, -made, 0.02 * made);
+  EXPECT_NEAR(loop.made_J(), made, 0.02 * made);
   EXPECT_NEAR(loop.energy_J() - start, made, 0.02 * made) << "and the mass has it";
   EXPECT_GT(made, start) << "it has more than doubled";
 }
@@ -73,8 +68,8 @@ TEST(PassivityInCycle, DampingKeepsTheAmplitude) {
     loop.rig.step();
     most = std::max(most, loop.energy_J());
   }
-  EXPECT_LT(most, 1.03 * start);
-  EXPECT_GT(most, 0.5 * start) << "and no more damping than it takes";
+  EXPECT_LT(most, 1.1 * start) << "half a cycle's energy is made before it is seen";
+  EXPECT_GT(loop.energy_J(), 0.7 * start) << "and no more damping than it takes";
 }
 
 }  // namespace

@@ -59,5 +59,21 @@ TEST(PassivityObserver, DampingIsLimitedAndZeroWhilePassive) {
   EXPECT_EQ(observer.energy_J(), 0.0);
 }
 
+// A stretched spring may give back what it holds.
+TEST(PassivityObserver, StoredEnergyMayBeGivenAway) {
+  PassivityObserver<VectorJ> observer(1, 1e3);
+  observer.reset(0.5);
+  EXPECT_FALSE(observer.started());
+  observer.observe(one(0.0));
+  observer.hold(one(10.0));
+  observer.observe(one(0.05));
+  EXPECT_NEAR(observer.energy_J(), 0.0, 1e-15);
+  EXPECT_EQ(observer.damping(one(1.0), kT), 0.0);
+  observer.observe(one(0.06));
+  EXPECT_GT(observer.damping(one(1.0), kT), 0.0);
+  observer.set_max_damping(3.0);
+  EXPECT_EQ(observer.damping(one(1.0), kT), 3.0);
+}
+
 }  // namespace
 }  // namespace limber::controller

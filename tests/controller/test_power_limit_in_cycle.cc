@@ -13,7 +13,7 @@ using limber::testing::kSliderMass;
 using limber::testing::Rig;
 using Status = controller_status_t;
 
-constexpr double kLimit_W = 6.0;
+constexpr double kLimit_W = 2.0;
 
 struct Sprint {
   explicit Sprint(double limit_W) {

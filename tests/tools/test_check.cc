@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "tests/support/mutation.h"
@@ -124,8 +125,9 @@ TEST(Check, TellsOfATipSensor) {
   EXPECT_TRUE(contains(check("robot " + kArm + " --json").output, "\"tip_sensor\": null"));
 }
 
-std::string gains_scenario(const std::string& gains) {
-  return "format: limber-scenario/1\nrobot: openarm\nduration_s: 2\ntimeline:\n"
+std::string gains_scenario(const std::string& gains, const std::string& robot = "openarm") {
+  return "format: limber-scenario/1\nrobot: " + robot +
+         "\nduration_s: 2\ntimeline:\n"
          "  - {at_s: 0.5, gains: {" +
          gains + "}}\n";
 }
@@ -145,6 +147,32 @@ TEST(Check, SaysHowStiffTheGainsAre) {
   const Outcome undamped = outcome_of("damping_ratio: 0");
   EXPECT_TRUE(contains(undamped.output, "K_x is unstable with this damping, however soft"))
       << undamped.output;
+}
+
+// planar2r: two uniform rods, l = (0.5, 0.4) m, m = (4, 2.5) kg, elbow at 1 rad. The joint modes
+// solve det(K - w^2 M) = 0.
+TEST(Check, ModesAreThoseOfTheClosedForm) {
+  const double coupling = 2.5 * 0.5 * 0.2 * std::cos(1.0);
+  const double M22 = 0.4 * 0.4 * 2.5 / 3.0;
+  const double M11 = 4.0 * 0.25 / 3.0 + 2.5 * 0.25 + M22 + 2.0 * coupling;
+  const double M12 = M22 + coupling;
+  const double K1 = 300.0;
+  const double K2 = 200.0;
+  const double a = M11 * M22 - M12 * M12;
+  const double b = K1 * M22 + K2 * M11;
+  const double w2 = (b + std::sqrt(b * b - 4.0 * a * K1 * K2)) / (2.0 * a);
+  // A damping ratio of 1: (1 / tau^2) x^2 cos x with cos x = sqrt(5) - 2, tau = 1.5 ms.
+  const double x = std::acos(std::sqrt(5.0) - 2.0);
+  const double share = w2 / (x * x * std::cos(x)) * 1.5e-3 * 1.5e-3;
+  char expected[100];
+  std::snprintf(expected, sizeof expected, "joints up to %.0f rad/s, %.2g %% of the stiffest: ok",
+                std::sqrt(w2), 100.0 * share);
+  const testing::TemporaryFolder folder;
+  const std::string gains = "K_q_Nm_per_rad: [300, 200], joint_damping_ratio: 1";
+  const Outcome outcome =
+      check("scenario " + folder.write("s.yaml", gains_scenario(gains, "planar2r")));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, expected)) << expected << "\n" << outcome.output;
 }
 
 TEST(Check, SpeaksJson) {
