@@ -196,8 +196,8 @@ void TorqueCycle::forget_energy() noexcept {
   dissipated_W_ = 0.0;
 }
 
-// Energy of spring and damper against the goal; the feed-forward wrench is the user's own. What was
-// computed in the cycle before acts from now on.
+// Energy of spring and damper against the goal; what else the law exerts is meant to do work. What
+// was computed in the cycle before acts from now on.
 void TorqueCycle::keep_passive() noexcept {
   if (entry().follows != Follows::kPoseGoal) {
     passivity_.reset();
@@ -210,7 +210,7 @@ void TorqueCycle::keep_passive() noexcept {
   const Eigen::Vector3d F_added = -passivity_.damping(V, state_.period_s) * V;
   law_.tau_damping += terms_.J.topRows<3>().transpose() * F_added;
   law_.F.head<3>() += F_added;
-  F_on_its_way_ = (law_.F - goal_.F_ff).head<3>();
+  F_on_its_way_ = (law_.F - law_.F_other).head<3>();
 }
 
 VectorJ TorqueCycle::friction() const noexcept {

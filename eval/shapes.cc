@@ -33,7 +33,7 @@ std::string describe_list(const Json& list) {
 std::string describe(const Json& value) {
   if (value.is_array()) return describe_list(value);
   if (value.is_object()) return "an object";
-  const std::string text = value.dump();
+  const std::string text = value.dump(-1, ' ', true);  // ASCII: may be cut anywhere
   if (text.size() <= kLongestText) return text;
   return fmt::format("{}...", text.substr(0, kLongestText));
 }

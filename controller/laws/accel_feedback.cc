@@ -28,6 +28,7 @@ class AccelFeedback : public Law {
     const Vector6 F_other = in.goal.F_ff - in.gains.M_x * in.estimates.A_BT;
     const auto JT = in.terms.J.transpose();
     out->F = F_spring + F_damping + F_other;
+    out->F_other = F_other;
     out->tau_stiffness = JT * F_spring;
     out->tau_damping = JT * F_damping;
     out->tau_feedforward = JT * F_other;

@@ -44,7 +44,7 @@ class Admittance : public Law {
     inverse_kinematics_.track(rows, in.dt_s, &goal_);
 
     const VectorJ error = in.state.q - goal_.q_d;
-    out->F = in.goal.F_ff;  // the position loop acts at the joints
+    out->F = out->F_other = in.goal.F_ff;  // the position loop acts at the joints
     out->tau_stiffness = -in.gains.K_q * error;
     out->tau_damping = -D_q_ * (in.state.v - goal_.v_d);
     out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);

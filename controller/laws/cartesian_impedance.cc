@@ -42,6 +42,7 @@ class CartesianImpedance : public Law {
 
     const Vector6 F_other = in.goal.F_ff + inertia_force(in);
     out->F = F_spring + F_damping + F_other;
+    out->F_other = F_other;
     out->tau_stiffness = JT * F_spring;
     out->tau_damping = JT * F_damping;
     out->tau_feedforward = JT * F_other;

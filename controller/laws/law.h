@@ -88,6 +88,7 @@ struct LawOutput {
     tau_damping.setZero();
     tau_feedforward.setZero();
     F.setZero();
+    F_other.setZero();
     spring_energy_J = 0.0;
     limits = 0;
   }
@@ -96,9 +97,10 @@ struct LawOutput {
   VectorJ tau_stiffness;
   VectorJ tau_damping;
   VectorJ tau_feedforward;
-  Vector6 F = Vector6::Zero();   ///< wrench on the arm at the tip, base axes; zero if it has none
-  double spring_energy_J = 0.0;  ///< potential whose gradient tau_stiffness is, if it is one
-  std::int32_t limits = 0;       ///< controller_status_t LIMIT_* bits
+  Vector6 F = Vector6::Zero();  ///< wrench on the arm at the tip, base axes; zero if it has none
+  Vector6 F_other = Vector6::Zero();  ///< what of it is neither spring nor damper
+  double spring_energy_J = 0.0;       ///< potential whose gradient tau_stiffness is, if it is one
+  std::int32_t limits = 0;            ///< controller_status_t LIMIT_* bits
 };
 
 class Law {

@@ -34,6 +34,7 @@ class OpspaceImpedance : public Law {
         gain * (F_ext + in.goal.F_ff) - F_ext + Lambda * (in.goal.A_BD - in.terms.Jdot_v);
     const auto JT = in.terms.J.transpose();
     out->F = F_spring + F_damping + F_other;
+    out->F_other = F_other;
     out->tau_stiffness = JT * F_spring;
     out->tau_damping = JT * F_damping;
     out->tau_feedforward = JT * F_other;

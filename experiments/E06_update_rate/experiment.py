@@ -11,6 +11,8 @@ from limber.experiments.context import Context
 from limber.experiments.evaluate import case
 from limber.experiments.pictures import AMBER, BLUE, GREEN, MEASURED, ORANGE
 
+from . import times
+
 TITLE = "Gains evaluated too rarely: the stiffness errs by what the arm has moved since"
 CLAIM = (
     "K_p and K_v have to be re-evaluated at the present pose all the time, and there are schemes"
@@ -45,8 +47,9 @@ def run(context: Context) -> list[Check]:
         checks.append(
             Check(f"order of the torque error in time, {name}", order, slope, "", 0.1, "absolute")
         )
-    draw(context)
-    return checks
+    found = times.measure(context)
+    draw(context, found)
+    return [*checks, *times.checks(found)]
 
 
 def shoulder_error(T: float) -> float:
@@ -102,11 +105,14 @@ def torque_errors(context: Context, holds: np.ndarray) -> tuple[list[float], lis
     return errors[0], errors[1]
 
 
-def draw(context: Context) -> None:
+def draw(context: Context, found: dict[str, float]) -> None:
     holds = np.geomspace(0.5e-3, 100e-3, 40)
     some = np.geomspace(0.5e-3, 100e-3, 9)
-    with context.picture(TITLE, columns=2, size=(12.5, 5.0)) as (left, right):
+    columns = 3 if found else 2
+    with context.picture(TITLE, columns=columns, size=(5.9 * columns, 5.0)) as (left, right, *last):
         draw_stiffness(context, left, holds, some)
+        for ax in last:
+            times.draw(found, ax)
         full, first = torque_errors(context, some)
         right.loglog(some * 1e3, first, **MEASURED, color=AMBER, label="first term of Eq. 4 held")
         right.loglog(some * 1e3, full, **MEASURED, color=GREEN, label="full tangent held")

@@ -157,7 +157,7 @@ def draw(starts: dict[str, Start], ax: Any) -> None:
     ax.set_title("A push of 3 N begins: how fast the tip sets off")
     ax.set_xlabel("time since the push began (ms)")
     ax.set_ylabel("speed of the tip along x (mm/s)")
-    ax.annotate("here the damper begins to act", (42, 148), xytext=(50, 95), ha="right",
+    ax.annotate("here the damper begins to act", (42, 148), xytext=(50, 72), ha="right",
                 arrowprops={"arrowstyle": "->"})  # fmt: skip
     ax.set_xlim(-1, 51)
     ax.set_ylim(0, 200)

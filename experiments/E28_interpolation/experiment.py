@@ -62,38 +62,31 @@ def run(context: Context) -> list[Check]:
     arm = motion(log, START - 0.1, START + T + 0.9)
     draw(context, goal, arm)
 
-    path, angle = float(np.linalg.norm(OFFSET)), float(np.linalg.norm(TURN))
-    v, a = derivatives(goal["p_BD"], goal)
-    w, alpha = derivatives(turned(goal), goal)
-    speed = np.linalg.norm(arm["V_BT"][:, :3], axis=1)
+    path = float(np.linalg.norm(OFFSET))
+    speed = float(np.linalg.norm(arm["V_BT"][:, :3], axis=1).max())
+    hurry = float(derivatives(hurried["p_BD"], hurried)[0].max())
+    force = float(np.linalg.norm(goal["F_law"][:, :3], axis=1).max())
+    jump = "force of the law, where a goal that jumps would ask for"
     return [
-        Check("peak speed of the goal", SPEED * path / T, v.max(), "m/s", 1e-3),
-        Check("peak acceleration of the goal", ACCELERATION * path / T**2, a.max(), "m/s²", 1e-3),
-        Check("peak turning speed of the goal", SPEED * angle / T, w.max(), "rad/s", 1e-3),
-        Check(
-            "peak turning acceleration of the goal",
-            ACCELERATION * angle / T**2,
-            alpha.max(),
-            "rad/s²",
-            1e-3,
-        ),
-        Check("peak speed of the arm", SPEED * path / T, speed.max(), "m/s", 0.01),
-        Check(
-            "peak speed of a goal in a hurry",
-            FASTEST,
-            derivatives(hurried["p_BD"], hurried)[0].max(),
-            "m/s",
-            2e-3,
-        ),
-        Check(
-            "force of the law, where a goal that jumps would ask for",
-            K * path,
-            float(np.linalg.norm(goal["F_law"][:, :3], axis=1).max()),
-            "N",
-            0.0,
-            "at_most",
-        ),
+        *goal_checks(goal),
+        Check("peak speed of the arm", SPEED * path / T, speed, "m/s", 0.01),
+        Check("peak speed of a goal in a hurry", FASTEST, hurry, "m/s", 2e-3),
+        Check(jump, K * path, force, "N", 0.0, "at_most"),
     ]
+
+
+def goal_checks(goal: np.ndarray) -> list[Check]:
+    found = []
+    for name, values, delta, unit in (
+        ("", goal["p_BD"], np.linalg.norm(OFFSET), "m"),
+        ("turning ", turned(goal), np.linalg.norm(TURN), "rad"),
+    ):
+        v, a = (float(size.max()) for size in derivatives(values, goal))
+        peaks = float(SPEED * delta / T), float(ACCELERATION * delta / T**2)
+        found.append(Check(f"peak {name}speed of the goal", peaks[0], v, f"{unit}/s", 1e-3))
+        title = f"peak {name}acceleration of the goal"
+        found.append(Check(title, peaks[1], a, f"{unit}/s²", 1e-3))
+    return found
 
 
 def turned(rows: np.ndarray) -> np.ndarray:

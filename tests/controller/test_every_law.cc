@@ -239,10 +239,10 @@ std::vector<Passive> passive_laws() {
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Springs, Passivity, ::testing::ValuesIn(passive_laws()),
-                         [](const auto& info) {
-                           return std::string(info.param.law) + "_" +
-                                  std::to_string(static_cast<int>(info.param.design)) + "_" +
-                                  std::to_string(static_cast<int>(info.param.orientation));
+                         [](const auto& tested) {
+                           return std::string(tested.param.law) + "_" +
+                                  std::to_string(static_cast<int>(tested.param.design)) + "_" +
+                                  std::to_string(static_cast<int>(tested.param.orientation));
                          });
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST_P(GainsRefusal, NamesWhatIsWrong) {
   EXPECT_NE(std::string(reason).find(GetParam().reason), std::string::npos) << reason;
 }
 INSTANTIATE_TEST_SUITE_P(Gains, GainsRefusal, ::testing::ValuesIn(kRefusals),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 // Six rows of stiffness are more than two joints can move in.
 TEST(LawRefusal, TaskWithMoreRowsThanJoints) {

@@ -164,7 +164,8 @@ const Change kChanges[] = {
      }},
     {"wanted inertia",
      [](Gains* g) {
-       for (int i = 0; i < 6; ++i) g->M_x[i][i] = i < 3 ? 2.0F : 0.05F;
+       for (int i = 0; i < 6; ++i)
+         g->M_x[i][i] = i < 3 ? 1.0F : 0.005F;  // what acceleration feedback bears
        for (float& M : g->M_q) M = 0.2F;
        g->ramp_s = 0.3;
      }},

@@ -123,8 +123,8 @@ INSTANTIATE_TEST_SUITE_P(Slips, TipSensorRefusal, ::testing::ValuesIn(kSlips),
 class MoteusSensorRefusal : public ::testing::TestWithParam<Mutation> {};
 
 std::string beside_moteus() {
-  const std::string arm = testing::read_text(kData + "moteus/robot.yaml");
-  return testing::apply(arm, {"", "../arm/robot.urdf", "robot.urdf", ""}).text +
+  const std::string drives = testing::read_text(kData + "moteus/robot.yaml");
+  return testing::apply(drives, {"", "../arm/robot.urdf", kData + "arm/robot.urdf", ""}).text +
          "tip_sensor:\n  model: FT-2\n  protocol: limber_ft\n  bus: left\n  id: 100\n"
          "  reply_id: 101\n  pose: {position_m: [0, 0, 0], rpy_rad: [0, 0, 0]}\n"
          "  range: {force_N: 100, torque_Nm: 10}\n";

@@ -277,7 +277,7 @@ def doctor() -> None:
 @app.command()
 def test(
     part: Annotated[
-        str | None, typer.Argument(help="One part: ctest, pytest, system, vcan, format, lint.")
+        str | None, typer.Argument(help="One part: ctest, pytest, eval, system, vcan, format, lint.")
     ] = None,
 ) -> None:
     """All the tests, as CI runs them."""

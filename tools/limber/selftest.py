@@ -42,7 +42,8 @@ def _parts() -> Iterator[Part]:
     build = str(ROOT / "build" / "dev")
     ctest = ["ctest", "--test-dir", build, "--output-on-failure"]
     yield Part("ctest", [*ctest, "-LE", "vcan", "-j", jobs])
-    yield Part("pytest", [python, "-m", "pytest", "tests/tools", "tests/eval"])
+    yield Part("pytest", [python, "-m", "pytest", "tests/tools"])
+    yield Part("eval", [python, "-m", "pytest", "tests/eval"])
     prefix = [] if network.is_private() else network.private_command()
     if prefix is None:
         raise RunError(

@@ -1,0 +1,72 @@
+"""What the terms cost that a slower evaluation would save: times of this machine, by limber-bench.
+
+The one thing here that depends on the machine. So only ratios are judged, and those only where the
+benchmarks have been built (`limber bench` does).
+"""
+
+import json
+import os
+import subprocess
+from typing import Any
+
+from limber.bench import RELEASE
+from limber.errors import RunError
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.pictures import BLUE, ORANGE
+
+PROGRAM = "limber-bench"
+TERMS = {
+    "term_jacobian": "J",
+    "term_inertia": "M",
+    "term_inverse_dynamics": "inverse\ndynamics",
+    "term_stiffness": "all of\nEq. 4",
+}
+CYCLE = "BM_ControllerCycle/computed_torque"
+TIMEOUT_S = 60.0
+
+
+def measure(context: Context) -> dict[str, float]:
+    """Median of the processor's time in µs, by the benchmark's name; empty if not built."""
+    path = RELEASE / PROGRAM
+    if not os.access(path, os.X_OK):
+        context.say(f"{PROGRAM} is not built: no times of single terms")
+        return {}
+    chosen = "|".join(f"{name}$" for name in (*TERMS, CYCLE))
+    options = ["--benchmark_format=json", "--benchmark_min_time=0.05", "--benchmark_repetitions=7"]
+    command = [str(path), f"--benchmark_filter={chosen}", *options]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=TIMEOUT_S, check=True
+        )
+        rows = json.loads(done.stdout)["benchmarks"]
+    except (subprocess.SubprocessError, ValueError, KeyError) as error:
+        raise RunError(f"{PROGRAM}: {error}") from error
+    found = {
+        row["run_name"]: row["cpu_time"] * 1e-3
+        for row in rows
+        if row.get("aggregate_name") == "median"
+    }
+    if missing := {*TERMS, CYCLE} - found.keys():
+        raise RunError(f"{PROGRAM} says nothing of {', '.join(sorted(missing))}")
+    return found
+
+
+def checks(found: dict[str, float]) -> list[Check]:
+    """Nothing that is done in a cycle can take longer than the cycle."""
+    return [
+        Check(f"time of {' '.join(label.split())} over a whole cycle of computed_torque",
+              1.0, found[name] / found[CYCLE], "", 0.0, "at_most")
+        for name, label in TERMS.items()
+        if found and name != "term_stiffness"
+    ]  # fmt: skip
+
+
+def draw(found: dict[str, float], ax: Any) -> None:
+    names = [*TERMS, CYCLE]
+    labels = [*TERMS.values(), "whole cycle\n(computed torque)"]
+    colors = [*[BLUE] * len(TERMS), ORANGE]
+    bars = ax.bar(labels, [found[name] for name in names], color=colors, alpha=0.6)
+    ax.bar_label(bars, fmt="%.1f")
+    ax.set_title("Time of each on this machine, seven joints")
+    ax.set_ylabel("time (µs); a cycle at 1 kHz has 1000")
