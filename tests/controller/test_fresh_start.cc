@@ -67,7 +67,7 @@ TEST(FreshStart, HoldLeavesNothingOfTheLawBefore) {
   rig.plant.F_ext[0] = 0.0;
   ASSERT_GT(rig.controller.status().passivity_energy_J, 0.01);
   rig.ask(mode_request_t::REQUEST_HOLD);
-  rig.run(1.0);
+  rig.run(3.0);
   ASSERT_EQ(rig.mode(), +Status::MODE_HOLD);
   EXPECT_EQ(rig.controller.status().passivity_energy_J, 0.0);
   rig.ask(mode_request_t::REQUEST_ACTIVE);
