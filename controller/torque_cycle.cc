@@ -176,6 +176,7 @@ void TorqueCycle::match_goals() noexcept {
 
 void TorqueCycle::refresh_gains() noexcept {
   active_ = gains_.now();
+  if (holding_) active_.settings = LawSettings{};
   turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
   if (active_.settings.tank_J > 0.0) draw_from_tank();
 }

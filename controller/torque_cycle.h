@@ -37,8 +37,16 @@ class TorqueCycle {
 
   /// Runs joint_pd, or the selected law, around the place where the arm is. The torque
   /// continues from the last one and fades over to the law (TorqueBlend).
-  void hold() noexcept { run(hold_, true); }
-  void activate() noexcept { run(selected_, true); }
+  /// Holding knows no choices of the user's, only K_q and its damping ratio: it carries the weight
+  /// and damps, whatever was tried before.
+  void hold() noexcept {
+    holding_ = true;
+    run(hold_, true);
+  }
+  void activate() noexcept {
+    holding_ = false;
+    run(selected_, true);
+  }
   /// The goal comes to rest.
   void stop_goal(double duration_s) noexcept { goals_.stop(duration_s); }
 
@@ -84,6 +92,7 @@ class TorqueCycle {
   int hold_;
   int selected_;
   int running_;
+  bool holding_ = true;
 
   GoalGenerator goals_;
   Goal goal_;  // of this cycle: tip and joints matched

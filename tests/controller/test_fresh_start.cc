@@ -41,6 +41,20 @@ TEST(FreshStart, NeitherIsALongSilence) {
   arm.expect_nothing_of_the_past();
 }
 
+// Choices made for a law do not take the weight off the arm while it is held.
+TEST(FreshStart, HoldingKnowsNoChoices) {
+  Rig rig(limber::testing::seven_joint_arm());
+  rig.to_hold();
+  const VectorJ q = rig.plant.q;
+  Gains gains = rig.gains();
+  gains.bias = Gains::BIAS_NONE;
+  gains.joint_damping = Gains::DAMPING_GIVEN;  // and none is given
+  ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
+  rig.run(1.0);
+  EXPECT_LT((rig.plant.q - q).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(rig.mode(), +Status::MODE_HOLD);
+}
+
 TEST(FreshStart, AtRestTheGoalIsWhereTheArmIs) {
   Rig rig(limber::testing::slider());
   rig.to_active();
