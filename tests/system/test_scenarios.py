@@ -70,8 +70,8 @@ def test_demo_in_lock_step(tmp_path):
     assert (out / "run.lcmlog").stat().st_size > 10_000_000
 
 
-# A pause of this machine longer than the driver bridges is not our fault. Without real-time priority
-# any other program's work is such a pause: there the run is shorter.
+# A pause of this machine longer than the driver bridges is not our fault. Without real-time
+# priority any other program's work is such a pause: there the run is shorter.
 @pytest.mark.flaky(reruns=4)
 @pytest.mark.parametrize(("unprivileged", "seconds"), [(False, 60), (True, 15)])
 def test_demo_in_real_time(tmp_path, unprivileged, seconds):
