@@ -50,6 +50,11 @@ std::string tip_sensor_json(const Robot& robot) {
                        {"tool_mass_kg", json::number(sensor.tool_mass_kg)}});
 }
 
+// Numbers as robot.yaml has them; made of several fields, as bus tools print them.
+std::string as_seen(std::uint32_t id) {
+  return id > 0xFF ? fmt::format("{:#x}", id) : fmt::format("{}", id);
+}
+
 std::string joint_table(const Robot& robot, const ArmReport& report) {
   std::string table =
       fmt::format("  {:<14} {:<10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9}", "joint", "type",
@@ -65,8 +70,8 @@ std::string joint_table(const Robot& robot, const ArmReport& report) {
     if (robot.has_drives) {
       const DriveConfig& drive = joint.drive;
       table += fmt::format("  {}, {}, {}/{}", drive.motor,
-                           robot.buses[static_cast<std::size_t>(drive.bus)].name, drive.command_id,
-                           drive.reply_id);
+                           robot.buses[static_cast<std::size_t>(drive.bus)].name,
+                           as_seen(drive.command_id), as_seen(drive.reply_id));
     }
     table += "\n";
   }

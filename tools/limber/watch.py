@@ -109,8 +109,9 @@ class View:
         if status["contact"]:
             table.add_row("contact", *(f"{v:+.1f}" for v in status["F_ext"][:3]), "N")
             table.add_row("", *(f"{v:+.2f}" for v in status["F_ext"][3:]), "N m")
-        for energy in ("spring", "tank", "passivity"):
-            table.add_row(energy, f"{float(status[f'{energy}_energy_J']):+.3f}", "", "", "J")
+        energies = {"spring": "spring", "tank": "tank", "passive": "passivity"}
+        for label, energy in energies.items():
+            table.add_row(label, f"{float(status[f'{energy}_energy_J']):+.3f}", "", "", "J")
         return table
 
     def _joint_name(self, index: int) -> str:
