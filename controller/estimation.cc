@@ -12,9 +12,6 @@ namespace {
 
 constexpr double kFrictionFade_rad_per_s = 0.02;
 constexpr double kLeastNoise_rad = 1e-7;
-// Where the observed torque is mapped to the tip.
-constexpr double kSigma_0 = 0.05;
-constexpr double kLambdaMax = 0.05;
 
 // Standard deviation of the coarsest encoder's rounding.
 double rounding_noise(const Robot& robot) {
@@ -146,7 +143,7 @@ void Estimation::observe_joint_torque(const ArmState& state, const ArmTerms& ter
                                       const TaskRows& rows, ArmModel* model) noexcept {
   const VectorJ beta = coriolis_transpose(model, terms, state.q, state.v) - terms.g;
   estimates_.tau_ext = momentum_.update(terms.M_total * state.v, state.tau_applied, beta);
-  const DampedInverse inverse = damped_inverse(rows.of(terms.J), kSigma_0, kLambdaMax);
+  const DampedInverse inverse = damped_inverse(rows.of(terms.J));
   estimates_.F_ext = inverse.inverse.transpose() * estimates_.tau_ext;
 }
 

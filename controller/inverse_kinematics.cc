@@ -8,8 +8,6 @@ namespace {
 
 constexpr int kStepsPerCycle = 3;
 constexpr int kStepsToApproach = 20;
-constexpr double kSigma_0 = 0.05;
-constexpr double kLambdaMax = 0.05;
 constexpr double kLongestStep_rad = 0.1;
 constexpr double kPostureRate_per_s = 1.0;
 
@@ -29,7 +27,7 @@ void InverseKinematics::reset(const VectorJ& q) noexcept {
 void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
   const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
   const Matrix6J J = rows.of(Matrix6J(error.A * model_.jacobian(q_)));
-  VectorJ step = -damped_inverse(J, kSigma_0, kLambdaMax).inverse * error.e;
+  VectorJ step = -damped_inverse(J).inverse * error.e;
   const double longest = step.cwiseAbs().maxCoeff();
   if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
   if (step.allFinite()) q_ += step;
@@ -43,7 +41,7 @@ void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noe
   q_ += dt_s * drift_;
   for (int i = 0; i < kStepsPerCycle; ++i) correct(rows, goal->X_BD);
   const Matrix6J J = rows.of(model_.jacobian(q_));
-  const MatrixJ6 inverse = damped_inverse(J, kSigma_0, kLambdaMax).inverse;
+  const MatrixJ6 inverse = damped_inverse(J).inverse;
   const VectorJ posture = kPostureRate_per_s * (goal->q_null - q_);
   drift_ = posture - inverse * (J * posture);
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 namespace limber::controller {
+
 TaskRows::TaskRows(const Matrix6& K_x) noexcept {
   for (int i = 0; i < 6; ++i) stiff[i] = K_x.row(i).cwiseAbs().maxCoeff() > 0.0;
 }
@@ -18,6 +19,13 @@ Matrix6J TaskRows::of(Matrix6J J) const noexcept {
     if (!stiff[i]) J.row(i).setZero();
   }
   return J;
+}
+
+MatrixJ6 TaskRows::of(MatrixJ6 Minv_JT) const noexcept {
+  for (int i = 0; i < 6; ++i) {
+    if (!stiff[i]) Minv_JT.col(i).setZero();
+  }
+  return Minv_JT;
 }
 
 Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept {
@@ -54,8 +62,7 @@ const char* refuse_tip_inertia(const Gains& gains) noexcept {
 }
 
 TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept {
-  const MatrixJ6 Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
-  return tip_mobility(rows.of(terms.J), Minv_JT);
+  return tip_mobility(rows.of(terms.J), rows.of(terms.Minv_JT));
 }
 
 Vector6 TaskRows::of(Vector6 F) const noexcept {
@@ -78,8 +85,7 @@ MatrixJ null_space_projector(const ArmTerms& terms, const TaskRows& rows, Projec
   if (projector == Projector::kNone) return N;
   const Matrix6J J = rows.of(terms.J);
   MatrixJ6 Minv_JT = J.transpose();  // unit inertia
-  if (projector == Projector::kDynamic)
-    Minv_JT = rows.of(Matrix6J(terms.Minv_JT.transpose())).transpose();
+  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT);
   const TipMobility mobility = tip_mobility(J, Minv_JT);
   if (!(mobility.s[5] > 0.0)) return N;  // no task
   const Matrix6 inertia = damped_tip_inertia(mobility, mobility.threshold(lost_share));

@@ -20,6 +20,8 @@ struct TaskRows {
   /// M with the rows that are not stiff set to zero.
   Matrix6J of(Matrix6J J) const noexcept;
   Vector6 of(Vector6 F) const noexcept;
+  /// The same for the columns of M^-1 J^T.
+  MatrixJ6 of(MatrixJ6 Minv_JT) const noexcept;
 
   bool stiff[6];
 };

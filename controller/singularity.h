@@ -48,7 +48,11 @@ struct DampedInverse {
   MatrixJ6 inverse;
 };
 
+inline constexpr double kSigma_0 = 0.05;
+inline constexpr double kLambdaMax = 0.05;
+
 /// May be called in the cycle.
-DampedInverse damped_inverse(const Matrix6J& J, double sigma_0, double lambda_max) noexcept;
+DampedInverse damped_inverse(const Matrix6J& J, double sigma_0 = kSigma_0,
+                             double lambda_max = kLambdaMax) noexcept;
 
 }  // namespace limber::controller

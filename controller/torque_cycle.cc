@@ -14,9 +14,6 @@ constexpr double kNullShare = 0.3;
 // Of what the damper takes out, this much goes into the tank.
 constexpr double kTankShare = 0.9;
 constexpr double kSlowest = 1e-12;  // m^2/s^2
-// Joint velocities for a motion at the tip.
-constexpr double kSigma_0 = 0.05;
-constexpr double kLambdaMax = 0.05;
 
 int checked_law(const std::string& name, unsigned sensors) {
   const int index = find_law(name);
@@ -218,7 +215,7 @@ VectorJ TorqueCycle::friction() const noexcept {
   if (active_.settings.friction == FrictionCompensation::kNone) return none_;
   VectorJ v_d = goal_.v_d;
   if (!follows_joints(entry().follows)) {
-    v_d = damped_inverse(terms_.J, kSigma_0, kLambdaMax).inverse * goal_.V_BD;
+    v_d = damped_inverse(terms_.J).inverse * goal_.V_BD;
   }
   return estimation_.friction(v_d, state_);
 }

@@ -26,12 +26,7 @@ class AccelFeedback : public Law {
     const Vector6 F_spring = -error.A.transpose() * Ke;
     const Vector6 F_damping = -D_x_ * (in.terms.V_BT - in.goal.V_BD);
     const Vector6 F_other = in.goal.F_ff - in.gains.M_x * in.estimates.A_BT;
-    const auto JT = in.terms.J.transpose();
-    out->F = F_spring + F_damping + F_other;
-    out->F_other = F_other;
-    out->tau_stiffness = JT * F_spring;
-    out->tau_damping = JT * F_damping;
-    out->tau_feedforward = JT * F_other;
+    out->act_at_tip(in.terms.J, F_spring, F_damping, F_other);
     out->spring_energy_J = 0.5 * error.e.dot(Ke);
   }
 

@@ -32,7 +32,6 @@ class CartesianImpedance : public Law {
       read_stiffness(in.gains);
     }
     if (in.damping_due) D_x_ = chosen_tip_damping(in.gains, in.terms);
-    const auto JT = in.terms.J.transpose();
     const PoseError error = pose_error(in.terms.X_BT, in.goal.X_BD, in.gains.settings.orientation);
 
     const Vector6 Ke = K_x_ * error.e;
@@ -41,11 +40,7 @@ class CartesianImpedance : public Law {
     const Vector6 F_damping = -damping(in.gains) * (in.terms.V_BT - in.goal.V_BD);
 
     const Vector6 F_other = in.goal.F_ff + inertia_force(in);
-    out->F = F_spring + F_damping + F_other;
-    out->F_other = F_other;
-    out->tau_stiffness = JT * F_spring;
-    out->tau_damping = JT * F_damping;
-    out->tau_feedforward = JT * F_other;
+    out->act_at_tip(in.terms.J, F_spring, F_damping, F_other);
     out->spring_energy_J = spring.energy_J;
     if (spring.scale < 1.0) out->limits |= controller_status_t::LIMIT_ERROR;
   }

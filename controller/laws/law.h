@@ -92,6 +92,15 @@ struct LawOutput {
     spring_energy_J = 0.0;
     limits = 0;
   }
+  /// A law at the tip: its wrench by parts, and the joint torques they take.
+  void act_at_tip(const Matrix6J& J, const Vector6& F_spring, const Vector6& F_damping,
+                  const Vector6& F_rest) noexcept {
+    F = F_spring + F_damping + F_rest;
+    F_other = F_rest;
+    tau_stiffness = J.transpose() * F_spring;
+    tau_damping = J.transpose() * F_damping;
+    tau_feedforward = J.transpose() * F_rest;
+  }
   VectorJ tau() const noexcept { return tau_stiffness + tau_damping + tau_feedforward; }
 
   VectorJ tau_stiffness;

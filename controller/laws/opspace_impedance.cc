@@ -32,12 +32,7 @@ class OpspaceImpedance : public Law {
     const Vector6 F_ext = rows.of(in.estimates.F_ext);
     const Vector6 F_other =
         gain * (F_ext + in.goal.F_ff) - F_ext + Lambda * (in.goal.A_BD - in.terms.Jdot_v);
-    const auto JT = in.terms.J.transpose();
-    out->F = F_spring + F_damping + F_other;
-    out->F_other = F_other;
-    out->tau_stiffness = JT * F_spring;
-    out->tau_damping = JT * F_damping;
-    out->tau_feedforward = JT * F_other;
+    out->act_at_tip(in.terms.J, F_spring, F_damping, F_other);
     out->spring_energy_J = 0.5 * error.e.dot(Ke);
   }
 

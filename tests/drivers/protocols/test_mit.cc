@@ -10,6 +10,7 @@
 
 #include "drivers/protocols/mit.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/frame_text.h"
 
 namespace limber::mit {
 namespace {
@@ -20,28 +21,8 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array kQuantisers = {Quantiser::kTruncate, Quantiser::kRound};
 
-/// A frame as candump prints it: ID#DATA.
-std::string text(const CanFrame& frame) {
-  std::array<char, 16> part{};
-  std::snprintf(part.data(), part.size(), "%03X#", frame.id);
-  std::string all = part.data();
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    std::snprintf(part.data(), part.size(), "%02X", frame.data[i]);
-    all += part.data();
-  }
-  return all;
-}
-
-CanFrame parse(const std::string& candump) {
-  CanFrame frame;
-  const auto hash = candump.find('#');
-  frame.id = static_cast<std::uint32_t>(std::stoul(candump.substr(0, hash), nullptr, 16));
-  for (std::size_t i = hash + 1; i + 1 < candump.size(); i += 2) {
-    frame.data[frame.length++] =
-        static_cast<std::uint8_t>(std::stoul(candump.substr(i, 2), nullptr, 16));
-  }
-  return frame;
-}
+using limber::testing::parse;
+using limber::testing::text;
 
 std::string encoded(const Command& command, const CommandRange& range, std::uint32_t id,
                     Quantiser quantiser) {

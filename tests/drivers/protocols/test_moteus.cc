@@ -12,6 +12,7 @@
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/frame_text.h"
 
 namespace limber::moteus {
 namespace {
@@ -19,26 +20,11 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array kTypes = {Type::kInt8, Type::kInt16, Type::kInt32, Type::kFloat};
 
-std::string text(const CanFrame& frame) {
-  std::array<char, 16> part{};
-  std::snprintf(part.data(), part.size(), "%03X#", frame.id);
-  std::string all = part.data();
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    std::snprintf(part.data(), part.size(), "%02X", frame.data[i]);
-    all += part.data();
-  }
-  return all;
-}
+using limber::testing::text;
 
 CanFrame parse(const std::string& candump) {
-  CanFrame frame;
+  CanFrame frame = limber::testing::parse(candump);
   frame.fd = true;
-  const auto hash = candump.find('#');
-  frame.id = static_cast<std::uint32_t>(std::stoul(candump.substr(0, hash), nullptr, 16));
-  for (std::size_t i = hash + 1; i + 1 < candump.size(); i += 2) {
-    frame.data[frame.length++] =
-        static_cast<std::uint8_t>(std::stoul(candump.substr(i, 2), nullptr, 16));
-  }
   return frame;
 }
 
