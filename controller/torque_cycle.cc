@@ -108,7 +108,10 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
   forget_energy();
   match_goals();
   refresh_gains();
-  laws_[static_cast<std::size_t>(law)]->start(inputs(0.0));
+  // A law starts with terms of now, due or not.
+  LawInputs now = inputs(0.0);
+  now.stiffness_due = now.damping_due = true;
+  laws_[static_cast<std::size_t>(law)]->start(now);
 }
 
 const char* TorqueCycle::set_goal(const compliance_goal_t& message) noexcept {

@@ -20,10 +20,14 @@ class Eq4 : public Law {
         K_q_(MatrixJ::Zero(model_.size(), model_.size())),
         K_v_(K_q_) {}
 
-  void start(const LawInputs& in) noexcept override { map(in); }
+  void start(const LawInputs& in) noexcept override {
+    map(in);
+    K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
+  }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.stiffness_due) map(in);
+    // The design wants a spring: where the load makes it none, it takes the rest.
     if (in.damping_due) K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
     const VectorJ error = in.state.q - in.goal.q_d;
     out->F = in.goal.F_ff;
@@ -40,8 +44,6 @@ class Eq4 : public Law {
     if (in.gains.settings.stiffness_terms != StiffnessTerms::kFirst) {
       K_q_ += geometric_term(J_, -in.goal.F_ff);
     }
-    // The damping design wants a spring: where the load makes it none, it takes the rest.
-    K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
   }
 
   ArmModel model_;

@@ -98,6 +98,21 @@ TEST(TermPeriods, JacobianIsHeldWhileThePoseIsNot) {
   }
 }
 
+// A law that starts between two evaluations does not wait for the next with nothing to hold by.
+TEST(TermPeriods, ALawStartsWithTermsOfNow) {
+  Rig rig(limber::testing::seven_joint_arm());
+  rig.to_active();
+  rig.plant.F_ext << 4.0, -3.0, 2.0, 0.0, 0.0, 0.0;
+  rig.run(1.0);
+  const double before = Vector6::Map(rig.controller.status().e).head<3>().norm();
+  Gains gains = rig.gains();
+  gains.law = "eq7";
+  gains.period_cycles[Gains::PERIOD_K] = gains.period_cycles[Gains::PERIOD_D] = 1000;
+  ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
+  rig.run(0.6);
+  EXPECT_LT(Vector6::Map(rig.controller.status().e).head<3>().norm(), 1.5 * before);
+}
+
 TEST(TermPeriods, RefusesPeriodsOutOfRange) {
   Rig rig(limber::testing::seven_joint_arm());
   rig.to_active();
