@@ -35,6 +35,21 @@ std::string wanted(Range allowed) {
   return fmt::format("a number from {} to {}", allowed.low, allowed.high);
 }
 
+/// Neither node is changed; what is not merged is shared.
+YAML::Node merged(const YAML::Node& under, const YAML::Node& over) {
+  if (!under.IsDefined() || !under.IsMap() || !over.IsMap()) return over;
+  YAML::Node result(YAML::NodeType::Map);
+  for (const auto& entry : under) {
+    const YAML::Node replacement = over[entry.first.Scalar()];
+    result[entry.first] =
+        replacement.IsDefined() ? merged(entry.second, replacement) : entry.second;
+  }
+  for (const auto& entry : over) {
+    if (!under[entry.first.Scalar()].IsDefined()) result[entry.first] = entry.second;
+  }
+  return result;
+}
+
 }  // namespace
 
 YamlMap::YamlMap(const YAML::Node& node, std::string path, std::shared_ptr<const std::string> file)
@@ -66,6 +81,11 @@ YamlMap YamlMap::from_text(const std::string& text, const std::string& name) {
   } catch (const YAML::Exception& error) {
     throw ConfigError::at(name, error.mark.line + 1, "", "not valid YAML: " + error.msg);
   }
+}
+
+YamlMap YamlMap::merged_with(const YamlMap& other) const {
+  const std::string files = fmt::format("{} with {}", *file_, *other.file_);
+  return YamlMap(merged(node_, other.node_), path_, std::make_shared<std::string>(files));
 }
 
 std::string YamlMap::path_to(const std::string& key) const {

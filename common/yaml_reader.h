@@ -26,6 +26,10 @@ class YamlMap {
   /// The same from text; `name` stands for the file in messages.
   static YamlMap from_text(const std::string& text, const std::string& name);
 
+  /// This mapping with another merged onto it: mappings are merged key by key, everything else
+  /// replaces what is there. Messages name both files and the line of whichever the value is from.
+  YamlMap merged_with(const YamlMap& other) const;
+
   /// Whether the key is there; marks it as known.
   bool has(const std::string& key) const;
   /// Whether the key's value is a list (or a mapping); marks it as known.

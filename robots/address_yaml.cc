@@ -14,47 +14,62 @@ void read_damiao(const YamlMap& yaml, DriveConfig* drive) {
   if (drive->reply_id == drive->command_id) yaml.refuse("reply_id", "must differ from id");
 }
 
-void read_moteus(const YamlMap& yaml, const Robot& robot, JointConfig* joint) {
-  DriveConfig& drive = joint->drive;
+void need_fd(const YamlMap& yaml, const Robot& robot, const DriveConfig& drive) {
   const BusConfig& bus = robot.buses[static_cast<std::size_t>(drive.bus)];
-  if (!bus.fd)
-    yaml.refuse("bus",
-                fmt::format("'{}' is classic; moteus drives need CAN-FD (fd: true)", bus.name));
-  if (joint->type == JointType::kPrismatic)
-    yaml.refuse("motor", "moteus drives count turns: they can only move rotary joints");
-  if (yaml.has("reply_id"))
-    yaml.refuse("reply_id", "is for motors with protocol: damiao_mit only; the id says it here");
-  const auto id = static_cast<std::uint32_t>(yaml.integer("id", 1, 126));
-  drive.command_id = 0x8000U | id;
-  drive.reply_id = id << 8U;
+  if (bus.fd) return;
+  yaml.refuse("bus", fmt::format("'{}' is classic; {} drives need CAN-FD (fd: true)", bus.name,
+                                 drive.protocol == DriveProtocol::kMoteus ? "moteus" : "cia402"));
 }
 
-void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index) {
-  const DriveConfig& mine = robot.joints[index].drive;
-  for (std::size_t i = 0; i < index; ++i) {
-    const DriveConfig& other = robot.joints[i].drive;
-    if (other.bus != mine.bus) continue;
-    const std::string taken = fmt::format("is taken by {} on the same bus", robot.joints[i].name);
-    if (other.command_id == mine.command_id || other.reply_id == mine.command_id)
-      yaml.refuse("id", fmt::format("{} {}", yaml.integer("id", 1, 126), taken));
-    if (other.command_id == mine.reply_id || other.reply_id == mine.reply_id)
-      yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+void read_numbered(const YamlMap& yaml, const Robot& robot, JointType type, DriveConfig* drive) {
+  need_fd(yaml, robot, *drive);
+  if (type == JointType::kPrismatic)
+    yaml.refuse("motor", "these drives count turns: they can only move rotary joints");
+  if (yaml.has("reply_id"))
+    yaml.refuse("reply_id", "is for motors with protocol: damiao_mit only; the id says it here");
+  const bool moteus = drive->protocol == DriveProtocol::kMoteus;
+  const auto id = static_cast<std::uint32_t>(yaml.integer("id", 1, moteus ? 126 : 127));
+  drive->command_id = moteus ? 0x8000U | id : 0x200U + id;
+  drive->reply_id = moteus ? id << 8U : 0x180U + id;
+}
+
+void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig& other,
+                 const std::string& owner) {
+  if (other.bus != mine.bus) return;
+  const std::string taken = fmt::format("is taken by {} on the same bus", owner);
+  if (other.command_id == mine.command_id || other.reply_id == mine.command_id)
+    yaml.refuse("id", fmt::format("{} {}", yaml.integer("id", 1, 127), taken));
+  if (other.command_id == mine.reply_id || other.reply_id == mine.reply_id)
+    yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+}
+
+void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,
+                const DriveConfig& mine) {
+  for (std::size_t i = 0; i <= index; ++i) {
+    const JointConfig& joint = robot.joints[i];
+    if (&joint.drive != &mine && (i < index || &joint.antagonist == &mine))
+      refuse_same(yaml, mine, joint.drive, joint.name);
+    if (joint.has_antagonist && &joint.antagonist != &mine)
+      refuse_same(yaml, mine, joint.antagonist, joint.name);
   }
 }
 
 }  // namespace
 
-void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, JointConfig* joint) {
+void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, DriveConfig* drive) {
   std::vector<std::string> names;
   for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
-  const std::string bus = yaml.word("bus", names);
-  joint->drive.bus = static_cast<int>(std::find(names.begin(), names.end(), bus) - names.begin());
-  if (joint->drive.protocol == DriveProtocol::kMoteus) {
-    read_moteus(yaml, robot, joint);
+  const bool antagonist = drive == &robot.joints[index].antagonist;
+  const std::string bus =
+      antagonist ? yaml.word_or("bus", names, names[static_cast<std::size_t>(drive->bus)])
+                 : yaml.word("bus", names);
+  drive->bus = static_cast<int>(std::find(names.begin(), names.end(), bus) - names.begin());
+  if (drive->protocol == DriveProtocol::kDamiaoMit) {
+    read_damiao(yaml, drive);
   } else {
-    read_damiao(yaml, &joint->drive);
+    read_numbered(yaml, robot, robot.joints[index].type, drive);
   }
-  check_free(yaml, robot, index);
+  check_free(yaml, robot, index, *drive);
 }
 
 }  // namespace limber

@@ -7,20 +7,10 @@
 
 #include "common/complaints.h"
 #include "robots/address_yaml.h"
+#include "robots/joint_chain_yaml.h"
 
 namespace limber {
 namespace {
-
-/// Endings of the keys of one joint.
-struct Units {
-  std::string position, velocity, force, force_rate, stiffness, damping;
-};
-const Units kRotary = {"_rad", "_rad_per_s", "_Nm", "_Nm_per_s", "_Nm_per_rad", "_Nms_per_rad"};
-const Units kLinear = {"_m", "_m_per_s", "_N", "_N_per_s", "_N_per_m", "_Ns_per_m"};
-
-const Units& units_of(const JointConfig& joint) {
-  return joint.type == JointType::kPrismatic ? kLinear : kRotary;
-}
 
 /// A limit that robot.yaml may only tighten.
 void tighten(const YamlMap& yaml, const std::string& key, double* limit) {
@@ -32,7 +22,7 @@ void tighten(const YamlMap& yaml, const std::string& key, double* limit) {
 }
 
 void read_limits(const YamlMap& yaml, JointConfig* joint) {
-  const Units& units = units_of(*joint);
+  const JointUnits& units = units_of(*joint);
   const std::string low = "position_min" + units.position;
   const std::string high = "position_max" + units.position;
   if (yaml.has(low)) {
@@ -78,22 +68,7 @@ void check_drive_range(const YamlMap& yaml, const JointConfig& joint) {
   }
 }
 
-FrictionConfig read_friction(const YamlMap& yaml, const Units& units) {
-  FrictionConfig friction;
-  friction.coulomb_Nm = yaml.number("coulomb" + units.force, {0.0, 1000.0});
-  friction.static_Nm = yaml.number_or("static" + units.force, {0.0, 1000.0}, friction.coulomb_Nm);
-  if (!(friction.static_Nm >= friction.coulomb_Nm))
-    yaml.refuse("static" + units.force, "must be at least the coulomb friction");
-  friction.viscous_Nms_per_rad = yaml.number("viscous" + units.damping, {0.0, 1000.0});
-  friction.stribeck_rad_per_s =
-      yaml.number_or("stribeck" + units.velocity, {1e-6, 100.0}, friction.stribeck_rad_per_s);
-  friction.bristle_rad =
-      yaml.number_or("bristle" + units.position, {1e-7, 0.1}, friction.bristle_rad);
-  yaml.finish();
-  return friction;
-}
-
-void read_hold(const YamlMap& yaml, const Units& units, DriveConfig* drive) {
+void read_hold(const YamlMap& yaml, const JointUnits& units, DriveConfig* drive) {
   drive->hold_kp_Nm_per_rad =
       yaml.number("kp" + units.stiffness, {0.0, drive->range.kp_Nm_per_rad});
   drive->hold_kd_Nms_per_rad =
@@ -101,18 +76,43 @@ void read_hold(const YamlMap& yaml, const Units& units, DriveConfig* drive) {
   yaml.finish();
 }
 
+/// How the drive's coordinates lie in the joint's.
+void read_mounting(const YamlMap& yaml, const JointUnits& units, DriveConfig* drive) {
+  const long sign = yaml.integer_or("sign", -1, 1, 1);
+  if (sign == 0) yaml.refuse("sign", "found '0'; expected 1 or -1");
+  drive->sign = static_cast<double>(sign);
+  drive->offset_rad = yaml.number_or("offset" + units.position, {-1e3, 1e3}, 0.0);
+}
+
+std::vector<std::string> names_of(const std::map<std::string, DriveConfig>& motors) {
+  std::vector<std::string> names;
+  names.reserve(motors.size());
+  for (const auto& [name, motor] : motors) names.push_back(name);
+  return names;
+}
+
+void read_antagonist(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
+                     const JointUnits& units, const Robot& robot, std::size_t index,
+                     JointConfig* joint) {
+  joint->has_antagonist = true;
+  joint->antagonist = motors.at(yaml.word_or("motor", names_of(motors), joint->drive.motor));
+  if (joint->antagonist.protocol != joint->drive.protocol)
+    yaml.refuse("motor", "speaks another protocol than the first motor");
+  joint->antagonist.bus = joint->drive.bus;
+  read_address(yaml, robot, index, &joint->antagonist);
+  read_mounting(yaml, units, &joint->antagonist);
+  yaml.finish();
+}
+
 void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
                 std::size_t index, Robot* robot) {
   JointConfig& joint = robot->joints[index];
-  const Units& units = units_of(joint);
-  std::vector<std::string> types;
-  types.reserve(motors.size());
-  for (const auto& [name, motor] : motors) types.push_back(name);
-  joint.drive = motors.at(yaml.word("motor", types));
-  read_address(yaml, *robot, index, &joint);
-  joint.drive.sign = yaml.integer_or("sign", -1, 1, 1) == -1 ? -1.0 : 1.0;
-  if (yaml.integer_or("sign", -1, 1, 1) == 0) yaml.refuse("sign", "found '0'; expected 1 or -1");
-  joint.drive.offset_rad = yaml.number_or("offset" + units.position, {-1e3, 1e3}, 0.0);
+  const JointUnits& units = units_of(joint);
+  joint.drive = motors.at(yaml.word("motor", names_of(motors)));
+  read_address(yaml, *robot, index, &joint.drive);
+  read_mounting(yaml, units, &joint.drive);
+  if (yaml.has("antagonist"))
+    read_antagonist(yaml.map("antagonist"), motors, units, *robot, index, &joint);
   read_limits(yaml, &joint);
   check_drive_range(yaml, joint);
   joint.home = yaml.number("home" + units.position, {-1e3, 1e3});
@@ -121,8 +121,12 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
                 fmt::format("{} is outside the limits {} to {}", joint.home, joint.position_min,
                             joint.position_max));
   }
-  if (yaml.has("friction")) joint.friction = read_friction(yaml.map("friction"), units);
+  read_joint_chain(yaml, robot->rate_hz, &joint);
   read_hold(yaml.map("hold"), units, &joint.drive);
+  if (joint.has_antagonist) {
+    joint.antagonist.hold_kp_Nm_per_rad = joint.drive.hold_kp_Nm_per_rad;
+    joint.antagonist.hold_kd_Nms_per_rad = joint.drive.hold_kd_Nms_per_rad;
+  }
   yaml.finish();
 }
 

@@ -88,11 +88,7 @@ void fill_default_gains(Robot* robot) {
   robot->gains.D_null.assign(n, 0.5);
 }
 
-}  // namespace
-
-LoadedRobot load_robot(const std::string& name_or_path) {
-  const fs::path folder = find_robot(name_or_path);
-  const YamlMap yaml = YamlMap::from_file(folder / "robot.yaml");
+LoadedRobot load_from(const YamlMap& yaml, const fs::path& folder) {
   const RobotHeader header = read_robot_header(yaml);
   std::error_code error;
   if (!fs::is_regular_file(folder / header.urdf, error))
@@ -104,6 +100,18 @@ LoadedRobot load_robot(const std::string& name_or_path) {
   check_tool_mass(yaml, loaded);
   check_mass_matrix(loaded, loaded.robot.urdf_path);
   return loaded;
+}
+
+}  // namespace
+
+LoadedRobot load_robot(const std::string& name_or_path) {
+  const fs::path folder = find_robot(name_or_path);
+  return load_from(YamlMap::from_file(folder / "robot.yaml"), folder);
+}
+
+LoadedRobot load_reality(const std::string& name_or_path, const YamlMap& reality) {
+  const fs::path folder = find_robot(name_or_path);
+  return load_from(YamlMap::from_file(folder / "robot.yaml").merged_with(reality), folder);
 }
 
 LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, const std::string& tip,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/yaml_reader.h"
 #include "robots/robot.h"
 
 namespace limber {
@@ -27,6 +28,10 @@ struct LoadedRobot {
 /// `robots_root()`). Throws ConfigError naming file, line, key, value and what is allowed. Set-up
 /// only.
 LoadedRobot load_robot(const std::string& name_or_path);
+
+/// The same arm as it really is: `reality` merged onto its robot.yaml. For the simulator, which has
+/// to be different from what drives and controller believe. Throws ConfigError. Set-up only.
+LoadedRobot load_reality(const std::string& name_or_path, const YamlMap& reality);
 
 /// Loads a bare URDF; limits come from the URDF, there are no drives. gravity in axes of the URDF's
 /// root link.

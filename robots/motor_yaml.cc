@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/joints.h"
+#include "robots/actuator_yaml.h"
 
 namespace limber {
 namespace {
@@ -34,6 +35,7 @@ void refuse_keys_of(const YamlMap& yaml, const std::string& protocol,
 
 void read_damiao(const YamlMap& yaml, DriveConfig* drive) {
   refuse_keys_of(yaml, "moteus", {"pid_position", "timeout_torque_Nm"});
+  refuse_keys_of(yaml, "cia402", {"rated_torque_Nm"});
   drive->protocol = DriveProtocol::kDamiaoMit;
   drive->range = read_range(yaml.map("mit_range"));
   drive->encoder_bits = static_cast<int>(yaml.integer("encoder_bits", 8, 24));
@@ -44,11 +46,13 @@ void read_damiao(const YamlMap& yaml, DriveConfig* drive) {
   }
 }
 
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
 /// Floats carry everything; kp and kd go as a share of what is configured in the drive.
 void read_moteus(const YamlMap& yaml, DriveConfig* drive) {
   refuse_keys_of(yaml, "damiao_mit", {"mit_range"});
+  refuse_keys_of(yaml, "cia402", {"rated_torque_Nm"});
   drive->protocol = DriveProtocol::kMoteus;
-  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   const YamlMap gains = yaml.map("pid_position");
   drive->range = {kNoEnd, kNoEnd, kNoEnd, gains.number("kp_Nm_per_turn", {1e-3, 1e5}) / kTurn_rad,
@@ -62,11 +66,29 @@ void read_moteus(const YamlMap& yaml, DriveConfig* drive) {
   drive->reply_bytes = 32;
 }
 
+/// Torques are 16-bit thousandths of the rated torque; the driver makes stiffness and damping.
+void read_cia402(const YamlMap& yaml, DriveConfig* drive) {
+  refuse_keys_of(yaml, "damiao_mit", {"mit_range"});
+  refuse_keys_of(yaml, "moteus", {"pid_position", "timeout_torque_Nm"});
+  drive->protocol = DriveProtocol::kCia402;
+  drive->rated_torque_Nm = yaml.number("rated_torque_Nm", {0.001, 1e4});
+  constexpr double kMost = 32.767;  // times the rated torque
+  drive->range = {kNoEnd, kNoEnd, kMost * drive->rated_torque_Nm, kNoEnd, kNoEnd};
+  if (!(drive->peak_torque_Nm <= drive->range.torque_Nm)) {
+    yaml.refuse("rated_torque_Nm",
+                fmt::format("{} cannot carry the peak torque of {}: 32767 thousandths are {:.4g}",
+                            drive->rated_torque_Nm, drive->peak_torque_Nm, drive->range.torque_Nm));
+  }
+  drive->encoder_bits = static_cast<int>(yaml.integer("encoder_bits", 8, 28));
+  drive->command_bytes = 4;
+  drive->reply_bytes = 16;
+}
+
 DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   DriveConfig drive;
   drive.motor = name;
   yaml.text_or("description", "-");
-  const bool moteus = yaml.word("protocol", {"damiao_mit", "moteus"}) == "moteus";
+  const std::string protocol = yaml.word("protocol", {"damiao_mit", "moteus", "cia402"});
   drive.gear_ratio = yaml.number("gear_ratio", {0.1, 1000.0});
   const double ratio_squared = drive.gear_ratio * drive.gear_ratio;
   drive.rotor_inertia_kgm2 = ratio_squared * yaml.number("rotor_inertia_kgm2", {0.0, 1.0});
@@ -75,7 +97,11 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   drive.torque_constant_Nm_per_A = drive.gear_ratio * kt;
   drive.short_circuit_damping_Nms = 2.0 / 3.0 * kt * kt / resistance * ratio_squared;
   drive.peak_torque_Nm = yaml.number("peak_torque_Nm", {0.01, 2000.0});
-  (moteus ? read_moteus : read_damiao)(yaml, &drive);
+  if (yaml.has("actuator")) drive.actuator = read_actuator(yaml.map("actuator"));
+  drive.actuator.resistance_ohm = resistance;
+  if (protocol == "damiao_mit") read_damiao(yaml, &drive);
+  if (protocol == "moteus") read_moteus(yaml, &drive);
+  if (protocol == "cia402") read_cia402(yaml, &drive);
   yaml.finish();
   return drive;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "robots/joint_chain.h"
 #include "robots/tip_sensor_config.h"
 
 namespace limber {
@@ -22,10 +23,11 @@ struct BusConfig {
 };
 
 /// The protocol a drive speaks.
-enum class DriveProtocol : std::uint8_t { kDamiaoMit, kMoteus };
+enum class DriveProtocol : std::uint8_t { kDamiaoMit, kMoteus, kCia402 };
 
 /// What a drive's command frames can carry. MIT: the ranges both sides of the link must agree on.
 /// moteus: kp and kd are the gains configured in the drive, at scale 1; the others are infinite.
+/// CiA 402: the torque that 32767 thousandths of the rated torque are; the others are infinite.
 struct CommandRange {
   double position_rad = 12.5;
   double velocity_rad_per_s = 30.0;
@@ -59,18 +61,11 @@ struct DriveConfig {
   double watchdog_s = 0.02;                ///< written to the drive
   NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
   double timeout_torque_Nm = 5.0;   ///< moteus: most that brakes the joint after a time-out
-  int encoder_bits = 14;            ///< per joint revolution
+  double rated_torque_Nm = 1.0;     ///< CiA 402: torques count in thousandths of it (6076h)
+  int encoder_bits = 14;            ///< motor encoder, per joint revolution
+  ActuatorConfig actuator;          ///< what makes torque of the command; for the simulator
   double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;
-};
-
-/// LuGre friction of a joint, motor side (control theory: bristle model). Zero: none.
-struct FrictionConfig {
-  double coulomb_Nm = 0.0;
-  double static_Nm = 0.0;  ///< breakaway, at least coulomb_Nm
-  double stribeck_rad_per_s = 0.05;
-  double viscous_Nms_per_rad = 0.0;
-  double bristle_rad = 1e-4;  ///< presliding deflection at coulomb_Nm
 };
 
 enum class JointType : std::uint8_t { kRevolute, kContinuous, kPrismatic };
@@ -88,7 +83,21 @@ struct JointConfig {
       0.0;  ///< what the gate lets pass from cycle to cycle, times the rate
   double home = 0.0;
   DriveConfig drive;
-  FrictionConfig friction;
+  bool has_antagonist = false;
+  DriveConfig antagonist;  ///< second motor of an antagonistic joint; counts only if there is one
+  TransmissionConfig transmission;
+  FrictionConfig friction;       ///< of each motor, before the transmission
+  FrictionConfig link_friction;  ///< behind it
+  LinkEncoderConfig link_encoder;
+  TorqueSensorConfig torque_sensor;
+  TorqueLoopConfig torque_loop;
+
+  int motors() const { return has_antagonist ? 2 : 1; }
+  bool rigid() const { return transmission.kind == TransmissionKind::kRigid; }
+  /// Rotor inertia behind the gear as it seems behind the drive's torque loop (B_theta), kg m^2.
+  double apparent_rotor_inertia_kgm2() const {
+    return drive.rotor_inertia_kgm2 / torque_loop.inertia_ratio;
+  }
 };
 
 /// Gains a robot starts with.
@@ -120,6 +129,11 @@ struct Robot {
   TipSensorConfig tip_sensor;  ///< counts only if there is one
 
   int size() const { return static_cast<int>(joints.size()); }
+  int motors() const {
+    int count = 0;
+    for (const JointConfig& joint : joints) count += joint.motors();
+    return count;
+  }
 
   /// Every bus is limber's own user-space one: as punctual as this machine's scheduler, not as a
   /// wire.

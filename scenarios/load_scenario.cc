@@ -38,6 +38,14 @@ double read_step(const YamlMap& yaml, double rate_hz) {
   return step_s;
 }
 
+/// Same joints, same buses: only what an arm is like may differ.
+LoadedRobot read_reality(const YamlMap& yaml, const LoadedRobot& robot) {
+  for (const char* key : {"format", "name", "base", "tip", "rate_hz", "buses", "watchdog"}) {
+    if (yaml.has(key)) yaml.refuse(key, "cannot differ between robot.yaml and reality");
+  }
+  return load_reality(robot.robot.folder, yaml);
+}
+
 void set_seq(std::int64_t seq, std::int64_t time_ns, ScenarioMessage* message) {
   std::visit(
       [&](auto& typed) {
@@ -100,6 +108,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot) {
   scenario.step_s = read_step(yaml, robot.robot.rate_hz);
   scenario.friction = yaml.boolean_or("friction", true);
   scenario.stand = yaml.boolean_or("stand", true);
+  if (yaml.has("reality")) scenario.reality = read_reality(yaml.map("reality"), robot);
   scenario.start_q = read_start(yaml, robot.robot);
   if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
     yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");

@@ -9,6 +9,7 @@
 #include <limber/mode_request_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,8 +39,10 @@ struct Scenario {
   Integrator integrator = Integrator::kOde;
   double step_s = 250e-6;  ///< integration step; a whole number of them makes a control period
   bool friction = true;
-  bool stand = true;            ///< the arm is carried at its start pose until the drives hold it
-  std::vector<double> start_q;  ///< pose of the simulated arm at time zero; defaults to home
+  bool stand = true;  ///< the arm is carried at its start pose until the drives hold it
+  /// The simulated arm, where it differs from what drives and controller believe.
+  std::optional<LoadedRobot> reality;
+  std::vector<double> start_q;         ///< pose of the simulated arm at time zero; defaults to home
   std::vector<TimedMessage> timeline;  ///< sorted by time, file order within the same time
 };
 

@@ -30,16 +30,19 @@ enum class DriveCondition : std::uint8_t {
 
 struct DriveReport {
   DriveCondition condition = DriveCondition::kDisabled;
-  double angle_rad = 0.0;
+  double angle_rad = 0.0;  ///< of the motor
   double speed_rad_per_s = 0.0;
-  double torque_Nm = 0.0;  ///< the drive's own estimate
+  double link_angle_rad = 0.0;         ///< beyond the spring; the motor's without a link encoder
+  double link_speed_rad_per_s = 0.0;
+  double torque_Nm = 0.0;  ///< on the link if the joint has a torque sensor, else the drive's estimate
   double current_A = 0.0;  ///< q axis
   double temperature_degC = 0.0;
 };
 
-/// One thing a drive is asked, or told and asked to repeat, before it may be enabled.
+/// One thing a drive is asked, or told and asked to repeat, before it may be enabled. `reg` is the
+/// family's own numbering; CANopen: index << 8 | subindex.
 struct StartupQuestion {
-  std::uint16_t reg = 0;
+  std::uint32_t reg = 0;
   double expected = 0.0;
 };
 enum class Answer : std::uint8_t { kNone, kRight, kWrong };
@@ -61,9 +64,17 @@ class DriveFamily {
   virtual CanFrame state_request() const noexcept = 0;
   /// Something every drive of the family answers, and which disturbs nothing.
   virtual CanFrame presence_request() const noexcept = 0;
+  /// True if the drives of this family take effect and answer at a frame of their own: the driver
+  /// sends `bus_frame` once a cycle on their bus, after all commands.
+  virtual bool needs_bus_frame(CanFrame* bus_frame) const noexcept {
+    static_cast<void>(bus_frame);
+    return false;
+  }
 
   // --- from the drive -------------------------------------------------------------------------
 
+  /// Whether the frame comes from this drive, whatever it says.
+  virtual bool is_mine(const CanFrame& frame) const noexcept = 0;
   /// False if the frame is no state of this drive.
   [[nodiscard]] virtual bool read_state(const CanFrame& frame,
                                         DriveReport* report) const noexcept = 0;

@@ -27,8 +27,8 @@ DamiaoNode::Sensed DamiaoNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_position_, 0.0, torque};
   const double step = 2.0 * std::numbers::pi / std::ldexp(1.0, drive_.encoder_bits);
-  const double angle = drive_.sign * joint.q + drive_.offset_rad;
-  return {std::floor(angle / step) * step + zero_, drive_.sign * joint.v, torque};
+  const double angle = drive_.sign * joint.theta + drive_.offset_rad;
+  return {std::floor(angle / step) * step + zero_, drive_.sign * joint.theta_dot, torque};
 }
 
 CanFrame DamiaoNode::state_frame(const CanFrame& request,
@@ -139,7 +139,7 @@ void DamiaoNode::leave(mit::DriveError state) noexcept {
              drive_.watchdog_reaction == NodeWatchdogReaction::kDamp;
 }
 
-void DamiaoNode::update(std::int64_t now_ns) noexcept {
+void DamiaoNode::update(const JointReading&, std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
   const std::int64_t timeout = registers_.timeout_ns();
   if (state_ == mit::DriveError::kEnabled && timeout > 0 && now_ns - last_frame_ns_ > timeout) {

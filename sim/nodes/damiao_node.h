@@ -28,7 +28,7 @@ class DamiaoNode final : public MotorNode {
   /// node.
   bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                CanFrame* reply) noexcept override;
-  void update(std::int64_t now_ns) noexcept override;
+  void update(const JointReading& joint, std::int64_t now_ns) noexcept override;
 
   /// kp, kd and t of the last command, limited to the smaller of the torque range and the drive's
   /// peak.

@@ -31,8 +31,8 @@ MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_turns_, 0.0, torque};
   const double counts = std::ldexp(1.0, drive_.encoder_bits);
-  const double turns = (drive_.sign * joint.q + drive_.offset_rad) / kTurn;
-  return {std::floor(turns * counts) / counts + zero_turns_, drive_.sign * joint.v / kTurn, torque};
+  const double turns = (drive_.sign * joint.theta + drive_.offset_rad) / kTurn;
+  return {std::floor(turns * counts) / counts + zero_turns_, drive_.sign * joint.theta_dot / kTurn, torque};
 }
 
 // --- frames --------------------------------------------------------------------------------------
@@ -128,9 +128,9 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
     case Register::kCurrentQ:
       return is(sensed.torque / drive_.torque_constant_Nm_per_A);
     case Register::kTorqueP:
-      return is(drive_.sign * now.kp * (now.q_des - joint.q));
+      return is(drive_.sign * now.kp * (now.q_des - joint.theta));
     case Register::kTorqueD:
-      return is(drive_.sign * now.kd * (now.v_des - joint.v));
+      return is(drive_.sign * now.kd * (now.v_des - joint.theta_dot));
     case Register::kTorqueFeedForward:
       return is(drive_.sign * now.tau_ff);
     case Register::kCurrentD:
@@ -190,7 +190,7 @@ double MoteusNode::watchdog_s() const noexcept {
   return asked == 0.0 ? kConfiguredWatchdog_s : asked;
 }
 
-void MoteusNode::update(std::int64_t now_ns) noexcept {
+void MoteusNode::update(const JointReading&, std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
   if (mode_ < Mode::kEnabling || mode_ > Mode::kPosition) return;
   // NaN never expires.

@@ -26,7 +26,7 @@ class MoteusNode final : public MotorNode {
 
   bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                CanFrame* reply) noexcept override;
-  void update(std::int64_t now_ns) noexcept override;
+  void update(const JointReading& joint, std::int64_t now_ns) noexcept override;
   /// Position mode: kd scale counts up to the kp scale only, and the total is held within the
   /// command's maximum torque and the drive's peak. There is no integrator.
   DriveLaw law() const noexcept override;

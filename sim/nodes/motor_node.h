@@ -10,11 +10,17 @@
 
 namespace limber::sim {
 
-/// The joint as it is, in joint coordinates. rad, rad/s, N m.
+/// What the sensors of one drive see, in joint coordinates: rad, rad/s, N m. On rigid joints the
+/// motor is where the link is.
 struct JointReading {
-  double q = 0.0;
+  double theta = 0.0;  ///< this drive's motor, behind the gear
+  double theta_dot = 0.0;
+  double q = 0.0;  ///< link
   double v = 0.0;
-  double motor_torque = 0.0;
+  double motor_torque = 0.0;  ///< of this drive's motor
+  double joint_torque = 0.0;  ///< as the torque sensor reads it; zero without one
+  double current_A = 0.0;
+  double winding_degC = 25.0;
 };
 
 /// After construction every member is allowed in the cycle.
@@ -25,12 +31,20 @@ class MotorNode {
   /// Handles a frame at simulated time `now`. True if `reply` is to be sent.
   virtual bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                        CanFrame* reply) noexcept = 0;
+  /// What the node says unasked (start-up, heartbeat, emergency); false when there is no more.
+  virtual bool take(CanFrame* frame) noexcept {
+    static_cast<void>(frame);
+    return false;
+  }
 
-  /// Lets simulated time pass: the drive's own watchdog, the end of faults. Call before every
-  /// integration step.
-  virtual void update(std::int64_t now_ns) noexcept = 0;
+  /// Lets simulated time pass: the drive's loops, its watchdog, the end of faults. Called after
+  /// every integration step, with the joint at its end.
+  virtual void update(const JointReading& joint, std::int64_t now_ns) noexcept = 0;
+  /// Rate of the drive's fastest sampled loop, 0 if there is none: integration steps are chosen so
+  /// that a whole number of them makes its period.
+  virtual double loop_rate_hz() const noexcept { return 0.0; }
 
-  /// The torque law at work, in joint coordinates.
+  /// The torque law at work, in the motor's joint coordinates (theta, theta_dot).
   virtual DriveLaw law() const noexcept = 0;
   virtual bool enabled() const noexcept = 0;
 
@@ -44,7 +58,8 @@ class MotorNode {
   virtual void clear_faults() noexcept = 0;
 };
 
-/// The node that speaks the protocol of the joint's drive. Set-up only.
+/// The node that speaks the protocol of the joint's drive. `joint` is what the drive has been told
+/// of its joint (robot.yaml), not what the joint is. Set-up only.
 std::unique_ptr<MotorNode> make_motor_node(const JointConfig& joint, bool fd);
 
 }  // namespace limber::sim
