@@ -2,30 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "drivers/protocols/limber_ft.h"
 #include "drivers/protocols/robotous_rft.h"
+#include "sim/noise.h"
 
 namespace limber::sim {
 namespace {
 
-/// Uniform in (0, 1), by the mixing function of SplitMix64 (Steele, Lea and Flood 2014).
-double uniform(std::uint64_t z) noexcept {
-  z += 0x9E3779B97F4A7C15U;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-  z ^= z >> 31U;
-  return (static_cast<double>(z >> 11U) + 0.5) * 0x1p-53;
-}
-
-/// Standard normal (Box and Muller 1958), a function of its three arguments.
-double gaussian(std::uint32_t seed, std::int64_t t_ns, std::size_t axis) noexcept {
-  const std::uint64_t key = (static_cast<std::uint64_t>(seed) << 32U ^
-                             static_cast<std::uint64_t>(t_ns) * 0xD1342543DE82EF95U) +
-                            2U * axis;
-  return std::sqrt(-2.0 * std::log(uniform(key))) *
-         std::cos(2.0 * std::numbers::pi * uniform(~key));
+/// Standard normal, a function of its three arguments.
+double noise(std::uint32_t seed, std::int64_t t_ns, std::size_t axis) noexcept {
+  return gaussian((static_cast<std::uint64_t>(seed) << 32U ^
+                   static_cast<std::uint64_t>(t_ns) * 0xD1342543DE82EF95U) +
+                  2U * axis);
 }
 
 }  // namespace
@@ -45,8 +34,7 @@ WrenchReading TipSensorNode::reading() const noexcept {
   WrenchReading out;
   for (std::size_t i = 0; i < 6; ++i) {
     double value = filtered_[static_cast<Eigen::Index>(i)] + sensor_.bias[i];
-    if (sensor_.noise[i] > 0.0)
-      value += sensor_.noise[i] * gaussian(sensor_.noise_seed, now_ns_, i);
+    if (sensor_.noise[i] > 0.0) value += sensor_.noise[i] * noise(sensor_.noise_seed, now_ns_, i);
     if (!(std::abs(value) <= sensor_.range[i])) out.overload |= overload_bit(i);
     value = std::clamp(value, -sensor_.range[i], sensor_.range[i]);
     const double step = sensor_.resolution[i];
