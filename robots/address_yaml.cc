@@ -14,17 +14,23 @@ void read_damiao(const YamlMap& yaml, DriveConfig* drive) {
   if (drive->reply_id == drive->command_id) yaml.refuse("reply_id", "must differ from id");
 }
 
+const char* word_of(DriveProtocol protocol) {
+  return protocol == DriveProtocol::kMoteus ? "moteus" : "cia402";
+}
+
 void need_fd(const YamlMap& yaml, const Robot& robot, const DriveConfig& drive) {
   const BusConfig& bus = robot.buses[static_cast<std::size_t>(drive.bus)];
   if (bus.fd) return;
   yaml.refuse("bus", fmt::format("'{}' is classic; {} drives need CAN-FD (fd: true)", bus.name,
-                                 drive.protocol == DriveProtocol::kMoteus ? "moteus" : "cia402"));
+                                 word_of(drive.protocol)));
 }
 
 void read_numbered(const YamlMap& yaml, const Robot& robot, JointType type, DriveConfig* drive) {
   need_fd(yaml, robot, *drive);
-  if (type == JointType::kPrismatic)
-    yaml.refuse("motor", "these drives count turns: they can only move rotary joints");
+  if (type == JointType::kPrismatic) {
+    yaml.refuse("motor", fmt::format("{} drives count turns: they can only move rotary joints",
+                                     word_of(drive->protocol)));
+  }
   if (yaml.has("reply_id"))
     yaml.refuse("reply_id", "is for motors with protocol: damiao_mit only; the id says it here");
   const bool moteus = drive->protocol == DriveProtocol::kMoteus;
