@@ -39,7 +39,7 @@ class ConfigureDialogue {
   /// What the dialogue failed at: register (0 for the disabling), what the drive said (0 if
   /// nothing) and what it should have said.
   struct Failure {
-    std::uint16_t reg = 0;
+    std::uint32_t reg = 0;
     bool answered = false;
     double found = 0.0;
     double expected = 0.0;

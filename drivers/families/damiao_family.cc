@@ -96,6 +96,8 @@ bool DamiaoFamily::read_state(const CanFrame& frame, DriveReport* report) const 
   report->angle_rad = reply.position_rad + mit::half_count(range.position_rad, kPositionBits);
   report->speed_rad_per_s =
       reply.velocity_rad_per_s + mit::half_count(range.velocity_rad_per_s, kBits);
+  report->link_angle_rad = report->angle_rad;
+  report->link_speed_rad_per_s = report->speed_rad_per_s;
   report->torque_Nm = reply.torque_Nm + mit::half_count(range.torque_Nm, kBits);
   report->current_A = report->torque_Nm / drive_.torque_constant_Nm_per_A;
   report->temperature_degC = reply.rotor_temperature_degC;
@@ -108,7 +110,7 @@ double DamiaoFamily::angle_resolution() const noexcept {
 
 StartupQuestion DamiaoFamily::question(int index) const noexcept {
   const Step& step = steps_[static_cast<std::size_t>(index)];
-  return {static_cast<std::uint16_t>(step.reg), value_of(step.reg, step.raw)};
+  return {static_cast<std::uint32_t>(step.reg), value_of(step.reg, step.raw)};
 }
 
 CanFrame DamiaoFamily::ask(int index) const noexcept {

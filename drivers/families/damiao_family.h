@@ -25,6 +25,9 @@ class DamiaoFamily final : public DriveFamily {
   CanFrame state_request() const noexcept override;
   CanFrame presence_request() const noexcept override;
 
+  bool is_mine(const CanFrame& frame) const noexcept override {
+    return has_id(frame, drive_.reply_id);
+  }
   /// Half a count is added to the fields, because drives truncate.
   bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
   double angle_resolution() const noexcept override;

@@ -7,6 +7,7 @@ std::unique_ptr<DriveFamily> make_drive_family(const JointConfig& joint, bool fd
   switch (joint.drive.protocol) {
     case DriveProtocol::kMoteus:
       return std::make_unique<MoteusFamily>(joint);
+    case DriveProtocol::kCia402:
     case DriveProtocol::kDamiaoMit:
       break;
   }

@@ -72,12 +72,12 @@ CanFrame MoteusFamily::enable(double angle_rad) noexcept {
 bool MoteusFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
   moteus::State state;
   if (!moteus::decode_state(frame, &state)) return false;
-  *report = {condition_of(state.mode),
-             state.position_turns * kTurn,
-             state.velocity_turns_per_s * kTurn,
-             state.torque_Nm,
-             state.current_q_A,
-             state.temperature_degC};
+  report->condition = condition_of(state.mode);
+  report->angle_rad = report->link_angle_rad = state.position_turns * kTurn;
+  report->speed_rad_per_s = report->link_speed_rad_per_s = state.velocity_turns_per_s * kTurn;
+  report->torque_Nm = state.torque_Nm;
+  report->current_A = state.current_q_A;
+  report->temperature_degC = state.temperature_degC;
   return true;
 }
 
@@ -88,9 +88,9 @@ double MoteusFamily::angle_resolution() const noexcept {
 
 StartupQuestion MoteusFamily::question(int index) const noexcept {
   if (index == 0)
-    return {static_cast<std::uint16_t>(Register::kRegisterMap), moteus::kRegisterMapVersion};
+    return {static_cast<std::uint32_t>(Register::kRegisterMap), moteus::kRegisterMapVersion};
   // Behind a gear, a drive that only knows its rotor's angle may be off by a rotor turn.
-  return {static_cast<std::uint16_t>(Register::kHomeState),
+  return {static_cast<std::uint32_t>(Register::kHomeState),
           drive_.gear_ratio == 1.0 ? kHomedRotor : kHomedOutput};
 }
 

@@ -29,6 +29,9 @@ class MoteusFamily final : public DriveFamily {
   }
   CanFrame presence_request() const noexcept override { return state_request(); }
 
+  bool is_mine(const CanFrame& frame) const noexcept override {
+    return has_id(frame, drive_.reply_id);
+  }
   bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
   double angle_resolution() const noexcept override;
 
