@@ -118,22 +118,38 @@ void BM_ControllerCycle(benchmark::State& run, const std::string& law) {
   for (auto _ : run) benchmark::DoNotOptimize(controller.step().tau[0]);
 }
 
-/// Driver, bus, seven nodes, ODE arm at its default step, controller: one period.
-void BM_LabCycle(benchmark::State& run, Integrator integrator) {
+/// Driver, buses, nodes, arm at its default step, controller: one period of an arm that is held.
+void BM_LabCycle(benchmark::State& run, const std::string& name, Integrator integrator) {
+  const LoadedRobot robot = load_robot(name);
   Scenario scenario;
   scenario.integrator = integrator;
   mode_request_t hold{};
   hold.client = kScenarioClient;
   hold.request = mode_request_t::REQUEST_HOLD;
   scenario.timeline.push_back({300'000'000, hold});
-  Lab lab(openarm(), scenario);
+  Lab lab(robot, scenario);
   while (lab.cycles() < 1500) lab.step();
+  if (lab.state().drive_state != joint_state_t::DRIVE_ON) run.SkipWithError("the arm is not held");
   for (auto _ : run) lab.step();
   run.counters["x_real_time"] = benchmark::Counter(
-      static_cast<double>(run.iterations()) / openarm().robot.rate_hz, benchmark::Counter::kIsRate);
+      static_cast<double>(run.iterations()) / robot.robot.rate_hz, benchmark::Counter::kIsRate);
 }
-BENCHMARK_CAPTURE(BM_LabCycle, ode, Integrator::kOde);
-BENCHMARK_CAPTURE(BM_LabCycle, reference, Integrator::kReference);
+
+/// One arm of seven joints a kind; the ratio to the rigid one is what a kind of joint costs.
+void register_lab_cycles() {
+  const std::pair<const char*, const char*> kinds[] = {{"openarm", "rigid_mit"},
+                                                       {"ideal7", "rigid"},
+                                                       {"iiwa14", "flexible_torque_loop"},
+                                                       {"baxter", "series_elastic"},
+                                                       {"antagonist7", "antagonistic"}};
+  for (const auto& [robot, kind] : kinds) {
+    for (const Integrator integrator : {Integrator::kOde, Integrator::kReference}) {
+      const std::string with = integrator == Integrator::kOde ? "ode" : "reference";
+      benchmark::RegisterBenchmark(("BM_LabCycle/" + std::string(kind) + "/" + with).c_str(),
+                                   BM_LabCycle, robot, integrator);
+    }
+  }
+}
 
 }  // namespace
 
@@ -141,6 +157,7 @@ int main(int argc, char** argv) {
   for (const std::string& law : law_names()) {
     benchmark::RegisterBenchmark(("BM_ControllerCycle/" + law).c_str(), BM_ControllerCycle, law);
   }
+  register_lab_cycles();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

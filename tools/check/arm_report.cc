@@ -10,6 +10,7 @@
 #include "common/config_error.h"
 #include "drivers/can/bus_load.h"
 #include "robots/sample_pose.h"
+#include "tools/check/chain_report.h"
 
 namespace limber {
 namespace {
@@ -107,6 +108,8 @@ ArmReport make_arm_report(const LoadedRobot& robot) {
   add_home(robot, home, &report);
   add_gravity(robot, home, &report);
   warn_of_gravity(robot.robot, &report);
+  for (std::string& warning : chain_warnings(robot.robot))
+    report.warnings.push_back(std::move(warning));
   if (robot.robot.has_drives) add_buses(robot.robot, &report);
   return report;
 }

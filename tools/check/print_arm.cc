@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "tools/check/chain_report.h"
 #include "tools/check/json.h"
 #include "tools/check/print.h"
 
@@ -72,6 +73,8 @@ std::string joint_table(const Robot& robot, const ArmReport& report) {
       table += fmt::format("  {}, {}, {}/{}", drive.motor,
                            robot.buses[static_cast<std::size_t>(drive.bus)].name,
                            as_seen(drive.command_id), as_seen(drive.reply_id));
+      if (joint.has_antagonist)
+        table += fmt::format(" and {}", as_seen(joint.antagonist.command_id));
     }
     table += "\n";
   }
@@ -102,6 +105,8 @@ std::string joint_json(const Robot& robot, const ArmReport& report, std::size_t 
                     {"rotor_inertia_kgm2", json::number(drive.rotor_inertia_kgm2)},
                     {"torque_constant_Nm_per_A", json::number(drive.torque_constant_Nm_per_A)},
                     {"short_circuit_damping_Nms", json::number(drive.short_circuit_damping_Nms)}});
+    const auto chain = chain_json(joint);
+    members.insert(members.end(), chain.begin(), chain.end());
   }
   return json::object(members);
 }
@@ -118,6 +123,7 @@ std::string arm_text(const LoadedRobot& robot, const ArmReport& report) {
       arm.gravity[1], arm.gravity[2]);
   text += "  rad, rad/s, N m (prismatic: m, m/s, N); g: torque against gravity\n";
   text += joint_table(arm, report);
+  text += chain_table(arm);
   const auto& p = report.home_p_BT;
   const auto& q = report.home_quat_BT;
   text += fmt::format(
