@@ -49,6 +49,21 @@ TEST(Check, TellsOfAShippedRobot) {
       << outcome.output;
 }
 
+TEST(Check, TellsOfSpringsSensorsAndLoops) {
+  const Outcome outcome = check("robot " LIMBER_SOURCE_DIR "/tests/robots/data/chain");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, "4000 d + 900 d^3")) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "400 d^2/2"));
+  EXPECT_TRUE(contains(outcome.output, "B/4 at 4000 Hz"));
+  EXPECT_TRUE(contains(outcome.output, "motor 22 bit, link 20 bit, torque"));
+  // Late by 125 + 100 + 500 + 300 us: 5.125 N m s/rad, less the damper's 2; there to pay: 3 + 2.
+  EXPECT_TRUE(contains(outcome.output, "inertia_ratio 4 is expected to be unstable; below 2.6"));
+}
+
+TEST(Check, RigidArmHasNoTableOfSprings) {
+  EXPECT_FALSE(contains(check("robot openarm").output, "transmission"));
+}
+
 TEST(Check, FindsRobotsByFolderAndByEnvironment) {
   EXPECT_EQ(check("robot " + kArm).status, 0);
   EXPECT_EQ(check("robot " + kArm + "/").status, 0);

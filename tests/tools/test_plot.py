@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from conftest import records, write_log
-from limber import charts, plot_html, plot_png
+from limber import charts, messages, plot_html, plot_png
 from limber.logs import Log
 from limber.plot import plot
 
@@ -57,6 +57,25 @@ def test_charts_hold_the_logs_numbers(log):
     np.testing.assert_array_equal(drawn(counted, "late cycles"), [0, 1, 1, 3])
 
 
+def test_springs_only_where_there_are_sensors(log, tmp_path):
+    assert charts.build(log, "spring") == [], "no joint of this log says that it has any"
+    flags = messages.message_class("joint_state_t")
+    state = records("joint_state_t", COUNT, num_joints=3, time_ns=np.arange(COUNT) * 1_000_000)
+    state["joint_flags"][:, 1] = flags.JOINT_LINK_ENCODER | flags.JOINT_TORQUE_SENSOR
+    state["joint_flags"][:, 2] = flags.JOINT_LINK_ENCODER | flags.JOINT_TWO_MOTORS
+    state["theta"][:, 1], state["q"][:, 1] = 0.512, 0.5
+    state["tau"][:, 1], state["tau_applied"][:, 1] = 9.0, 10.0
+    state["preload"][:, 2] = 0.25
+    path = write_log(tmp_path / "run.lcmlog", {"JOINT_STATE": state})
+    ahead, torque, preload = charts.build(Log(path), "spring")
+    assert list(ahead.series) == ["joint 2", "joint 3"]
+    np.testing.assert_allclose(drawn(ahead, "joint 2"), 12.0)
+    np.testing.assert_allclose(drawn(torque, "joint 2"), 9.0)
+    np.testing.assert_allclose(drawn(torque, "joint 2 asked of the motor"), 10.0)
+    assert list(preload.series) == ["joint 3"]
+    np.testing.assert_allclose(drawn(preload, "joint 3"), 0.25)
+
+
 def test_contact_only_where_there_is_a_source(log, tmp_path):
     silent = charts.build(log, "torque")
     assert not any("contact" in chart.title for chart in silent)
@@ -73,7 +92,7 @@ def test_contact_only_where_there_is_a_source(log, tmp_path):
     np.testing.assert_allclose(drawn(joints[4], "ext"), 1.5)
 
 
-@pytest.mark.parametrize("topic", charts.TOPICS)
+@pytest.mark.parametrize("topic", [t for t in charts.TOPICS if t != "spring"])
 def test_every_axis_has_name_and_unit(log, topic):
     built = charts.build(log, topic)
     fig = plot_png.figure(built, "title")
@@ -88,7 +107,10 @@ def test_every_axis_has_name_and_unit(log, topic):
 
 def test_files(log, tmp_path):
     written = plot(log.path, [], tmp_path, Console(quiet=True))
-    assert {p.name for p in written} == {*(f"{t}.png" for t in charts.TOPICS), "plot.html"}
+    assert {p.name for p in written} == {
+        *(f"{topic}.png" for topic in charts.TOPICS if topic != "spring"),
+        "plot.html",
+    }
     for path in written:
         assert path.stat().st_size > 10_000, path
 

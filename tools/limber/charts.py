@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from limber import messages
 from limber.logs import Log
 
 AXES = ("x", "y", "z")
@@ -123,6 +124,33 @@ def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
     return charts
 
 
+def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
+    """What springs between motor and link do; nothing for arms whose joints show no such sides."""
+    state = log.read("JOINT_STATE")
+    flags = messages.message_class("joint_state_t")
+    t, labels = time_s(state), _labels(_joint_count(state), names)
+
+    def those_with(flag: int) -> list[int]:
+        return [i for i in range(len(labels)) if (state["joint_flags"][:, i] & flag).any()]
+
+    def chart(title: str, unit: str, values: np.ndarray, flag: int) -> Chart:
+        series = {labels[i]: values[:, i] for i in those_with(flag)}
+        return Chart(title, unit, t, series)
+
+    deflection_mrad = (state["theta"] - state["q"]) * 1e3
+    torque = chart("torque on the link", "N m", state["tau"], flags.JOINT_TORQUE_SENSOR)
+    for name, values in chart(
+        "", "", state["tau_applied"], flags.JOINT_TORQUE_SENSOR
+    ).series.items():
+        torque.series[f"{name} asked of the motor"] = values
+        torque.dashed.add(f"{name} asked of the motor")
+    return [
+        chart("motor ahead of the link", "mrad", deflection_mrad, flags.JOINT_LINK_ENCODER),
+        torque,
+        chart("preload of the two motors", "rad", state["preload"], flags.JOINT_TWO_MOTORS),
+    ]
+
+
 def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
     status, driver = log.read("CONTROLLER_STATUS"), log.read("DRIVER_STATUS")
     state = log.read("JOINT_STATE")
@@ -163,11 +191,13 @@ SOURCES = {
     "joint": ("JOINT_STATE",),
     "cartesian": ("CONTROLLER_STATUS", "SIM_TRUTH"),
     "torque": ("CONTROLLER_STATUS",),
+    "spring": ("JOINT_STATE of arms with link encoders, torque sensors or two motors a joint",),
     "timing": ("JOINT_STATE", "DRIVER_STATUS", "CONTROLLER_STATUS"),
 }
 TOPICS: dict[str, Callable[[Log, list[str]], list[Chart]]] = {
     "joint": _joint_charts,
     "cartesian": _cartesian_charts,
     "torque": _torque_charts,
+    "spring": _spring_charts,
     "timing": _timing_charts,
 }

@@ -234,7 +234,8 @@ def identify_payload(
 def plot(
     path: LogPath,
     what: Annotated[
-        list[str] | None, typer.Option(help="joint, cartesian, torque or timing; default: all.")
+        list[str] | None,
+        typer.Option(help="joint, cartesian, torque, spring or timing; default: all there is."),
     ] = None,
     out: Out = None,
 ) -> None:
