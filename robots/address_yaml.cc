@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "robots/drive_ids.h"
+
 namespace limber {
 namespace {
 
@@ -43,10 +45,12 @@ void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig
                  const std::string& owner) {
   if (other.bus != mine.bus) return;
   const std::string taken = fmt::format("is taken by {} on the same bus", owner);
-  if (other.command_id == mine.command_id || other.reply_id == mine.command_id)
+  if (uses_id(other, mine.command_id) || uses_id(mine, other.command_id))
     yaml.refuse("id", fmt::format("{} {}", yaml.integer("id", 1, 127), taken));
-  if (other.command_id == mine.reply_id || other.reply_id == mine.reply_id)
-    yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+  if (!uses_id(other, mine.reply_id) && !uses_id(mine, other.reply_id)) return;
+  if (yaml.has("reply_id")) yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+  yaml.refuse("id", fmt::format("{}: its identifier {:#x} {}", yaml.integer("id", 1, 127),
+                                mine.reply_id, taken));
 }
 
 void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,

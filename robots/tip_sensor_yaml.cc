@@ -7,6 +7,7 @@
 #include <kdl/frames.hpp>
 
 #include "common/complaints.h"
+#include "robots/drive_ids.h"
 
 namespace limber {
 namespace {
@@ -100,9 +101,11 @@ void read_wire(const YamlMap& yaml, const Robot& robot, TipSensorConfig* sensor)
 void check_free(const YamlMap& yaml, const std::string& key, std::uint32_t id, const Robot& robot,
                 int bus) {
   for (const JointConfig& joint : robot.joints) {
-    if (joint.drive.bus != bus) continue;
-    if (joint.drive.command_id == id || joint.drive.reply_id == id)
+    const bool second =
+        joint.has_antagonist && joint.antagonist.bus == bus && uses_id(joint.antagonist, id);
+    if (second || (joint.drive.bus == bus && uses_id(joint.drive, id)))
       yaml.refuse(key, fmt::format("{} is taken by {} on the same bus", id, joint.name));
+    if (joint.drive.bus != bus) continue;
     if (joint.drive.protocol != DriveProtocol::kMoteus) continue;
     const std::uint32_t node = id & kMoteusNode;
     if (node == (joint.drive.command_id & kMoteusNode) || node == kMoteusEverybody)

@@ -130,6 +130,17 @@ const Mutation kSlips[] = {
     {"NodeId", "id: 3", "id: 128", "from 1 to 127"},
     {"AntagonistTaken", "{id: 5,", "{id: 4,", "4 is taken by roll on the same bus"},
     {"AntagonistNodeOfAnother", "{id: 5,", "{id: 3,", "3 is taken by turn on the same bus"},
+    {"SensorOnAnEmergencyId", "gains:",
+     "tip_sensor:\n  model: ft\n  protocol: limber_ft\n  bus: left\n  id: 133\n  reply_id: 100\n"
+     "  pose: {position_m: [0, 0, 0], rpy_rad: [0, 0, 0]}\n  range: {force_N: 9, torque_Nm: 9}\n"
+     "gains:",
+     "133 is taken by roll on the same bus", 4},
+    {"SensorOnServiceData", "gains:",
+     "tip_sensor:\n  model: ft\n  protocol: limber_ft\n  bus: left\n  id: 100\n"
+     "  reply_id: 1411\n"
+     "  pose: {position_m: [0, 0, 0], rpy_rad: [0, 0, 0]}\n  range: {force_N: 9, torque_Nm: 9}\n"
+     "gains:",
+     "1411 is taken by turn on the same bus", 5},
     {"AntagonistProtocol", "{id: 5,", "{motor: oil, id: 5,", "another protocol"},
     {"ClassicBus", "bus: left\n    id: 3", "bus: right\n    id: 3",
      "'right' is classic; cia402 drives need CAN-FD"},
