@@ -45,12 +45,13 @@ void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig
                  const std::string& owner) {
   if (other.bus != mine.bus) return;
   const std::string taken = fmt::format("is taken by {} on the same bus", owner);
-  if (uses_id(other, mine.command_id) || uses_id(mine, other.command_id))
-    yaml.refuse("id", fmt::format("{} {}", yaml.integer("id", 1, 127), taken));
-  if (!uses_id(other, mine.reply_id) && !uses_id(mine, other.reply_id)) return;
-  if (yaml.has("reply_id")) yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
-  yaml.refuse("id", fmt::format("{}: its identifier {:#x} {}", yaml.integer("id", 1, 127),
-                                mine.reply_id, taken));
+  const long id = yaml.integer("id", 1, 127);
+  if (uses_id(other, mine.command_id)) yaml.refuse("id", fmt::format("{} {}", id, taken));
+  const bool reply_taken = uses_id(other, mine.reply_id);
+  if (reply_taken && yaml.has("reply_id"))
+    yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+  if (reply_taken || uses_id(mine, other.command_id) || uses_id(mine, other.reply_id))
+    yaml.refuse("id", fmt::format("{}: one of its identifiers {}", id, taken));
 }
 
 void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,
