@@ -23,7 +23,8 @@ TIP_SENSOR = {
 def variant(out: Path, robot: str, changes: dict[str, Any]) -> str:
     """Writes the robot to the folder OUT/robot and returns it as a scenario's `robot`.
 
-    Mappings in `changes` are merged with robot.yaml's, everything else replaces what is there.
+    Mappings in `changes` are merged with robot.yaml's, None takes a key away, everything else
+    replaces what is there.
     """
     source = robot_folder(robot)
     folder = output_folder(out / "robot")
@@ -37,4 +38,5 @@ def variant(out: Path, robot: str, changes: dict[str, Any]) -> str:
 def _merged(old: Any, new: Any) -> Any:
     if not (isinstance(old, dict) and isinstance(new, dict)):
         return new
-    return {**old, **{key: _merged(old.get(key), value) for key, value in new.items()}}
+    content = {**old, **{key: _merged(old.get(key), value) for key, value in new.items()}}
+    return {key: value for key, value in content.items() if value is not None}

@@ -1,0 +1,192 @@
+"""The test bench robots/testbench, one joint: its figures, its equations, and runs on its bus.
+
+Equations are linear, (A, B) of ẋ = A x + B u with the inputs motor torque and push; sampled ones
+are exact (plants.held).
+"""
+
+from typing import Any
+
+import numpy as np
+
+from limber.errors import RunError
+from limber.experiments.context import Context
+from limber.experiments.plants import held, with_delay
+from limber.experiments.ringdown import Mode
+from limber.experiments.truth import RAMP, motion, seconds, status
+from limber.experiments.variants import variant
+from limber.logs import Log
+from limber.paths import robot_folder
+from limber.robot import read_yaml
+
+ROBOT = "testbench"
+JOINT, MOTOR = "joint", "bench"
+M, B = 0.5, 0.2  # kg m², link and rotor
+K_J, D_J = 5000.0, 2.0  # N m/rad, N m s/rad, of the spring between them
+CYCLE_S = 1e-3  # a torque computed from one sample acts from the next one on, and is held
+LINK_MASS_M = 1.0  # kg m, the link's mass times the way to its centre
+GAINS_S, SETTLED_S = 1.0, 1.6  # when the law of a run begins, and when it is alone at work
+# Beside MEASURED, which is the robot on its bus
+IDEAL = {"marker": "x", "ls": "none", "mew": 1.5, "ms": 6.5}
+
+Plant = tuple[np.ndarray, np.ndarray]
+
+
+def weight(q: float, gravity: float) -> float:
+    """Torque that holds the link; it hangs at zero."""
+    return LINK_MASS_M * gravity * np.sin(q)
+
+
+def rigid(inertia: float, damping: float = 0.0) -> Plant:
+    """Link and rotor as one; state (q, q̇)."""
+    A = np.array([[0.0, 1.0], [0.0, -damping / inertia]])
+    return A, np.array([[0.0, 0.0], [1 / inertia, 1 / inertia]])
+
+
+def lagging(plant: Plant, lag: float) -> Plant:
+    """The motor torque comes through a first-order lag: one state more, behind the others."""
+    A, inputs = plant
+    n = len(A)
+    A_all, B_all = np.zeros((n + 1, n + 1)), np.zeros((n + 1, 2))
+    A_all[:n, :n], A_all[:n, n], A_all[n, n] = A, inputs[:, 0], -1 / lag
+    B_all[:n, 1], B_all[n, 0] = inputs[:, 1], 1 / lag
+    return A_all, B_all
+
+
+def elastic(spring: float = K_J, damper: float = D_J, link: float = M, rotor: float = B) -> Plant:
+    """State (q, q̇, θ, θ̇); the push is on the link."""
+    pull = np.array([-spring, -damper, spring, damper])
+    A = np.vstack([[0, 1, 0, 0], pull / link, [0, 0, 0, 1], -pull / rotor])
+    return A, np.array([[0.0, 0.0], [0.0, 1 / link], [0.0, 0.0], [1 / rotor, 0.0]])
+
+
+def held_link(spring: float = K_J, damper: float = D_J, rotor: float = B) -> Plant:
+    """State (θ, θ̇): the link does not move."""
+    A = np.array([[0.0, 1.0], [-spring / rotor, -damper / rotor]])
+    return A, np.array([[0.0, 0.0], [1 / rotor, 0.0]])
+
+
+def looped(plant: Plant, gains: list[float], T: float, late: int) -> np.ndarray:
+    """One sample of the loop τ_m = -gains x, held over T, `late` samples after it was measured."""
+    A, inputs = with_delay(*_motor_only(plant, T), late)
+    row = np.zeros((1, len(A)))
+    row[0, : len(gains)] = gains
+    return A - inputs @ row
+
+
+def _motor_only(plant: Plant, T: float) -> Plant:
+    A, inputs = plant
+    return held(A, inputs[:, :1], T)
+
+
+def slowest(loop: np.ndarray, T: float) -> Mode:
+    """The mode of a sampled loop that dies out last of those that swing."""
+    steps = np.linalg.eigvals(loop).astype(complex)
+    roots = np.log(steps[abs(steps) > 1e-9]) / T  # 0: a state that is forgotten at once
+    s = max((s for s in roots if s.imag > 1e-3 * abs(s)), key=lambda s: s.real)
+    return Mode(float(abs(s)), float(-s.real / abs(s)))
+
+
+def at_rest(plant: Plant, gains: list[float], push: float) -> np.ndarray:
+    """State that the loop under a constant push comes to: (A - B gains) x + B_push push = 0."""
+    A, inputs = plant
+    row = np.zeros((1, len(A)))
+    row[0, : len(gains)] = gains
+    return np.linalg.solve(A - inputs[:, :1] @ row, -inputs[:, 1] * push)
+
+
+def zero_between(values: list[float], rates: list[float]) -> float:
+    """Where a rate measured at some values passes zero, on the line between two of them."""
+    for (a, x), (b, y) in zip(
+        zip(values, rates, strict=True), zip(values[1:], rates[1:], strict=True), strict=False
+    ):
+        if x * y <= 0:
+            return a - x * (b - a) / (y - x)
+    raise RunError(f"{rates} at {values}: no zero between them")
+
+
+def spring_damper(K: float, D: float, **more: Any) -> dict[str, Any]:
+    """Gains of the joint PD law."""
+    return {"law": "joint_pd", **given(K, D), **more}
+
+
+def given(K: float, D: float) -> dict[str, Any]:
+    return {"K_q_Nm_per_rad": K, "joint_damping": "given", "D_q_Nms_per_rad": D}
+
+
+def push(torque: float, at_s: float, for_s: float, ramp_s: float = 0.0) -> dict[str, Any]:
+    """On the link."""
+    wrench = {"torque_Nm": [0.0, 0.0, torque], "for_s": for_s, "ramp_s": ramp_s}
+    return {"at_s": at_s, "push": wrench}
+
+
+def on_bus(
+    context: Context,
+    name: str,
+    gains: dict[str, Any],
+    more: list[dict[str, Any]],
+    end_s: float,
+    *,
+    changes: dict[str, Any] | None = None,
+    **head: Any,
+) -> Log:
+    """The bench under a law from GAINS_S on. `changes` to robot.yaml; `head` of the scenario."""
+    robot = variant(context.out / name, ROBOT, changes or {})
+    scenario = {
+        "robot": robot,
+        "duration_s": end_s + 0.05,
+        **head,
+        "timeline": [
+            {"at_s": 0.3, "mode": "hold"},
+            {"at_s": 0.8, "mode": "active"},
+            {"at_s": GAINS_S, "gains": gains},
+            *more,
+        ],
+    }
+    return context.lab(scenario, name)
+
+
+def truth(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
+    """What the joint really did while the law alone was at work."""
+    status(log, start_s, end_s, RAMP)
+    rows = motion(log, start_s, end_s)
+    names = {"q": "q", "v": "v", "theta": "theta", "theta_dot": "theta_dot", "tau": "tau_joint"}
+    return {"t": seconds(rows), **{key: rows[field][:, 0] for key, field in names.items()}}
+
+
+def goal(log: Log, start_s: float, end_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the angles that the law was to follow then."""
+    rows = status(log, start_s, end_s, RAMP)
+    w, z = rows["quat_BD"][:, 0], rows["quat_BD"][:, 3]
+    return seconds(rows), np.unwrap(2 * np.arctan2(z, w))
+
+
+def lag(log: Log, start_s: float, end_s: float, name: str = "q") -> float:
+    """How far the joint is behind its goal, on average."""
+    t, wanted = goal(log, start_s, end_s)
+    seen = truth(log, start_s, end_s)
+    return float((wanted - np.interp(t, seen["t"], seen[name])).mean())
+
+
+def mean(log: Log, start_s: float, end_s: float, name: str = "q") -> float:
+    """Rounded torques make a joint at rest tremble: where it is on average."""
+    return float(truth(log, start_s, end_s)[name].mean())
+
+
+RIGID = {
+    "transmission": {"kind": "rigid", "spring": None, "damping_Nms_per_rad": None},
+    "torque_loop": None,
+}
+
+
+def joint(**content: Any) -> dict[str, Any]:
+    """A change of the bench's one joint."""
+    return {"joints": {JOINT: content}}
+
+
+def motor(**content: Any) -> dict[str, Any]:
+    """A change of its motor."""
+    return {"motors": {MOTOR: content}}
+
+
+def motor_yaml() -> dict[str, Any]:
+    return read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"][MOTOR]
