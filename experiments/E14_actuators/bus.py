@@ -1,0 +1,103 @@
+"""The bench on its bus with each actuator, measured on what the joint really did."""
+
+from typing import Any
+
+import numpy as np
+
+from limber.experiments import testbench as bench
+from limber.experiments.context import Context
+from limber.experiments.ringdown import Mode, modes_seen
+
+from .law import COULOMB_NM, GRAVITY, HYDRAULIC, KAPPA, PUSH_NM, VOLTAGE_D
+
+MOVE_S = 4.0
+
+
+def _robot(gravity: float = 0.0, **actuator: Any) -> dict[str, Any]:
+    change = {**bench.joint(**bench.RIGID), "gravity_m_per_s2": [0.0, -gravity, 0.0]}
+    return {**change, **bench.motor(actuator=actuator)} if actuator else change
+
+
+def torque_constant(context: Context, K: float, D: float) -> tuple[float, float, float]:
+    """Angle asked for, sag from it, and how far a push moves the joint from there."""
+    true = KAPPA * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
+    log = bench.on_bus(
+        context,
+        f"torque_constant_{K:g}",
+        bench.spring_damper(K, D),
+        [bench.push(PUSH_NM, 4.0, 3.0, 0.5)],
+        7.0,
+        changes=_robot(GRAVITY),
+        reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
+    )
+    rest = bench.mean(log, 3.0, 3.9)
+    moved = bench.mean(log, 5.5, 6.4) - rest
+    return float(bench.goal(log, 3.0, 3.9)[1].mean()), bench.lag(log, 3.0, 3.9), moved
+
+
+def friction_lag(context: Context, K: float, D: float) -> float:
+    """In the middle of a smooth motion, where nothing accelerates: mean over a stretch of it."""
+    friction = {"coulomb_Nm": COULOMB_NM, "viscous_Nms_per_rad": 0.0}
+    move = {"joints_rad": 1.0, "duration_s": MOVE_S}
+    log = bench.on_bus(
+        context,
+        f"friction_{K:g}",
+        bench.spring_damper(K, D),
+        [{"at_s": 2.0, "goal": move}],
+        2.0 + MOVE_S,
+        changes=_robot(),
+        reality=bench.joint(friction=friction),
+    )
+    return bench.lag(log, 2.0 + MOVE_S / 2 - 0.5, 2.0 + MOVE_S / 2 + 0.5)
+
+
+def rung(context: Context, name: str, K: float, D: float, **actuator: Any) -> Mode:
+    """Pushed aside and let go."""
+    log = bench.on_bus(
+        context,
+        name,
+        bench.spring_damper(K, D),
+        [bench.push(5.0, 1.8, 0.7)],
+        4.5,
+        changes=_robot(**actuator),
+    )
+    seen = bench.truth(log, 2.51, 4.5)
+    track = np.column_stack([seen["q"], seen["v"]])[::5]
+    return modes_seen([track], 5e-3, 1)[0]
+
+
+def most_stiffness(
+    context: Context, name: str, D: float, tried: list[float], **actuator: Any
+) -> float:
+    """Stiffness at which a push neither dies out nor grows, between two that were tried."""
+    rates = []
+    for K in tried:
+        log = bench.on_bus(
+            context,
+            f"{name}_{K:.0f}",
+            bench.spring_damper(K, D),
+            [bench.push(10.0, 1.7, 0.02)],
+            2.4,
+            changes=_robot(**actuator),
+        )
+        seen = bench.truth(log, 1.8, 2.4)
+        mode = modes_seen([np.column_stack([seen["q"], seen["v"]])], 1e-3, 1)[0]
+        rates.append(-mode.zeta * mode.omega)
+    return bench.zero_between(tried, rates)
+
+
+def hydraulic() -> dict[str, Any]:
+    return {
+        "kind": "hydraulic",
+        "fluid_stiffness_Nm_per_m3": HYDRAULIC.K_h,
+        "leakage_m3_per_s_per_Nm": HYDRAULIC.c_l,
+        "displacement_m3_per_rad": HYDRAULIC.D_h,
+    }
+
+
+def voltage_drive() -> dict[str, Any]:
+    """k_e such that k_t k_e/R, at the joint, is the damping wanted."""
+    motor = bench.motor_yaml()
+    k_t = motor["gear_ratio"] * motor["rotor_torque_constant_Nm_per_A"]
+    k_e = VOLTAGE_D * motor["phase_resistance_ohm"] / k_t
+    return {"kind": "voltage_drive", "back_emf_Vs_per_rad": k_e}

@@ -1,0 +1,117 @@
+"""The test bench with a torque loop in its drive, measured on what the joint really did."""
+
+from typing import Any
+
+import numpy as np
+
+from limber.experiments import testbench as bench
+from limber.experiments.context import Context
+from limber.experiments.ringdown import Mode, modes_seen
+from limber.logs import Log
+
+from .ideal import D, K
+
+RATE_HZ = 10_000.0
+STEP_S = 5e-5
+MOVE_S = 4.0
+LAW = {**bench.spring_damper(K, D), "position": "motor"}
+# Link held: 20 N m, from a goal that moves in 0.1 s. In its middle the drive hears nothing for
+# 15 ms, less than its watchdog waits, and what it missed comes as a jump.
+HELD_LAW = {**bench.spring_damper(1000.0, 0.0), "position": "link"}
+JUMP = [
+    {"at_s": 1.7, "goal": {"joints_rad": 0.02, "duration_s": 0.1}},
+    {"at_s": 1.74, "fault": {"joint": bench.JOINT, "kind": "drop_commands", "for_s": 0.015}},
+]
+
+
+def _loop(rho: float, rate: float = RATE_HZ, samples: int = 0) -> dict[str, Any]:
+    loop = {"inertia_ratio": float(rho), "rate_hz": rate, "delay_s": samples / rate}
+    return {"torque_loop": loop}
+
+
+def _jumped(context: Context, name: str, joint: dict[str, Any], end_s: float, step_s: float) -> Log:
+    """The held joint after a jump of the torque asked for."""
+    return bench.on_bus(
+        context,
+        name,
+        HELD_LAW,
+        JUMP,
+        end_s,
+        changes={"urdf": "held.urdf", **bench.joint(**joint)},
+        step_s=step_s,
+        reality=bench.joint(transmission={"damping_Nms_per_rad": bench.D_J}),
+    )
+
+
+def _mode(log: Log, start_s: float, end_s: float) -> Mode:
+    seen = bench.truth(log, start_s, end_s)
+    deflection, rate = seen["theta"] - seen["q"], seen["theta_dot"] - seen["v"]
+    return modes_seen([np.column_stack([deflection, rate])], bench.CYCLE_S, 1)[0]
+
+
+def rung(context: Context, rho: float) -> Mode:
+    log = _jumped(context, f"ring_{rho:g}", _loop(rho), 2.1, STEP_S)
+    return _mode(log, 1.81, 1.95)
+
+
+def most_ratio(context: Context, rate: float, samples: int, expected: float) -> float:
+    """Inertia ratio at which the motor neither comes to rest nor swings more and more.
+
+    The drive takes the joint for one without damper, so that it uses the sensed torque alone.
+    """
+    tried = [1 + (expected - 1) * share for share in (0.85, 1.15)]
+    growths = []
+    for rho in tried:
+        joint = {**_loop(rho, rate, samples), "transmission": {"damping_Nms_per_rad": 0.0}}
+        name = f"limit_{rate * 1e-3:g}kHz_{samples}_{rho:.2f}"
+        mode = _mode(_jumped(context, name, joint, 2.4, STEP_S), 1.81, 2.4)
+        growths.append(-mode.zeta * mode.omega)
+    return bench.zero_between(tried, growths)
+
+
+def shared(context: Context, rho: float, kappa: float, push: float) -> float:
+    """Torque on the link over what was asked of the motor, at rest under a push."""
+    true = kappa * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
+    log = bench.on_bus(
+        context,
+        f"share_{rho:g}",
+        LAW,
+        [bench.push(push, 2.0, 4.0, 0.5)],
+        5.4,
+        changes=bench.joint(**_loop(rho)),
+        reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
+        step_s=STEP_S,
+    )
+    asked = -K * (bench.mean(log, 4.5, 5.4, "theta") - bench.mean(log, 1.7, 1.99, "theta"))
+    return bench.mean(log, 4.5, 5.4, "tau") / asked
+
+
+def biased(context: Context, rho: float, bias: float) -> float:
+    """Torque by which a biased sensor pushes the joint aside."""
+    log = bench.on_bus(
+        context,
+        f"bias_{rho:g}",
+        LAW,
+        [],
+        4.0,
+        changes=bench.joint(**_loop(rho)),
+        reality=bench.joint(torque_sensor={"bias_Nm": bias}),
+        step_s=STEP_S,
+    )
+    return -K * bench.lag(log, 3.5, 4.0, "theta")
+
+
+def friction_lag(context: Context, rho: float, coulomb: float) -> float:
+    friction = {"coulomb_Nm": coulomb, "viscous_Nms_per_rad": 0.0}
+    middle = 2.0 + MOVE_S / 2
+    log = bench.on_bus(
+        context,
+        f"friction_{rho:g}",
+        LAW,
+        [{"at_s": 2.0, "goal": {"joints_rad": 1.0, "duration_s": MOVE_S}}],
+        2.0 + MOVE_S,
+        changes=bench.joint(**_loop(rho)),
+        reality=bench.joint(friction=friction),
+        step_s=STEP_S,
+    )
+    return bench.lag(log, middle - 0.5, middle + 0.5, "theta")

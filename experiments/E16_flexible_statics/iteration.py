@@ -1,0 +1,60 @@
+"""Where the link will rest is found step by step: how fast, and up to which stiffness."""
+
+from typing import Any
+
+import numpy as np
+
+from limber.errors import RunError
+from limber.experiments import testbench as bench
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.evaluate import case
+from limber.experiments.variants import variant
+from limber.robot import load_robot
+
+from . import joint
+
+TOO_STIFF = 1500.0  # N m/rad
+
+
+def checks(context: Context) -> list[Check]:
+    made = []
+    for K_d in (*joint.ASKED, TOO_STIFF):
+        _, before, after, _ = joint.fixpoint_steps(K_d)
+        factor = abs(K_d - joint.gradient()) / joint.SPRING
+        name = f"a step of the iteration over the one before, {K_d:g} N m/rad asked for"
+        made.append(Check(name, factor, after / before, "", 0.01))
+    changes = {"gravity_m_per_s2": [0.0, -joint.GRAVITY, 0.0]}
+    robot = variant(context.out / "solver", bench.ROBOT, changes)
+    for K_d in joint.ASKED:
+        name = f"the controller's own solution, {K_d:g} N m/rad asked for: torque left over"
+        made.append(Check(name, 0.0, _left_over(context, robot, K_d), "N m", 1e-8, "absolute"))
+    name = f"{TOO_STIFF:g} N m/rad asked for: the controller finds no solution"
+    return [*made, Check(name, 1.0, float(_refuses(context, robot)), "", 0.0, "absolute")]
+
+
+def _asked(robot: str, K_d: float) -> dict[str, Any]:
+    K_x = [[0.0] * 6 for _ in range(6)]
+    K_x[5][5] = K_d
+    theta = joint.ANGLE + 0.02 + joint.weight(joint.ANGLE) / joint.SPRING
+    goal = load_robot(bench.ROBOT).chain.forward(np.array([joint.ANGLE]))
+    pose = {"p_d": goal[:3, 3], "R_d": goal[:3, :3]}
+    inputs = {"theta": [theta], **pose, "Kx": K_x, "K": [joint.SPRING]}
+    return case("qbar", robot, **inputs)
+
+
+def _left_over(context: Context, robot: str, K_d: float) -> float:
+    """K_J (θ - q̄) - l(q̄), with the torque it says and with the one it shall have."""
+    question = _asked(robot, K_d)
+    (answer,) = context.eval([question])
+    q, u = float(answer["qbar"][0]), float(answer["u"][0])
+    spring = joint.SPRING * (question["in"]["theta"][0] - q)
+    return max(abs(spring - u), abs(u - joint.wanted(q, K_d)))
+
+
+def _refuses(context: Context, robot: str) -> bool:
+    try:
+        context.eval([_asked(robot, TOO_STIFF)])
+    except RunError as error:
+        return "stiffer than the joint springs" in str(error)
+    return False

@@ -1,0 +1,111 @@
+"""Position control of the motor, gravity torque of the goal: does the link come to rest there?"""
+
+from typing import Any
+
+import numpy as np
+
+from limber.experiments import testbench as bench
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+
+from . import joint, seven
+
+TITLE = "A motor PD with constant gravity torque holds an arm up if both springs in series can"
+CLAIM = "A high-gain law on the motor works, though a proof of stability is difficult"
+SECTION = "3.2"
+PLANT = "link that weighs 20 N m, upright on a spring of 60 N m/rad: its equations (ideal), and the"
+PLANT += " test bench on its bus"
+FAST = False
+
+TRIED = (15.0, 20.0, 25.0, 28.0, 35.0, 50.0, 80.0)
+BESIDE, SECONDS = 0.3, 12.0  # rad from upright at the start, s until it rests
+AFAR, AFAR_K_P = 3.0, 60.0
+TOO_SOFT = 18.0  # N m/rad: less than the weight pulls
+STIFF_LAW = 1000.0
+
+
+def run(context: Context) -> list[Check]:
+    ideal = [joint.final_error_model(K_P, BESIDE, SECONDS) for K_P in TRIED]
+    bus = [joint.final_error_bus(context, K_P, BESIDE, SECONDS) for K_P in TRIED]
+    t, q = joint.from_afar_bus(context, AFAR_K_P, AFAR)
+    with context.picture(TITLE, columns=2, size=(13.5, 5.2)) as (left, right):
+        draw_errors(ideal, bus, left)
+        draw_afar(t, q, right)
+    return [
+        *limits(context),
+        *errors(ideal, bus),
+        *afar(q),
+        *too_soft(context),
+        *seven.checks(context),
+    ]
+
+
+def limits(context: Context) -> list[Check]:
+    found = joint.critical_bus(context, [28.5, 31.5])
+    name = "smallest motor gain that holds the arm up"
+    unit = "N m/rad"
+    return [
+        Check(f"{name}, ideal", joint.CRITICAL, joint.critical_model(), unit, 0.01),
+        Check(f"{name}, bus", joint.CRITICAL, found, unit, 0.01),
+    ]
+
+
+def errors(ideal: list[float], bus: list[float]) -> list[Check]:
+    made = []
+    for K_P, model, seen in zip(TRIED, ideal, bus, strict=True):
+        wanted = joint.final_error(K_P)
+        name = f"final error with K_P = {K_P:g} N m/rad"
+        kind = ("relative", 0.01) if wanted > 0 else ("absolute", 2e-3)
+        made += [
+            Check(f"{name}, {how}", wanted, value, "rad", kind[1], kind[0])
+            for how, value in (("ideal", model), ("bus", seen))
+        ]
+    return made
+
+
+def afar(q: np.ndarray) -> list[Check]:
+    """K_P above the bound of the proof."""
+    name = f"final error from {AFAR:g} rad away, K_P = {AFAR_K_P:g} above {joint.SUFFICIENT:g}"
+    ideal = joint.final_error_model(AFAR_K_P, AFAR, SECONDS)
+    bus = abs(float(q[-500:].mean()) - joint.UPRIGHT)
+    return [
+        Check(f"{name}, {how}", 0.0, value, "rad", 1e-3, "absolute")
+        for how, value in (("ideal", ideal), ("bus", bus))
+    ]
+
+
+def too_soft(context: Context) -> list[Check]:
+    """A spring below α: no gain helps."""
+    wanted = joint.final_error(STIFF_LAW, TOO_SOFT)
+    ideal = joint.final_error_model(STIFF_LAW, BESIDE, SECONDS, TOO_SOFT)
+    bus = joint.final_error_bus(context, STIFF_LAW, BESIDE, SECONDS, TOO_SOFT)
+    name = f"final error on a spring of {TOO_SOFT:g} N m/rad, K_P = {STIFF_LAW:g}"
+    return [
+        Check(f"{name}, ideal", wanted, ideal, "rad", 0.01),
+        Check(f"{name}, bus", wanted, bus, "rad", 0.01),
+    ]
+
+
+def draw_errors(ideal: list[float], bus: list[float], ax: Any) -> None:
+    gains = np.linspace(12, 85, 300)
+    ax.plot(gains, [joint.final_error(K) for K in gains], color=BLUE, label="k e = α sin e")
+    ax.plot(TRIED, ideal, **bench.IDEAL, color=BLUE, label="on the joint's equations")
+    ax.plot(TRIED, bus, **MEASURED, color=BLUE, label="measured on the bus")
+    for K_P, text in ((joint.CRITICAL, "exact bound"), (joint.SUFFICIENT, "bound of the proof")):
+        ax.axvline(K_P, color="0.5", ls=":", lw=1)
+        ax.annotate(text, (K_P + 0.6, 1.2), rotation=90, va="center", color="0.35")
+    ax.set_title("Where the link comes to rest")
+    ax.set_xlabel("gain on the motor, K_P (N m/rad)")
+    ax.set_ylabel("final error (rad)")
+    ax.legend(loc="upper right")
+
+
+def draw_afar(t: np.ndarray, q: np.ndarray, ax: Any) -> None:
+    ax.plot(t, q - joint.UPRIGHT, color=ORANGE, label="measured on the bus")
+    ax.axhline(0, color="0.5", lw=0.8)
+    ax.annotate("upright", (5.9, 0.05), ha="right", color="0.35")
+    ax.set_title(f"From {AFAR:g} rad away, K_P = {AFAR_K_P:g} N m/rad")
+    ax.set_xlabel("time since the goal went up (s)")
+    ax.set_ylabel("angle of the link from upright (rad)")
+    ax.legend(loc="lower right")

@@ -1,0 +1,127 @@
+"""An arm held upright through a soft spring, by a law that sees the motor only.
+
+τ_m = g(q_d) - K_P (θ - θ_d) - K_D θ̇,  θ_d = q_d + g(q_d)/K_J (Tomei 1991).
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from limber.experiments import testbench as bench
+from limber.experiments.context import Context
+from limber.experiments.plants import growth
+from limber.experiments.search import limit
+
+SPRING, GRAVITY = 60.0, 20.0  # N m/rad of the joint; N m that the link weighs when it lies
+K_D = 6.0  # N m s/rad
+UPRIGHT = np.pi
+CRITICAL = GRAVITY * SPRING / (SPRING - GRAVITY)
+SUFFICIENT = SPRING**2 / (SPRING - GRAVITY) - SPRING + GRAVITY
+FINE_S = 1e-4
+
+
+def series(K_P: float, spring: float = SPRING) -> float:
+    return 1 / (1 / K_P + 1 / spring)
+
+
+def final_error(K_P: float, spring: float = SPRING) -> float:
+    """From upright: where the spring's pull is the weight's, k e = α sin e."""
+    k = series(K_P, spring)
+    if k >= GRAVITY:
+        return 0.0
+    return float(brentq(lambda e: k * e - GRAVITY * np.sin(e), 1e-6, np.pi))
+
+
+def final_error_model(K_P: float, start: float, seconds: float, spring: float = SPRING) -> float:
+    """Let go beside upright, until it rests."""
+    A, inputs = bench.elastic(spring)
+
+    def rate(_: float, x: np.ndarray) -> np.ndarray:
+        u = -K_P * (x[2] - UPRIGHT) - K_D * x[3]
+        return A @ x + inputs @ [u, -bench.weight(x[0], GRAVITY)]
+
+    first = [UPRIGHT - start, 0.0, UPRIGHT - start, 0.0]
+    found = solve_ivp(rate, (0.0, seconds), first, method="LSODA", rtol=1e-8, atol=1e-10)
+    return abs(float(found.y[0, -1]) - UPRIGHT)
+
+
+def critical_model() -> float:
+    """Found by trying: the smallest K_P that keeps the link up, close to upright."""
+    A, inputs = bench.elastic(SPRING)
+    A = A.copy()
+    A[1, 0] += GRAVITY / bench.M
+
+    def falls(K_P: float) -> bool:
+        return growth(bench.looped((A, inputs), [0.0, 0.0, K_P, K_D], FINE_S, 0)) > 1.0
+
+    return limit(falls, 1.0, 1e3)
+
+
+def changes(spring: float) -> dict:
+    """Of the bench. Springs softer than its own: a law that holds it meanwhile must be soft too."""
+    transmission = {"spring": {"law": "linear", "stiffness_Nm_per_rad": spring}}
+    return {
+        "gravity_m_per_s2": [0.0, -GRAVITY, 0.0],
+        "gains": {"K_q_Nm_per_rad": 20.0, "K_x_translation_N_per_m": 50.0},
+        **bench.joint(transmission=transmission),
+    }
+
+
+# Fine steps of the torque, where little torque decides
+FINE_MOTOR = bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0)
+
+
+def gains(K_P: float) -> dict:
+    return {"law": "tomei", **bench.given(K_P, K_D)}
+
+
+def final_error_bus(
+    context: Context, K_P: float, start: float, seconds: float, spring: float = SPRING
+) -> float:
+    """From a goal beside upright, which then goes there."""
+    to_upright = {"joints_rad": UPRIGHT, "duration_s": 0.5}
+    end = bench.GAINS_S + seconds
+    log = bench.on_bus(
+        context,
+        f"upright_{spring:g}_{K_P:g}",
+        gains(K_P),
+        [{"at_s": bench.GAINS_S + 0.6, "goal": to_upright}],
+        end,
+        changes=changes(spring),
+        start_q=[UPRIGHT - start],
+    )
+    return abs(bench.mean(log, end - 0.5, end) - UPRIGHT)
+
+
+def from_afar_bus(context: Context, K_P: float, start: float) -> tuple[np.ndarray, np.ndarray]:
+    """The goal jumps up as fast as goals may. Time and angle of the link."""
+    end = 8.0
+    log = bench.on_bus(
+        context,
+        f"from_afar_{K_P:g}",
+        gains(K_P),
+        [{"at_s": 2.0, "goal": {"joints_rad": UPRIGHT, "duration_s": 0.1}}],
+        end,
+        changes=changes(SPRING),
+        start_q=[UPRIGHT - start],
+    )
+    seen = bench.truth(log, 1.95, end)
+    return seen["t"] - 2.0, seen["q"]
+
+
+def critical_bus(context: Context, tried: list[float]) -> float:
+    """Where a small push neither grows nor dies out, between two gains that were tried."""
+    rates = []
+    for K_P in tried:
+        log = bench.on_bus(
+            context,
+            f"critical_{K_P:g}",
+            gains(K_P),
+            [bench.push(0.3, 1.8, 0.5, 0.1)],
+            6.0,
+            changes={**changes(SPRING), **FINE_MOTOR},
+            start_q=[UPRIGHT],
+        )
+        seen = bench.truth(log, 3.0, 6.0)
+        rates.append(float(np.polyfit(seen["t"], np.log(abs(seen["q"] - UPRIGHT)), 1)[0]))
+    return bench.zero_between(tried, rates)
