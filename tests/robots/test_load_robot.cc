@@ -55,9 +55,13 @@ TEST(LoadRobot, Desktop2rHasItsClosedForm) {
   EXPECT_NEAR(terms_at(arm, {0, 0}).g[0], 7.01415, 1e-12);
 }
 
+constexpr Planar kThinRods = {0.5, 0.4, 0.25, 0.2, 4.0, 2.5, 1.0 / 12.0, 1.0 / 30.0, 0.0};
+
+TEST(LoadRobot, Antagonist2rIsTwoThinRods) { expect_planar(load_robot("antagonist2r"), kThinRods); }
+
 TEST(LoadRobot, Planar2rIsTwoThinRodsOnIdealDrives) {
   const LoadedRobot arm = load_robot("planar2r");
-  expect_planar(arm, {0.5, 0.4, 0.25, 0.2, 4.0, 2.5, 1.0 / 12.0, 1.0 / 30.0, 0.0});
+  expect_planar(arm, kThinRods);
   for (const JointConfig& joint : arm.robot.joints) {
     EXPECT_EQ(joint.drive.rotor_inertia_kgm2, 0.0);
     EXPECT_EQ(joint.friction.coulomb_Nm + joint.friction.viscous_Nms_per_rad, 0.0);
@@ -121,7 +125,8 @@ TEST(LoadRobot, OpenarmIsTheArmOfItsTables) {
 
 /// A pose to start from must leave the motors room and be away from the ends.
 TEST(LoadRobot, ShippedHomesAreEasyToHold) {
-  for (const char* name : {"openarm", "desktop2r", "planar2r", "ideal7"}) {
+  for (const char* name : {"openarm", "desktop2r", "planar2r", "ideal7", "testbench", "iiwa14",
+                           "panda", "baxter", "antagonist2r", "antagonist7"}) {
     const LoadedRobot arm = load_robot(name);
     std::vector<double> home;
     for (const JointConfig& joint : arm.robot.joints) home.push_back(joint.home);
