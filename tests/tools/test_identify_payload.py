@@ -6,9 +6,9 @@ import pytest
 from conftest import records, write_log
 from limber import messages
 from limber.errors import InputError
-from limber.identify_payload import identify
+from limber.identify.payload import identify
+from limber.identify.static_poses import static_poses
 from limber.robot import load_robot
-from limber.static_poses import static_poses
 
 MASS, COM = 0.8, np.array([0.02, -0.03, 0.07])
 RATE_HZ = 100

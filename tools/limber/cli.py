@@ -12,6 +12,7 @@ from typer.exceptions import TyperException
 from limber import __version__
 from limber.errors import OUT_OF_TOLERANCE, RUN_FAILED, WRONG_INPUT, LimberError
 from limber.experiments.cli import app as experiment_app
+from limber.identify.cli import app as identify_app
 
 INTERRUPTED = 130
 
@@ -24,7 +25,6 @@ app = typer.Typer(
 log_app = typer.Typer(help="Look into recorded logs.", no_args_is_help=True)
 app.add_typer(log_app, name="log")
 app.add_typer(experiment_app, name="experiment")
-identify_app = typer.Typer(help="Find out about the arm from its runs.", no_args_is_help=True)
 app.add_typer(identify_app, name="identify")
 # into a pipe or file there is no width to keep to
 console = Console(width=None if sys.stdout.isatty() else 120)
@@ -212,22 +212,6 @@ def log_convert(
     from limber import log_commands
 
     log_commands.convert(path, out, console)
-
-
-@identify_app.command("payload")
-def identify_payload(
-    runs: Annotated[
-        list[Path], typer.Argument(help="Logs, or folders of runs, with the arm at rest.")
-    ],
-    robot: Annotated[str, typer.Option(help="The arm's name or folder.")] = "openarm",
-    offsets: Annotated[
-        bool, typer.Option("--offsets", help="Estimate constant joint torque offsets as well.")
-    ] = False,
-) -> None:
-    """Mass and centre of mass of what the tip carries, from the torques of static poses."""
-    from limber import identify_payload as module
-
-    raise typer.Exit(module.run(runs, robot, offsets, console))
 
 
 @app.command()

@@ -35,7 +35,7 @@ class Chain:
     """
 
     def __init__(self, urdf: Path, base: str, tip: str) -> None:
-        joints = _read_joints(urdf)
+        joints = read_joints(urdf)
         self.joints = _path_between(joints, base, tip, urdf)
         self.R_RB = _rotation_of(joints, base)
         self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
@@ -82,12 +82,12 @@ def _motion(joint: Joint, value: float) -> np.ndarray:
     return X
 
 
-def _numbers(element: ElementTree.Element | None, key: str, default: str) -> np.ndarray:
+def numbers_of(element: ElementTree.Element | None, key: str, default: str) -> np.ndarray:
     text = element.get(key, default) if element is not None else default
     return np.array([float(part) for part in text.split()])
 
 
-def _read_joints(urdf: Path) -> dict[str, Joint]:
+def read_joints(urdf: Path) -> dict[str, Joint]:
     """Joints by the name of their child link."""
     try:
         root = ElementTree.parse(urdf).getroot()
@@ -97,11 +97,11 @@ def _read_joints(urdf: Path) -> dict[str, Joint]:
     for element in root.findall("joint"):
         origin = element.find("origin")
         X_PF = np.eye(4)
-        X_PF[:3, 3] = _numbers(origin, "xyz", "0 0 0")
+        X_PF[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
         # URDF's rpy: roll about x, pitch about y, yaw about z, all of the parent's axes
-        roll_pitch_yaw = _numbers(origin, "rpy", "0 0 0")
+        roll_pitch_yaw = numbers_of(origin, "rpy", "0 0 0")
         X_PF[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
-        axis = _numbers(element.find("axis"), "xyz", "1 0 0")
+        axis = numbers_of(element.find("axis"), "xyz", "1 0 0")
         child = element.find("child").get("link")
         limit = element.find("limit") if element.get("type") != "continuous" else None
         joints[child] = Joint(

@@ -18,8 +18,8 @@ from rich.console import Console
 from rich.table import Table
 
 from limber.errors import InputError
+from limber.identify.static_poses import static_poses
 from limber.robot import load_robot
-from limber.static_poses import static_poses
 from limber.urdf import Chain
 
 LENGTH_M = 0.1  # makes m c comparable with m

@@ -1,0 +1,82 @@
+"""The motion that identification wants to see, as a scenario for `limber run`, `lab` and `ask`.
+
+A tour of poses around home, there and back, so that every joint passes the same places in both
+directions: slowly with a rest at each pose, then fast; at the end a creep to both sides of home,
+where breakaway friction shows. Only joint goals, so the same file moves a real arm.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from limber.identify.arm import Arm
+
+START_S = 1.5
+SLOW_S, FAST_S, CREEP_S, REST_S = 3.0, 1.2, 5.0, 0.8
+CREEP = 0.15  # rad or m
+MARGIN = 0.05  # rad or m, from the ends of the joints
+
+
+def poses(arm: Arm, spread: float, count: int, seed: int) -> np.ndarray:
+    """Within `spread` of home and the joints' limits; each joint from end to end of that range.
+
+    Latin hypercube: every joint visits `count` different places (McKay, Beckman, Conover, 1979).
+    """
+    rng = np.random.default_rng(seed)
+    low, high = within(arm, -spread), within(arm, spread)
+    share = [rng.permutation(count) / (count - 1) for _ in arm.joints]
+    return low + (high - low) * np.array(share).T
+
+
+def within(arm: Arm, away: float) -> np.ndarray:
+    """Home and so much further, as far as the joints' limits permit."""
+    limits = arm.robot.joints
+    return np.clip(
+        arm.home + away, [j.low + MARGIN for j in limits], [j.high - MARGIN for j in limits]
+    )
+
+
+def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
+    """Entries and the time at which the last of them is over, s."""
+    entries: list[dict] = [
+        {"at_s": 0.3, "mode": "hold"},
+        {"at_s": 0.8, "mode": "active"},
+        {"at_s": 1.0, "gains": {"law": "joint_pd", "ramp_s": 0.2}},
+    ]
+    there_and_back = [*tour, *tour[-2::-1], arm.home]
+    creep = [within(arm, CREEP), within(arm, -CREEP), arm.home]
+    at = START_S
+    for goals, moving_s, rest_s in (
+        (there_and_back, SLOW_S, REST_S),
+        (there_and_back, FAST_S, 0.1),
+        (creep, CREEP_S, 0.1),
+    ):
+        for pose in goals:
+            goal = {"joints_rad": [round(float(x), 4) for x in pose], "duration_s": moving_s}
+            entries.append({"at_s": round(at, 3), "goal": goal})
+            at += moving_s + rest_s
+    return entries, at
+
+
+def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) -> str:
+    tour = poses(arm, spread, count, seed)
+    entries, end = timeline(arm, tour)
+    head = {
+        "format": "limber-scenario/1",
+        "name": f"identify_{arm.robot.name}",
+        "description": "a tour of poses, slow and fast, there and back, for limber identify",
+        "robot": robot,
+        "mode": "lockstep",
+        "duration_s": round(end + 0.5, 3),
+        "seed": seed,
+    }
+    lines = [yaml.safe_dump(head, sort_keys=False), "timeline:\n"]
+    for entry in entries:
+        flow = yaml.safe_dump(entry, default_flow_style=True, sort_keys=False, width=10_000)
+        lines.append(f"  - {flow}")
+    return "".join(lines)
+
+
+def write(arm: Arm, robot: str, spread: float, count: int, seed: int, out: Path) -> None:
+    out.write_text(scenario_text(arm, robot, spread, count, seed), encoding="utf-8")

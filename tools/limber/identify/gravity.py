@@ -1,0 +1,185 @@
+"""The weight of the links as the joints feel it, against what the URDF says.
+
+Gravity's torque is linear in mass and mass times centre of each body, g(q) = Y(q) pi, but the
+joints see some combinations only (Gautier, Khalil, "Direct calculation of minimum set of inertial
+parameters of serial robots", 1990). Estimated is the change of pi that explains the torques and
+lies nearest to the URDF, which serves as the prior of a Bayesian least-squares estimate: what
+gravity does not show stays as it was. Friction and a constant offset of each joint are estimated
+along with it; torque constants and the scale of torque sensors are taken as believed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from limber.identify.arm import Arm
+from limber.identify.findings import Findings, Panel, Value
+from limber.identify.motion import Motion
+from limber.identify.motor_side import loads
+
+MASS_SHARE = 0.3  # standard deviation of what the URDF says of a mass,
+CENTRE_M = 0.05  # and of a centre of mass
+MEASURED = 0.3  # of that deviation: combinations known better than this count as measured
+LEAST_NM = 0.3  # by which gravity's torque has to change
+LEAST_BLOCKS = 10
+FLOOR_NM = 1e-3  # no torque is known better
+ROUNDS = 4
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Change of [mass, moment] of every body, kg and kg m; `seen`: how many combinations of them.
+
+    `offset` and `unexplained` (rms before and after), N m, are by joint.
+    """
+
+    change: np.ndarray
+    covariance: np.ndarray
+    seen: int
+    offset: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+
+
+def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
+    found = Findings("weight of the links")
+    g = arm.dynamics.gravity_torque(motion.q)
+    used = []
+    for i, joint in enumerate(arm.joints):
+        reason = _refusal(joint.two_motors, motion, g, i)
+        if reason:
+            found.refused[joint.name] = reason
+        else:
+            used.append(i)
+    if not used:
+        return found, None
+    excess = _excess(arm, motion)
+    weights = estimate(arm, motion, excess, used)
+    found.values = _values(arm, weights)
+    found.notes.append(
+        f"{weights.seen} combinations of masses and centres show in these torques. The change "
+        "proposed for the URDF is the least one that explains them; how it is spread over the "
+        "links is a choice, their gravity torque is not. Torque constants are taken as believed."
+    )
+    lighter = g + arm.dynamics.gravity_regressor(motion.q) @ weights.change
+    for i in used:
+        measured = (excess + g)[:, i][motion.moving[:, i]]
+        found.panels.append(_panel(arm, motion, measured, g, lighter, i))
+    return found, weights
+
+
+def estimate(arm: Arm, motion: Motion, excess: np.ndarray, used: list[int]) -> Weights:
+    """`excess`: torque at the joints beyond what the model says, N x n."""
+    Y, size = arm.dynamics.gravity_regressor(motion.q), 4 * arm.dynamics.size
+    prior = _prior_std(arm)
+    unknowns = size + 3 * len(used)
+    problems = []
+    for k, i in enumerate(used):
+        rows = motion.moving[:, i]
+        A = np.zeros((np.count_nonzero(rows), unknowns))
+        A[:, :size] = Y[rows, i]
+        own = slice(size + 3 * k, size + 3 * k + 3)
+        speed = motion.v[rows, i]
+        A[:, own] = np.stack([np.sign(speed), speed, np.ones_like(speed)], axis=1)
+        samples_of_block = len(speed) / len(np.unique(motion.block[rows]))
+        problems.append((A, excess[rows, i], samples_of_block))
+    sigma = [max(float(np.std(r)), FLOOR_NM) for _, r, _ in problems]
+    before = [_unexplained(A[:, size:], r) for A, r, _ in problems]
+    for _ in range(ROUNDS):  # the weight of each joint follows from what stays unexplained in it
+        H, h = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+        H[range(size), range(size)] = prior**-2.0
+        for (A, r, together), std in zip(problems, sigma, strict=True):
+            H += A.T @ A / (std**2 * together)
+            h += A.T @ r / (std**2 * together)
+        covariance = np.linalg.inv(H)
+        x = covariance @ h
+        sigma = [max(float(np.std(r - A @ x)), FLOOR_NM) for A, r, _ in problems]
+    whitened = covariance[:size, :size] / np.outer(prior, prior)
+    seen = int(np.count_nonzero(np.linalg.eigvalsh(whitened) < MEASURED**2))
+    return Weights(
+        x[:size],
+        covariance[:size, :size],
+        seen,
+        x[size + 2 :: 3],
+        np.array(before),
+        np.array(sigma),
+    )
+
+
+def _refusal(two_motors: bool, motion: Motion, g: np.ndarray, i: int) -> str:
+    rows = motion.moving[:, i]
+    if two_motors:
+        return "two motors pull at this joint"
+    if len(np.unique(motion.block[rows])) < LEAST_BLOCKS:
+        return "it moves too little"
+    span = float(np.ptp(g[rows, i]))
+    if not span > LEAST_NM:
+        return f"gravity's torque changes by only {span:.2g} N m here"
+    return ""
+
+
+def _excess(arm: Arm, motion: Motion) -> np.ndarray:
+    """Sensed torque or, without a sensor, motor torque, less what model and rotor need."""
+    inertia = np.array([joint.rotor_inertia for joint in arm.joints])
+    driven = motion.motor - inertia * motion.theta_ddot
+    measured = np.where(motion.torque_sensor, loads(arm, motion), driven)
+    return measured - arm.dynamics.torque(motion.q, motion.v, motion.a)
+
+
+def _prior_std(arm: Arm) -> np.ndarray:
+    return np.concatenate(
+        [[body.mass * MASS_SHARE] + 3 * [body.mass * CENTRE_M] for body in arm.dynamics.bodies]
+    )
+
+
+def _unexplained(A: np.ndarray, r: np.ndarray) -> float:
+    """By friction and offset alone, rms."""
+    return float(np.std(r - A @ np.linalg.lstsq(A, r, rcond=None)[0]))
+
+
+def changed_link(arm: Arm, weights: Weights, i: int) -> tuple[str, float, np.ndarray]:
+    """The heaviest link of body i with the mass and centre (its own frame) it should have."""
+    body = arm.dynamics.bodies[i]
+    d_mass, d_moment = weights.change[4 * i], weights.change[4 * i + 1 : 4 * i + 4]
+    R, p = body.X_CH[:3, :3], body.X_CH[:3, 3]
+    mass = body.inertial.mass + d_mass
+    moment = body.inertial.mass * (R @ body.inertial.com + p) + d_moment
+    return body.heaviest, float(mass), R.T @ (moment / mass - p)
+
+
+def _values(arm: Arm, weights: Weights) -> list[Value]:
+    values = []
+    std = np.sqrt(np.diag(weights.covariance))
+    for i, body in enumerate(arm.dynamics.bodies):
+        link, mass, com = changed_link(arm, weights, i)
+        name = arm.joints[i].name
+        believed = body.inertial.mass
+        values.append(Value(name, f"mass of {link}", "kg", mass, float(std[4 * i]), believed))
+        for axis, value, before, deviation in zip(
+            "xyz", com, body.inertial.com, std[4 * i + 1 : 4 * i + 4] / mass, strict=True
+        ):
+            values.append(
+                Value(name, f"centre of {link}, {axis}", "m", float(value), deviation, before)
+            )
+    return values
+
+
+def _panel(
+    arm: Arm,
+    motion: Motion,
+    measured: np.ndarray,
+    before: np.ndarray,
+    after: np.ndarray,
+    i: int,
+) -> Panel:
+    rows = motion.moving[:, i]
+    order = np.argsort(after[rows, i])
+    now, then = after[rows, i][order], before[rows, i][order]
+    return Panel(
+        arm.joints[i].name,
+        "gravity torque with the change (N m)",
+        "torque (N m)",
+        after[rows, i],
+        measured,
+        {"with the change": (now, now), "as the URDF says": (now, then)},
+    )

@@ -1,0 +1,30 @@
+"""A URDF with other masses and centres of mass; all else as it was, comments included."""
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+
+DIGITS = 5
+
+
+def with_inertials(urdf: Path, changes: dict[str, tuple[float, np.ndarray]]) -> str:
+    """`changes`: link -> mass, kg, and centre of mass in its own frame, m."""
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    root = ElementTree.parse(urdf, parser).getroot()
+    for link in root.findall("link"):
+        if link.get("name") not in changes:
+            continue
+        mass, com = changes[link.get("name")]
+        inertial = link.find("inertial")
+        inertial.find("mass").set("value", f"{mass:.{DIGITS}g}")
+        origin = inertial.find("origin")
+        if origin is None:
+            origin = ElementTree.SubElement(inertial, "origin")
+        origin.set("xyz", " ".join(f"{x:.{DIGITS}g}" for x in com))
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def canonical(urdf: Path) -> str:
+    """The same file as `with_inertials` writes it when nothing changes: what to compare with."""
+    return with_inertials(urdf, {})
