@@ -27,14 +27,18 @@ ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
     buses.emplace_back(can[b], robot.buses[b]);
     load_predicted.push_back(checked_bus_load(robot, static_cast<int>(b)));
   }
-  for (const JointConfig& joint : robot.joints) {
-    drives.emplace_back(joint, buses.at(static_cast<std::size_t>(joint.drive.bus)).fd(), rate_hz,
-                        bridged_cycles);
+  for (const JointConfig& joint : robot.joints) joints.emplace_back(robot, joint, bridged_cycles);
+  for (const ArmJoint& joint : joints) {
+    for (const Drive& motor : joint.motors()) {
+      CanFrame frame;
+      if (motor.link().needs_bus_frame(&frame))
+        buses[static_cast<std::size_t>(motor.bus())].end_with(frame);
+    }
   }
   if (robot.has_tip_sensor) tip_sensor.emplace(robot.tip_sensor, bridged_cycles);
   published.session = session;
   published.period_ns = std::llround(1e9 / rate_hz);
-  published.num_joints = static_cast<std::int8_t>(drives.size());
+  published.num_joints = static_cast<std::int8_t>(joints.size());
 }
 
 ArmDriver::ArmDriver(const Robot& robot, std::vector<CanBus*> buses,
@@ -49,10 +53,11 @@ void ArmDriver::Impl::apply(DriveEvent event, int joint) noexcept {
   const DriveState from = state();
   if (!machine.apply(event, joint)) return;
   cycles_in_state = 0;
-  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].enter(state(), tau_gravity[i]);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    joints[i].enter(state(), {tau_gravity[i], torque[i].preload});
   if (in(DriveState::kOn) && from == DriveState::kEnabling) {
-    tau.fill(0.0);
-    tau_present.fill(0.0);
+    torque.fill({});
+    torque_present.fill({});
   }
 }
 
@@ -84,17 +89,21 @@ void ArmDriver::Impl::watch_shut_down() noexcept {
 void ArmDriver::Impl::send_commands() noexcept {
   const bool settling = cycles_in_state < cycles_of(kSettling_s, rate_hz);
   for (BusEnd& bus : buses) bus.clear();
-  for (std::size_t i = 0; i < drives.size(); ++i) {
-    Drive& drive = drives[i];
-    buses[static_cast<std::size_t>(drive.bus())].add(drive.next_frame(state(), tau[i], settling));
-    drive.begin_cycle();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    std::vector<Drive>& motors = joints[i].motors();
+    for (std::size_t m = 0; m < motors.size(); ++m) {
+      const double tau = joints[i].share(torque[i], m);
+      buses[static_cast<std::size_t>(motors[m].bus())].add(
+          motors[m].next_frame(state(), tau, settling));
+      motors[m].begin_cycle();
+    }
   }
   if (tip_sensor) {
     buses[static_cast<std::size_t>(tip_sensor->bus())].add(tip_sensor->next_frame());
     tip_sensor->begin_cycle();
   }
   ++cycles_in_state;
-  if (in(DriveState::kOn)) tau_present = tau;
+  if (in(DriveState::kOn)) torque_present = torque;
   for (BusEnd& bus : buses) {
     bus.send();
     bus.expect_tock(cycle);
@@ -129,10 +138,8 @@ void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noex
     tip_sensor->receive(frame, late);
     return;
   }
-  const auto drive = std::find_if(drives.begin(), drives.end(), [&](const Drive& candidate) {
-    return candidate.bus() == bus && has_id(frame, candidate.link().joint().drive.reply_id);
-  });
-  if (drive == drives.end()) {
+  Drive* drive = sender_of(bus, frame);
+  if (drive == nullptr) {
     end.count_foreign();
   } else if (late) {
     drive->count_late();
@@ -141,12 +148,21 @@ void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noex
   }
 }
 
+Drive* ArmDriver::Impl::sender_of(int bus, const CanFrame& frame) noexcept {
+  for (ArmJoint& joint : joints) {
+    for (Drive& motor : joint.motors()) {
+      if (motor.bus() == bus && motor.link().is_mine(frame)) return &motor;
+    }
+  }
+  return nullptr;
+}
+
 bool ArmDriver::complete() const noexcept {
   if (impl_->lockstep) {
     return std::all_of(impl_->buses.begin(), impl_->buses.end(),
                        [](const BusEnd& bus) { return bus.tocked(); });
   }
-  return impl_->all_drives(&Drive::answered) &&
+  return impl_->all_joints(&ArmJoint::answered) &&
          (!impl_->tip_sensor || impl_->tip_sensor->settled());
 }
 
@@ -179,7 +195,10 @@ GateSituation ArmDriver::Impl::situation() const noexcept {
   now.state_seq = cycle;
   now.powered = machine.powered();
   now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
-  now.torque_present = tau_present;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    now.torque_present[i] = torque_present[i].tau;
+    now.preload_present[i] = torque_present[i].preload;
+  }
   std::copy_n(published.v, kMaxJoints, now.velocity.begin());
   return now;
 }
@@ -197,24 +216,26 @@ void ArmDriver::Impl::obey(const joint_torque_t& command, bool followed) noexcep
       break;
     case joint_torque_t::REQUEST_ON:
     case joint_torque_t::REQUEST_ACKNOWLEDGE:
-      if (followed && all_drives(&Drive::healthy)) {
+      if (followed && all_joints(&ArmJoint::healthy)) {
         apply(DriveEvent::kTakenOver);
       } else if (command.request == joint_torque_t::REQUEST_ACKNOWLEDGE) {
         acknowledge();
-      } else if (all_drives(&Drive::ready_to_enable)) {
+      } else if (all_joints(&ArmJoint::ready_to_enable)) {
         apply(DriveEvent::kRequestOn);
       }
       break;
     default:
       break;
   }
-  if (in(DriveState::kOn)) std::copy_n(command.tau, kMaxJoints, tau.begin());
+  if (!in(DriveState::kOn)) return;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    torque[i] = {command.tau[i], command.tau_preload[i]};
 }
 
 void ArmDriver::Impl::acknowledge() noexcept {
   const bool held = in(DriveState::kHold) || in(DriveState::kDamp);
-  if (held && !all_drives(&Drive::healthy)) return;
-  for (Drive& drive : drives) drive.acknowledge();
+  if (held && !all_joints(&ArmJoint::healthy)) return;
+  for (ArmJoint& joint : joints) joint.acknowledge();
   apply(DriveEvent::kAcknowledge);
 }
 
@@ -229,7 +250,7 @@ void ArmDriver::request_shut_down() noexcept { impl_->shutting_down = true; }
 
 bool ArmDriver::shut_down() const noexcept {
   return impl_->shutting_down && (impl_->in(DriveState::kOff) || impl_->in(DriveState::kFault)) &&
-         impl_->all_drives(&Drive::disabled);
+         impl_->all_joints(&ArmJoint::disabled);
 }
 
 }  // namespace limber

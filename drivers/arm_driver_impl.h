@@ -9,8 +9,8 @@
 
 #include "common/joints.h"
 #include "drivers/arm_driver.h"
+#include "drivers/arm_joint.h"
 #include "drivers/bus_end.h"
-#include "drivers/drive.h"
 #include "drivers/drive_states.h"
 #include "drivers/gate/torque_gate.h"
 #include "drivers/tip_sensor_link.h"
@@ -21,9 +21,9 @@ struct ArmDriver::Impl {
   Impl(const Robot& robot, const std::vector<CanBus*>& can, const ArmDriverOptions& options);
 
   void apply(DriveEvent event, int joint = -1) noexcept;
-  bool all_drives(bool (Drive::*test)() const noexcept) const noexcept {
-    return std::all_of(drives.begin(), drives.end(),
-                       [test](const Drive& drive) { return (drive.*test)(); });
+  bool all_joints(bool (ArmJoint::*test)() const noexcept) const noexcept {
+    return std::all_of(joints.begin(), joints.end(),
+                       [test](const ArmJoint& joint) { return (joint.*test)(); });
   }
 
   // transmit
@@ -33,6 +33,7 @@ struct ArmDriver::Impl {
   // poll
   void take_frames(bool late) noexcept;
   void take_frame(int bus, const CanFrame& frame, bool late) noexcept;
+  Drive* sender_of(int bus, const CanFrame& frame) noexcept;
   // finish_cycle
   std::int64_t cycles_all_silent() const noexcept;
   void supervise() noexcept;
@@ -55,7 +56,7 @@ struct ArmDriver::Impl {
   bool lockstep;
   int bridged_cycles;
   std::int64_t session;
-  std::vector<Drive> drives;
+  std::vector<ArmJoint> joints;
   std::optional<TipSensorLink> tip_sensor;
   std::vector<BusEnd> buses;
   std::vector<double> load_predicted;
@@ -68,9 +69,9 @@ struct ArmDriver::Impl {
   bool heard = false;       ///< a command was accepted since the last transmit
   int unheard_cycles = 0;
   bool shutting_down = false;
-  std::array<double, kMaxJoints> tau{};          ///< accepted last, sent next
-  std::array<double, kMaxJoints> tau_gravity{};  ///< of the command accepted last
-  std::array<double, kMaxJoints> tau_present{};  ///< what the drives were told last
+  std::array<JointTorque, kMaxJoints> torque{};          ///< accepted last, sent next
+  std::array<double, kMaxJoints> tau_gravity{};          ///< of the command accepted last
+  std::array<JointTorque, kMaxJoints> torque_present{};  ///< what the drives were told last
   std::array<std::int64_t, 16> verdicts{};
   std::int64_t missing = 0;
   joint_state_t published{};

@@ -13,25 +13,27 @@ void ArmDriver::Impl::describe_state() noexcept {
   published.drive_state = static_cast<std::int8_t>(state());
   published.fault = machine.fault();
   published.fault_joint = machine.fault_joint();
-  for (std::size_t i = 0; i < drives.size(); ++i) describe_joint(i);
+  for (std::size_t i = 0; i < joints.size(); ++i) describe_joint(i);
   if (tip_sensor) describe_tip_sensor();
-  // The step to the first torque after HOLD or DAMP counts from what the drive itself exerts.
-  if (!in(DriveState::kOn)) std::copy_n(published.tau_applied, kMaxJoints, tau_present.begin());
+  // The step to the first torque after HOLD or DAMP counts from what the drives themselves exert.
+  if (in(DriveState::kOn)) return;
+  for (std::size_t i = 0; i < joints.size(); ++i) torque_present[i] = joints[i].applied();
 }
 
 void ArmDriver::Impl::describe_joint(std::size_t i) noexcept {
-  const JointLink& link = drives[i].link();
-  published.q[i] = published.theta[i] = link.q();  // rigid drives: the encoder is at the output
-  published.v[i] = published.theta_dot[i] = link.v();
-  published.tau[i] = link.tau();
-  published.tau_applied[i] = link.tau_applied();
-  published.current_A[i] = static_cast<float>(link.current_A());
-  published.temperature_degC[i] = static_cast<float>(link.temperature_degC());
-  published.age_cycles[i] = link.age_cycles();
-  published.joint_flags[i] = (link.fresh() ? joint_state_t::JOINT_FRESH : 0) |
-                             (link.enabled() ? joint_state_t::JOINT_ENABLED : 0) |
-                             (link.drive_error() ? joint_state_t::JOINT_DRIVE_ERROR : 0) |
-                             (link.out_of_range() ? joint_state_t::JOINT_OUT_OF_RANGE : 0);
+  const ArmJoint& joint = joints[i];
+  published.q[i] = joint.q();
+  published.v[i] = joint.v();
+  published.theta[i] = joint.theta();
+  published.theta_dot[i] = joint.theta_dot();
+  published.preload[i] = static_cast<float>(joint.preload());
+  published.preload_dot[i] = static_cast<float>(joint.preload_dot());
+  published.tau[i] = joint.tau();
+  published.tau_applied[i] = joint.applied().tau;
+  published.current_A[i] = static_cast<float>(joint.current_A());
+  published.temperature_degC[i] = static_cast<float>(joint.temperature_degC());
+  published.age_cycles[i] = joint.age_cycles();
+  published.joint_flags[i] = joint.flags();
 }
 
 void ArmDriver::Impl::describe_tip_sensor() noexcept {
@@ -47,7 +49,7 @@ void ArmDriver::fill_status(driver_status_t* status) const noexcept {
   status->drive_state = static_cast<std::int8_t>(driver.state());
   status->fault = driver.machine.fault();
   status->fault_joint = driver.machine.fault_joint();
-  status->num_joints = static_cast<std::int8_t>(driver.drives.size());
+  status->num_joints = static_cast<std::int8_t>(driver.joints.size());
   status->num_buses = static_cast<std::int8_t>(driver.buses.size());
   status->lockstep = driver.lockstep ? 1 : 0;
   status->cycles = driver.cycle + 1;
@@ -55,10 +57,10 @@ void ArmDriver::fill_status(driver_status_t* status) const noexcept {
   std::copy(driver.verdicts.begin(), driver.verdicts.end(), status->commands_refused);
   status->commands_refused[driver_status_t::VERDICT_ACCEPTED] = 0;
   status->commands_missing = driver.missing;
-  for (std::size_t i = 0; i < driver.drives.size(); ++i) {
-    status->replies_late[i] = driver.drives[i].replies_late();
-    status->replies_lost[i] = driver.drives[i].replies_lost();
-    status->replies_invalid[i] = driver.drives[i].replies_invalid();
+  for (std::size_t i = 0; i < driver.joints.size(); ++i) {
+    status->replies_late[i] = driver.joints[i].replies_late();
+    status->replies_lost[i] = driver.joints[i].replies_lost();
+    status->replies_invalid[i] = driver.joints[i].replies_invalid();
   }
   if (driver.tip_sensor) {
     status->sensor_replies_late = driver.tip_sensor->late();
@@ -78,15 +80,13 @@ void ArmDriver::fill_status(driver_status_t* status) const noexcept {
 }
 
 std::string ArmDriver::configuration_problem() const {
-  for (const Drive& drive : impl_->drives) {
-    if (!drive.configuration_wrong()) continue;
-    const ConfigureDialogue::Failure& failure = drive.configuration().failure();
-    const JointConfig& joint = drive.link().joint();
-    const std::string who = fmt::format("{} (id 0x{:X})", joint.name, joint.drive.command_id);
-    if (failure.reg == 0) return who + ": could not be disabled, or does not answer";
-    if (!failure.answered) return fmt::format("{}: register {} not answered", who, failure.reg);
-    return fmt::format("{}: register {} is {:g}, expected {:g}", who, failure.reg, failure.found,
-                       failure.expected);
+  for (const ArmJoint& joint : impl_->joints) {
+    for (const Drive& motor : joint.motors()) {
+      if (!motor.configuration_wrong()) continue;
+      const JointConfig& config = motor.link().joint();
+      return fmt::format("{} (id 0x{:X}): {}", config.name, config.drive.command_id,
+                         motor.configuration_problem());
+    }
   }
   return "";
 }

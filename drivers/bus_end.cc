@@ -6,6 +6,7 @@
 namespace limber {
 
 void BusEnd::send() noexcept {
+  if (last_) put(*last_);
   const std::span<const CanFrame> batch(batch_.data(), batched_);
   const int accepted = batched_ == 0 ? 0 : bus_->send(batch);
   for (int i = 0; i < accepted; ++i) count_load(batch_[static_cast<std::size_t>(i)]);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "common/joints.h"
@@ -18,10 +19,14 @@ class BusEnd {
 
   bool fd() const noexcept { return config_.fd; }
 
+  /// Every batch shall end with this frame, once, whoever asks for it.
+  void end_with(const CanFrame& frame) noexcept { last_ = frame; }
+
   /// Starts an empty batch.
   void clear() noexcept { batched_ = 0; }
   void add(const CanFrame& frame) noexcept {
-    if (batched_ < batch_.size()) batch_[batched_++] = frame;
+    if (last_ && has_id(frame, last_->id)) return;
+    put(frame);
   }
   /// Sends the batch. Frames that are not accepted are gone: the next cycle has newer ones.
   void send() noexcept;
@@ -49,12 +54,16 @@ class BusEnd {
   std::int64_t foreign() const noexcept { return foreign_; }
 
  private:
+  void put(const CanFrame& frame) noexcept {
+    if (batched_ < batch_.size()) batch_[batched_++] = frame;
+  }
   void count_load(const CanFrame& frame) noexcept;
 
   CanBus* bus_;
   BusConfig config_;
-  std::array<CanFrame, kMaxJoints + 1> batch_;
+  std::array<CanFrame, kMaxMotors + 2> batch_;  ///< motors, tip sensor, last_
   std::size_t batched_ = 0;
+  std::optional<CanFrame> last_;
   std::array<CanFrame, 32> received_;
   std::int64_t foreign_ = 0;
   int refused_cycles_ = 0;

@@ -3,15 +3,13 @@
 namespace limber {
 
 void ConfigureDialogue::start() noexcept {
-  step_ = 0;
-  attempts_ = 0;
-  advanced_ = false;
   failed_ = false;
-  failure_ = {};
+  advanced_ = false;
+  go_to(family_->starts_with_disable() ? 0 : 1);
 }
 
 CanFrame ConfigureDialogue::next_frame() noexcept {
-  if (done()) return family_->state_request();
+  if (done() || waited_ > 0) return family_->state_request();
   return step_ == 0 ? family_->disable() : family_->ask(question());
 }
 
@@ -19,16 +17,12 @@ bool ConfigureDialogue::receive(const CanFrame& frame) noexcept {
   // One answer a cycle: a step that was reached in this cycle has not been asked for yet.
   if (expects_state() || failed_ || advanced_) return false;
   double found = 0.0;
-  switch (family_->judge(question(), frame, &found)) {
-    case Answer::kNone:
-      return false;
-    case Answer::kRight:
-      advance();
-      break;
-    case Answer::kWrong:
-      fail(true, found);
-      break;
-  }
+  const Answer answer = family_->judge(question(), frame, &found);
+  if (answer == Answer::kNone) return false;
+  failure_.answer = answer;
+  failure_.found = found;
+  if (answer == Answer::kRight) advance();
+  if (answer == Answer::kWrong || answer == Answer::kRefused) failed_ = true;
   return true;
 }
 
@@ -37,20 +31,31 @@ void ConfigureDialogue::receive_state(bool enabled) noexcept {
 }
 
 void ConfigureDialogue::close_cycle() noexcept {
-  if (!advanced_ && !done() && !failed_ && ++attempts_ >= kAttempts) fail(false, 0.0);
+  const bool over = advanced_ || done() || failed_;
   advanced_ = false;
-}
-
-void ConfigureDialogue::fail(bool answered, double found) noexcept {
-  failed_ = true;
-  const StartupQuestion asked = step_ == 0 ? StartupQuestion{} : family_->question(question());
-  failure_ = {asked.reg, answered, found, asked.expected};
+  if (over) return;
+  if (step_ > 0 && !family_->question(question()).answered) {
+    go_to(step_ + 1);
+  } else if (++waited_ >= family_->patience_cycles()) {
+    waited_ = 0;
+    if (++attempts_ >= kAttempts) failed_ = true;
+  }
 }
 
 void ConfigureDialogue::advance() noexcept {
-  ++step_;
-  attempts_ = 0;
+  go_to(step_ + 1);
   advanced_ = true;
+}
+
+void ConfigureDialogue::go_to(int step) noexcept {
+  step_ = step;
+  attempts_ = 0;
+  waited_ = 0;
+  failure_ = {};
+  if (step_ == 0 || done()) return;
+  const StartupQuestion asked = family_->question(question());
+  failure_.reg = asked.reg;
+  failure_.expected = asked.expected;
 }
 
 }  // namespace limber

@@ -4,7 +4,8 @@
 //   disable -> the family's questions, one after the other -> done
 //
 // It starts with disable because a motor may still be enabled by a process that died; the enabled
-// state of a stranger is never taken over. One frame a cycle. Allowed inside the cycle: everything
+// state of a stranger is never taken over. (A family whose drives must first be made to listen has
+// that among its questions.) One frame a cycle. Allowed inside the cycle: everything
 // but the constructor.
 #pragma once
 
@@ -18,7 +19,7 @@ namespace limber {
 class ConfigureDialogue {
  public:
   /// The family outlives the dialogue.
-  explicit ConfigureDialogue(DriveFamily* family) : family_(family) {}
+  explicit ConfigureDialogue(DriveFamily* family) : family_(family) { start(); }
 
   void start() noexcept;
 
@@ -30,35 +31,29 @@ class ConfigureDialogue {
   bool receive(const CanFrame& frame) noexcept;
   /// A state reply.
   void receive_state(bool enabled) noexcept;
-  /// End of a cycle: an unanswered request is repeated, three times at most.
+  /// End of a cycle: a request unanswered for as long as the family is patient is repeated, three
+  /// times at most.
   void close_cycle() noexcept;
 
   bool done() const noexcept { return step_ > family_->questions(); }
   bool failed() const noexcept { return failed_; }
 
-  /// What the dialogue failed at: register (0 for the disabling), what the drive said (0 if
-  /// nothing) and what it should have said.
-  struct Failure {
-    std::uint32_t reg = 0;
-    bool answered = false;
-    double found = 0.0;
-    double expected = 0.0;
-  };
-  const Failure& failure() const noexcept { return failure_; }
+  const StartupFailure& failure() const noexcept { return failure_; }
 
  private:
   static constexpr int kAttempts = 4;
 
   int question() const noexcept { return step_ - 1; }
-  void fail(bool answered, double found) noexcept;
   void advance() noexcept;
+  void go_to(int step) noexcept;
 
   DriveFamily* family_;
   int step_ = 0;  ///< 0: disabling, i: question i - 1
   int attempts_ = 0;
+  int waited_ = 0;         ///< cycles since the last attempt
   bool advanced_ = false;  ///< in this cycle
   bool failed_ = false;
-  Failure failure_;
+  StartupFailure failure_;  ///< as it would be now
 };
 
 }  // namespace limber

@@ -9,7 +9,7 @@ Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycl
       configure_(&link_.family()),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles) {}
 
-void Drive::enter(DriveState state, double gravity) noexcept {
+void Drive::enter(DriveState state, double held) noexcept {
   switch (state) {
     case DriveState::kConfiguring:
       configure_.start();
@@ -22,7 +22,7 @@ void Drive::enter(DriveState state, double gravity) noexcept {
       enable_.start(link_);
       break;
     case DriveState::kHold:
-      hold_.start(gravity);
+      hold_.start(held);
       break;
     case DriveState::kOn:
     case DriveState::kDamp:
@@ -67,7 +67,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   if (state == DriveState::kConfiguring && !configure_.expects_state()) {
     if (configure_.receive(frame)) {
       answered_ = true;
-    } else {
+    } else if (!link_.is_aside(frame)) {
       ++invalid_;
     }
     return;
@@ -75,7 +75,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   // An arm that nobody drives may swing as it likes, and whoever drives it next needs its angle.
   if (state == DriveState::kOff) link_.forget_angle();
   if (!link_.receive(frame)) {
-    ++invalid_;
+    if (!link_.is_aside(frame)) ++invalid_;
     return;
   }
   answered_ = true;
@@ -84,10 +84,6 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
 
 void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
   if (!answered_) ++missing_;
-  if (link_.fresh()) {
-    const double limit = 1.1 * link_.joint().velocity_limit;
-    fast_cycles_ = std::abs(link_.v()) <= limit ? 0 : fast_cycles_ + 1;
-  }
   if (state == DriveState::kConfiguring) {
     configure_.close_cycle();
     return;
@@ -95,11 +91,5 @@ void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
   if (state == DriveState::kEnabling) enable_.close_cycle(link_);
   watch_.close_cycle(link_.fresh(), cycle);
 }
-
-bool Drive::ready_to_enable() const noexcept {
-  return link_.fresh() && !link_.out_of_range() && fast_cycles_ == 0;
-}
-
-bool Drive::healthy() const noexcept { return ready_to_enable() && link_.enabled(); }
 
 }  // namespace limber

@@ -50,8 +50,10 @@ Robot load(const DriverProcessOptions& options) {
 int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
   const int on_a_wire = ArmDriverOptions().bridged_cycles;
   if (options.lockstep || !robot->on_virtual_buses()) return on_a_wire;
-  for (JointConfig& joint : robot->joints)
-    joint.drive.watchdog_s = std::max(joint.drive.watchdog_s, kVirtualWatchdog_s);
+  for (JointConfig& joint : robot->joints) {
+    for (DriveConfig* drive : {&joint.drive, &joint.antagonist})
+      drive->watchdog_s = std::max(drive->watchdog_s, kVirtualWatchdog_s);
+  }
   return std::max(on_a_wire, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
 }
 

@@ -25,8 +25,10 @@ int cycles_of(double seconds, double rate_hz) noexcept {
 
 int drive_watchdog_cycles_of(const Robot& robot) noexcept {
   double longest_s = 0.0;
-  for (const JointConfig& joint : robot.joints)
+  for (const JointConfig& joint : robot.joints) {
     longest_s = std::max(longest_s, joint.drive.watchdog_s);
+    if (joint.has_antagonist) longest_s = std::max(longest_s, joint.antagonist.watchdog_s);
+  }
   return cycles_of(longest_s, robot.rate_hz);
 }
 
@@ -70,6 +72,9 @@ GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
     limits.torque_Nm[i] = std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm);
     limits.torque_step_Nm[i] =
         joint.torque_rate_limit_Nm_per_s / robot.rate_hz * (1.0 + kRoundingSlack);
+    if (!joint.has_antagonist) continue;
+    limits.preload_Nm[i] = 2.0 * std::min(limits.torque_Nm[i], joint.antagonist.range.torque_Nm);
+    limits.preload_step_Nm[i] = 2.0 * limits.torque_step_Nm[i];
   }
   return limits;
 }

@@ -11,15 +11,15 @@ JointCommand JointHold::command(const JointLink& link, bool settling, bool trust
   const double kd = joint.drive.hold_kd_Nms_per_rad;
   if (settling || !trusted) {
     holding_ = false;
-    return {link.q(), 0.0, kd, gravity_};
+    return {link.theta(), 0.0, kd, held_};
   }
-  if (!holding_) q_hold_ = link.q();
+  if (!holding_) theta_hold_ = link.theta();
   holding_ = true;
   if (kp > 0.0) {
-    const double reach = std::max(joint.torque_limit_Nm - std::abs(gravity_), 0.0) / kp;
-    q_hold_ = std::clamp(q_hold_, link.q() - reach, link.q() + reach);
+    const double reach = std::max(joint.torque_limit_Nm - std::abs(held_), 0.0) / kp;
+    theta_hold_ = std::clamp(theta_hold_, link.theta() - reach, link.theta() + reach);
   }
-  return {q_hold_, kp, kd, gravity_};
+  return {theta_hold_, kp, kd, held_};
 }
 
 }  // namespace limber

@@ -1,10 +1,12 @@
 // What one drive does while the driver holds the arm by itself.
 //
-//   first 100 ms:  tau = gravity of the last accepted command - kd v
-//   then:          tau = gravity + kp (q_hold - q) - kd v,  q_hold: the angle reached by then
+//   first 100 ms:  tau = held - kd theta_dot,  held: the motor's part of gravity and preload
+//   then:          tau = held + kp (theta_hold - theta) - kd theta_dot,
+//                                              theta_hold: the angle reached by then
 //
+// The motor is held, not the link: behind a spring that is as stiff as the spring, and passive.
 // A joint whose replies are missing gets no position to hold, as nobody knows where it is: it goes
-// on floating on that gravity torque, and braking.
+// on floating on that torque, and braking.
 #pragma once
 
 #include <cstdint>
@@ -16,26 +18,26 @@ namespace limber {
 /// Allowed inside the cycle.
 class JointHold {
  public:
-  void start(double gravity) noexcept {
-    gravity_ = gravity;
+  void start(double held) noexcept {
+    held_ = held;
     holding_ = false;
   }
 
   /// `settling`: within the first 100 ms. `trusted`: the measured angle is good; a joint that comes
   /// back is held where it is then.
-  /// The spring gives way: q_hold follows a joint that is pushed so far that spring and gravity
-  /// together would exceed the joint's torque limit.
+  /// The spring gives way: theta_hold follows a joint that is pushed so far that spring and held
+  /// torque together would exceed the joint's torque limit.
   JointCommand command(const JointLink& link, bool settling, bool trusted) noexcept;
 
  private:
-  double gravity_ = 0.0;
-  double q_hold_ = 0.0;
+  double held_ = 0.0;
+  double theta_hold_ = 0.0;
   bool holding_ = false;
 };
 
-/// Braking alone: tau = -kd v.
+/// Braking alone: tau = -kd theta_dot.
 inline JointCommand damp(const JointLink& link) noexcept {
-  return {link.q(), 0.0, link.joint().drive.hold_kd_Nms_per_rad, 0.0};
+  return {link.theta(), 0.0, link.joint().drive.hold_kd_Nms_per_rad, 0.0};
 }
 
 }  // namespace limber

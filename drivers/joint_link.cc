@@ -2,29 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace limber {
-namespace {
-
-constexpr double kPositionMargin_rad = 0.02;
-
-}  // namespace
 
 JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles)
     : joint_(joint),
-      family_(make_drive_family(joint, fd)),
+      family_(make_drive_family(joint, fd, period_s)),
       longest_gap_(bridged_cycles + 1),
       jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
-      jump_resolution_(2.0 * family_->angle_resolution()) {}
+      jump_resolution_(2.0 * family_->angle_resolution()),
+      link_jump_resolution_(2.0 * std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)) {
+  seen_.angle_rad = joint.drive.offset_rad;
+}
 
-CanFrame JointLink::torque(double tau) noexcept { return command({q_, 0.0, 0.0, tau}); }
+CanFrame JointLink::torque(double tau) noexcept { return command({theta(), 0.0, 0.0, tau}); }
 
 CanFrame JointLink::command(const JointCommand& command) noexcept {
-  const DriveConfig& drive = joint_.drive;
   CanFrame frame;
-  commanded_ = family_->command({drive.sign * command.q + drive.offset_rad, 0.0, command.kp,
-                                 command.kd, drive.sign * command.tau},
-                                &frame, &sent_);
+  const DriveCommand wanted{drive_angle(command.theta), 0.0, command.kp, command.kd,
+                            sign() * command.tau};
+  commanded_ = family_->command(wanted, memory(), &frame, &sent_);
   return commanded_ ? frame : family_->state_request();
 }
 
@@ -40,7 +38,7 @@ CanFrame JointLink::clear_error() noexcept {
 
 CanFrame JointLink::enable() noexcept {
   commanded_ = false;
-  return family_->enable(joint_.drive.sign * q_ + joint_.drive.offset_rad);
+  return family_->enable(memory());
 }
 
 CanFrame JointLink::state_request() noexcept {
@@ -49,26 +47,21 @@ CanFrame JointLink::state_request() noexcept {
 }
 
 bool JointLink::receive(const CanFrame& frame) noexcept {
-  const DriveConfig& drive = joint_.drive;
   DriveReport report;
-  if (fresh() || !family_->read_state(frame, &report)) return false;
-  const double q = drive.sign * (report.angle_rad - drive.offset_rad);
-  if (!plausible(q)) return false;
-  q_ = q;
-  v_ = drive.sign * report.speed_rad_per_s;
-  tau_ = drive.sign * report.torque_Nm;
-  current_A_ = drive.sign * report.current_A;
-  temperature_degC_ = report.temperature_degC;
-  condition_ = report.condition;
+  if (fresh() || !family_->read_state(frame, &report) || !plausible(report)) return false;
+  seen_ = report;
   angle_known_ = true;
   age_cycles_ = 0;
   return true;
 }
 
-bool JointLink::plausible(double q) const noexcept {
-  if (!angle_known_) return std::isfinite(q);
-  const int cycles = std::clamp(age_cycles_, 1, longest_gap_);
-  return std::abs(q - q_) <= cycles * jump_per_cycle_ + jump_resolution_;
+bool JointLink::plausible(const DriveReport& report) const noexcept {
+  if (!angle_known_) return std::isfinite(report.angle_rad) && std::isfinite(report.link_angle_rad);
+  const double most = std::clamp(age_cycles_, 1, longest_gap_) * jump_per_cycle_;
+  const double winding = joint_.has_antagonist ? 2.0 : 1.0;
+  return std::abs(angle(report) - theta()) <= winding * most + jump_resolution_ &&
+         (!has_link_encoder() ||
+          std::abs(report.link_angle_rad - seen_.link_angle_rad) <= most + link_jump_resolution_);
 }
 
 void JointLink::begin_cycle() noexcept {
@@ -77,16 +70,9 @@ void JointLink::begin_cycle() noexcept {
 
 double JointLink::tau_applied() const noexcept {
   if (!commanded_ || !enabled()) return 0.0;
-  const DriveConfig& drive = joint_.drive;
-  const double angle = drive.sign * q_ + drive.offset_rad;
-  const double speed = drive.sign * v_;
-  return drive.sign * (sent_.kp_Nm_per_rad * (sent_.angle_rad - angle) +
-                       sent_.kd_Nms_per_rad * (sent_.speed_rad_per_s - speed) + sent_.torque_Nm);
-}
-
-bool JointLink::out_of_range() const noexcept {
-  return ever_answered() && !(q_ >= joint_.position_min - kPositionMargin_rad &&
-                              q_ <= joint_.position_max + kPositionMargin_rad);
+  return sign() *
+         (sent_.kp_Nm_per_rad * (sent_.angle_rad - seen_.angle_rad) +
+          sent_.kd_Nms_per_rad * (sent_.speed_rad_per_s - seen_.speed_rad_per_s) + sent_.torque_Nm);
 }
 
 }  // namespace limber

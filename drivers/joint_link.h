@@ -1,12 +1,14 @@
-// One joint's end of the bus: the only place that knows the drive's sign and zero.
+// One motor's end of the bus: the only place that knows the drive's sign and zero.
 //
-//   joint angle  = sign * (drive angle - offset)       speed and torque likewise by sign
+//   theta = sign * (drive angle - offset)       speed and torque likewise by sign
+//   q     = the link encoder's angle, which counts as the joint does: its sign, its zero
 //
 // Allowed inside the cycle: everything but the constructor.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/families/drive_family.h"
@@ -14,12 +16,13 @@
 
 namespace limber {
 
-/// What a drive shall do, in joint coordinates: tau_drive = kp (q - q_drive) - kd v_drive + tau.
+/// What a drive shall do, in joint coordinates: tau_drive = kp (theta - theta_drive) - kd
+/// theta_dot_drive + tau.
 struct JointCommand {
-  double q = 0.0;    ///< rad
-  double kp = 0.0;   ///< N m/rad
-  double kd = 0.0;   ///< N m s/rad
-  double tau = 0.0;  ///< N m
+  double theta = 0.0;  ///< rad
+  double kp = 0.0;     ///< N m/rad
+  double kd = 0.0;     ///< N m s/rad
+  double tau = 0.0;    ///< N m
 };
 
 class JointLink {
@@ -42,10 +45,14 @@ class JointLink {
 
   // --- from the drive -------------------------------------------------------------------------
 
+  bool needs_bus_frame(CanFrame* frame) const noexcept { return family_->needs_bus_frame(frame); }
+  bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
+  /// From this drive, but unasked, and nothing that must be understood.
+  bool is_aside(const CanFrame& frame) const noexcept { return family_->is_aside(frame); }
   /// Takes a state reply. False, and nothing taken: not one, another motor's number, a second one
-  /// in this cycle, or an angle the joint cannot have reached since the last one
+  /// in this cycle, or an angle that motor or link cannot have reached since the last one
   /// (1.5 velocity_limit T for each cycle since, at most as many as are bridged and one, plus two
-  /// counts).
+  /// counts; a motor of two may turn and wind at once: twice that).
   bool receive(const CanFrame& frame) noexcept;
 
   /// Start of a cycle: no reply yet, one cycle more since the last.
@@ -61,37 +68,49 @@ class JointLink {
   std::int32_t age_cycles() const noexcept { return age_cycles_; }
   static constexpr std::int32_t kNever = INT32_MAX;
 
-  double q() const noexcept { return q_; }      ///< rad
-  double v() const noexcept { return v_; }      ///< rad/s
-  double tau() const noexcept { return tau_; }  ///< N m, the drive's own estimate
-  double tau_applied() const noexcept;          ///< N m, see below
-  double current_A() const noexcept { return current_A_; }
-  double temperature_degC() const noexcept { return temperature_degC_; }
-  bool enabled() const noexcept { return condition_ == DriveCondition::kEnabled; }
-  bool drive_error() const noexcept { return condition_ == DriveCondition::kFailed; }
-  bool out_of_range() const noexcept;  ///< 0.02 rad beyond a position limit
+  double theta() const noexcept { return angle(seen_); }                        ///< rad
+  double theta_dot() const noexcept { return sign() * seen_.speed_rad_per_s; }  ///< rad/s
+  /// The link's, rad and rad/s; the motor's without a link encoder.
+  double q() const noexcept { return has_link_encoder() ? seen_.link_angle_rad : theta(); }
+  double v() const noexcept {
+    return has_link_encoder() ? seen_.link_speed_rad_per_s : theta_dot();
+  }
+  /// N m, sensed on the link if there is a torque sensor, else the drive's own estimate.
+  double tau() const noexcept { return sign() * seen_.torque_Nm; }
+  /// N m: what the drive made of this cycle's command; 0 if it was none, or is not enabled.
+  double tau_applied() const noexcept;
+  double current_A() const noexcept { return sign() * seen_.current_A; }
+  double temperature_degC() const noexcept { return seen_.temperature_degC; }
+  bool enabled() const noexcept { return seen_.condition == DriveCondition::kEnabled; }
+  bool drive_error() const noexcept { return seen_.condition == DriveCondition::kFailed; }
   const JointConfig& joint() const noexcept { return joint_; }
   DriveFamily& family() noexcept { return *family_; }
+  std::string describe(const StartupFailure& failure) const { return family_->describe(failure); }
 
  private:
-  bool plausible(double q) const noexcept;
+  double sign() const noexcept { return joint_.drive.sign; }
+  double angle(const DriveReport& report) const noexcept {
+    return sign() * (report.angle_rad - joint_.drive.offset_rad);
+  }
+  double drive_angle(double theta) const noexcept {
+    return sign() * theta + joint_.drive.offset_rad;
+  }
+  bool has_link_encoder() const noexcept { return joint_.link_encoder.present; }
+  bool plausible(const DriveReport& report) const noexcept;
+  DriveMemory memory() const noexcept { return {seen_, age_cycles_ < longest_gap_}; }
 
   JointConfig joint_;
   std::unique_ptr<DriveFamily> family_;
-  int longest_gap_;         ///< cycles
-  double jump_per_cycle_;   ///< rad
-  double jump_resolution_;  ///< rad
-  DriveCommand sent_;       ///< as the drive understands it
-  bool commanded_ = false;  ///< this cycle's frame is a command, not a request
+  int longest_gap_;              ///< cycles
+  double jump_per_cycle_;        ///< rad, of the link
+  double jump_resolution_;       ///< rad, of the motor
+  double link_jump_resolution_;  ///< rad
+  DriveCommand sent_;            ///< as the drive understands it
+  bool commanded_ = false;       ///< this cycle's frame is a command, not a request
 
   std::int32_t age_cycles_ = kNever;
   bool angle_known_ = false;
-  double q_ = 0.0;
-  double v_ = 0.0;
-  double tau_ = 0.0;
-  double current_A_ = 0.0;
-  double temperature_degC_ = 0.0;
-  DriveCondition condition_ = DriveCondition::kDisabled;
+  DriveReport seen_;  ///< the last one taken, in the drive's own coordinates
 };
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 
 #include "common/clock.h"
 #include "drivers/families/drive_family.h"
+#include "drivers/motor_view.h"
 
 namespace limber {
 namespace {
@@ -18,10 +19,9 @@ constexpr std::int64_t kStragglers_ns = 20'000'000;
 class Roll {
  public:
   Roll(const Robot& robot, std::span<CanBus* const> buses)
-      : robot_(robot), buses_(buses), here_(robot.joints.size(), false) {
+      : robot_(robot), buses_(buses), here_(static_cast<std::size_t>(robot.motors()), false) {
     for (const JointConfig& joint : robot.joints) {
-      const bool fd = robot.buses[static_cast<std::size_t>(joint.drive.bus)].fd;
-      families_.push_back(make_drive_family(joint, fd));
+      for (int motor = 0; motor < joint.motors(); ++motor) add(motor_view(joint, motor));
     }
   }
 
@@ -32,7 +32,7 @@ class Roll {
   void ask() {
     for (std::size_t i = 0; i < here_.size(); ++i) {
       if (here_[i]) continue;
-      const auto bus = static_cast<std::size_t>(robot_.joints[i].drive.bus);
+      const auto bus = static_cast<std::size_t>(motors_[i].drive.bus);
       buses_[bus]->send(families_[i]->presence_request());
     }
   }
@@ -62,7 +62,7 @@ class Roll {
     std::string names;
     for (std::size_t i = 0; i < here_.size(); ++i) {
       if (here_[i]) continue;
-      const JointConfig& joint = robot_.joints[i];
+      const JointConfig& joint = motors_[i];
       const BusConfig& bus = robot_.buses[static_cast<std::size_t>(joint.drive.bus)];
       names += fmt::format("{}{} (id 0x{:X} on {})", names.empty() ? "" : ", ", joint.name,
                            joint.drive.command_id, bus.can);
@@ -71,15 +71,20 @@ class Roll {
   }
 
  private:
+  void add(const JointConfig& motor) {
+    const bool fd = robot_.buses[static_cast<std::size_t>(motor.drive.bus)].fd;
+    families_.push_back(make_drive_family(motor, fd, 1.0 / robot_.rate_hz));
+    motors_.push_back(motor);
+  }
   void note(int bus, const CanFrame& frame) {
     for (std::size_t i = 0; i < here_.size(); ++i) {
-      const DriveConfig& drive = robot_.joints[i].drive;
-      if (drive.bus == bus && has_id(frame, drive.reply_id)) here_[i] = true;
+      if (motors_[i].drive.bus == bus && families_[i]->is_mine(frame)) here_[i] = true;
     }
   }
 
   const Robot& robot_;
   std::span<CanBus* const> buses_;
+  std::vector<JointConfig> motors_;
   std::vector<std::unique_ptr<DriveFamily>> families_;
   std::vector<bool> here_;
 };

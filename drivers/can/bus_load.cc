@@ -106,12 +106,18 @@ double busy_time_s(const Robot& robot, int bus) noexcept {
                               config.data_bitrate_bps);
   };
   double busy_s = 0.0;
-  for (const JointConfig& joint : robot.joints) {
-    if (joint.drive.bus != bus) continue;
-    const DriveConfig& drive = joint.drive;
+  bool sync = false;
+  const auto add = [&](const DriveConfig& drive) {
+    if (drive.bus != bus) return;
     busy_s += time_s(drive.command_bytes, drive.command_id);
     busy_s += time_s(drive.reply_bytes, drive.reply_id);
+    sync = sync || drive.protocol == DriveProtocol::kCia402;
+  };
+  for (const JointConfig& joint : robot.joints) {
+    add(joint.drive);
+    if (joint.has_antagonist) add(joint.antagonist);
   }
+  if (sync) busy_s += worst_frame_time_s(0, false, false, config.bitrate_bps, 0.0);
   return busy_s + tip_sensor_time_s(robot, bus);
 }
 

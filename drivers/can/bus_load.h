@@ -27,8 +27,9 @@ int classic_frame_bits(const CanFrame& frame) noexcept;
 /// messages of the adapter and no frames on the bus. Allowed inside the cycle.
 double frame_time_s(const CanFrame& frame, double bitrate_bps, double data_bitrate_bps) noexcept;
 
-/// Share of the bus that one command and one reply per motor and cycle, and the tip sensor's
-/// frames, take at robot.rate_hz, every frame at its longest.
+/// Share of the bus that one command and one reply per motor and cycle, the SYNC of CANopen drives,
+/// which is a classic frame, and the tip sensor's frames take at robot.rate_hz, every frame at its
+/// longest.
 double predicted_bus_load(const Robot& robot, int bus) noexcept;
 
 /// Rate at which predicted_bus_load would be `load`, Hz; infinite if no motor is on the bus.

@@ -56,8 +56,8 @@ DamiaoFamily::DamiaoFamily(const JointConfig& joint, bool fd) : drive_(joint.dri
   }};
 }
 
-bool DamiaoFamily::command(const DriveCommand& command, CanFrame* frame,
-                           DriveCommand* sent) noexcept {
+bool DamiaoFamily::command(const DriveCommand& command, const DriveMemory& /*memory*/,
+                           CanFrame* frame, DriveCommand* sent) noexcept {
   const double tau = command.torque_Nm + carry_;
   const double wanted = std::isfinite(tau) ? std::clamp(tau, -most_torque_, most_torque_) : tau;
   mit::Command decoded;

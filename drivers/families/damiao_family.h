@@ -18,10 +18,13 @@ class DamiaoFamily final : public DriveFamily {
   /// The rounding error of the torque field is added to the next torque (first-order noise
   /// shaping): the mean over the cycles is exact although a count is up to 14 mN m, and there is no
   /// exact zero. Neither that nor rounding carries a torque over the joint's limit.
-  bool command(const DriveCommand& command, CanFrame* frame, DriveCommand* sent) noexcept override;
+  bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
+               DriveCommand* sent) noexcept override;
   CanFrame disable() noexcept override { return special(mit::Special::kDisable); }
   CanFrame clear_error() noexcept override { return special(mit::Special::kClearError); }
-  CanFrame enable(double /*angle_rad*/) noexcept override { return special(mit::Special::kEnable); }
+  CanFrame enable(const DriveMemory& /*memory*/) noexcept override {
+    return special(mit::Special::kEnable);
+  }
   CanFrame state_request() const noexcept override;
   CanFrame presence_request() const noexcept override;
 

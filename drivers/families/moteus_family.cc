@@ -15,12 +15,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 constexpr double kHomedRotor = 1.0;
 constexpr double kHomedOutput = 2.0;
 
-bool all_finite(const DriveCommand& command) noexcept {
-  return std::isfinite(command.angle_rad) && std::isfinite(command.speed_rad_per_s) &&
-         std::isfinite(command.kp_Nm_per_rad) && std::isfinite(command.kd_Nms_per_rad) &&
-         std::isfinite(command.torque_Nm);
-}
-
 DriveCondition condition_of(Mode mode) noexcept {
   switch (mode) {
     case Mode::kPosition:
@@ -41,8 +35,8 @@ MoteusFamily::MoteusFamily(const JointConfig& joint)
     : drive_(joint.drive),
       torque_limit_(std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm)) {}
 
-bool MoteusFamily::command(const DriveCommand& command, CanFrame* frame,
-                           DriveCommand* sent) noexcept {
+bool MoteusFamily::command(const DriveCommand& command, const DriveMemory& /*memory*/,
+                           CanFrame* frame, DriveCommand* sent) noexcept {
   if (!all_finite(command)) return false;
   const CommandRange& range = drive_.range;
   const double kd_scale = std::clamp(command.kd_Nms_per_rad / range.kd_Nms_per_rad, 0.0, 1.0);
@@ -63,10 +57,11 @@ bool MoteusFamily::command(const DriveCommand& command, CanFrame* frame,
   return true;
 }
 
-CanFrame MoteusFamily::enable(double angle_rad) noexcept {
+CanFrame MoteusFamily::enable(const DriveMemory& memory) noexcept {
   CanFrame frame;
   DriveCommand sent;
-  return command({angle_rad, 0.0, 0.0, 0.0, 0.0}, &frame, &sent) ? frame : state_request();
+  const DriveCommand nothing{memory.seen.angle_rad, 0.0, 0.0, 0.0, 0.0};
+  return command(nothing, memory, &frame, &sent) ? frame : state_request();
 }
 
 bool MoteusFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {

@@ -19,11 +19,12 @@ class MoteusFamily final : public DriveFamily {
   /// Drives hold the kd scale at the kp scale or below: where damping asks for more, kp is raised
   /// with it. Commands that only damp carry the angle measured last, so that spring lags the joint
   /// by a cycle and acts like a little more damping.
-  bool command(const DriveCommand& command, CanFrame* frame, DriveCommand* sent) noexcept override;
+  bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
+               DriveCommand* sent) noexcept override;
   CanFrame disable() noexcept override { return moteus::encode_stop(drive_.command_id); }
   CanFrame clear_error() noexcept override { return disable(); }
   /// A command enables the drive, on its way through modes 2 to 4.
-  CanFrame enable(double angle_rad) noexcept override;
+  CanFrame enable(const DriveMemory& memory) noexcept override;
   CanFrame state_request() const noexcept override {
     return moteus::encode_state_request(drive_.command_id);
   }

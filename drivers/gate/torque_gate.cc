@@ -45,7 +45,8 @@ bool answers_recent_state(const Question& ask) noexcept {
 
 bool all_finite(const Question& ask) noexcept {
   return every_joint(ask, [&](int i) {
-    return std::isfinite(ask.command.tau[i]) && std::isfinite(ask.command.tau_gravity[i]);
+    return std::isfinite(ask.command.tau[i]) && std::isfinite(ask.command.tau_preload[i]) &&
+           std::isfinite(ask.command.tau_gravity[i]);
   });
 }
 
@@ -58,17 +59,27 @@ bool request_possible(const Question& ask) noexcept {
   return ask.situation.powered || ask.command.request != joint_torque_t::REQUEST_HOLD;
 }
 
+/// Each of two motors makes half of tau_preload and, with one sign or the other, half of tau.
+bool preload_within_limits(const Question& ask, int i) noexcept {
+  const double preload = ask.command.tau_preload[i];
+  const double limit = ask.limits.preload_Nm[i];
+  return limit > 0.0 ? std::abs(ask.command.tau[i]) + std::abs(preload) <= limit : preload == 0.0;
+}
+
 bool torque_within_limits(const Question& ask) noexcept {
   return every_joint(ask, [&](int i) {
     const double limit = ask.limits.torque_Nm[i];
-    return std::abs(ask.command.tau[i]) <= limit && std::abs(ask.command.tau_gravity[i]) <= limit;
+    return std::abs(ask.command.tau[i]) <= limit && std::abs(ask.command.tau_gravity[i]) <= limit &&
+           preload_within_limits(ask, i);
   });
 }
 
 bool torque_step_within_limits(const Question& ask) noexcept {
   return !ask.situation.followed || every_joint(ask, [&](int i) {
     const double step = ask.command.tau[i] - ask.situation.torque_present[i];
-    return std::abs(step) <= ask.limits.torque_step_Nm[i];
+    const double preload_step = ask.command.tau_preload[i] - ask.situation.preload_present[i];
+    return std::abs(step) <= ask.limits.torque_step_Nm[i] &&
+           std::abs(preload_step) <= ask.limits.preload_step_Nm[i];
   });
 }
 

@@ -22,8 +22,11 @@ struct GateLimits {
   std::int64_t session = 0;  ///< this run of the driver
   int lease_cycles = 250;    ///< a controller that was not obeyed for so long has lost the arm
   int refusal_cycles = 100;  ///< three refusals within so many cycles are too many
-  std::array<double, kMaxJoints> torque_Nm{};                ///< greatest |tau| and |tau_gravity|
-  std::array<double, kMaxJoints> torque_step_Nm{};           ///< greatest |tau - torque present|
+  std::array<double, kMaxJoints> torque_Nm{};       ///< greatest |tau| and |tau_gravity|
+  std::array<double, kMaxJoints> torque_step_Nm{};  ///< greatest |tau - torque present|
+  /// Greatest |tau| + |tau_preload|, twice what each of two motors may; 0: one motor, no preload.
+  std::array<double, kMaxJoints> preload_Nm{};
+  std::array<double, kMaxJoints> preload_step_Nm{};          ///< greatest |tau_preload - present|
   double power_W = std::numeric_limits<double>::infinity();  ///< greatest sum of tau v
 };
 
@@ -34,8 +37,9 @@ struct GateSituation {
   /// The torque would reach the drives. Otherwise it is judged for being finite and within the
   /// absolute limits, but not against the torque present, and goes nowhere.
   bool followed = false;
-  std::array<double, kMaxJoints> torque_present{};  ///< what left for the drives last, N m
-  std::array<double, kMaxJoints> velocity{};        ///< as reported last, rad/s or m/s
+  std::array<double, kMaxJoints> torque_present{};   ///< what left for the drives last, N m
+  std::array<double, kMaxJoints> preload_present{};  ///< likewise of tau_preload
+  std::array<double, kMaxJoints> velocity{};         ///< as reported last, rad/s or m/s
 };
 
 /// What the gate remembers of the commands it accepted.
@@ -55,11 +59,13 @@ inline constexpr std::int64_t kOldestAnswer = 5;
 ///   CONTROLLER  not 0, and the holder of the lease if there is one
 ///   REPLAYED    answers a newer state than the command accepted last
 ///   STALE       answers a state that was published, at most kOldestAnswer cycles ago
-///   NOT_FINITE  all of tau and tau_gravity
+///   NOT_FINITE  all of tau, tau_preload and tau_gravity
 ///   REQUEST     one of REQUEST_*
 ///   NOT_ON      no REQUEST_HOLD to drives that are off: what does not stand cannot be held
-///   TORQUE      |tau| and |tau_gravity| within the limit
-///   RATE        |tau - torque present| within the step, where the torque is followed
+///   TORQUE      |tau| and |tau_gravity| within the limit, |tau| + |tau_preload| within that of two
+///               motors; no tau_preload for one
+///   RATE        tau and tau_preload within their steps of what is present, where the torque is
+///               followed
 ///   POWER       sum of tau v within the limit, where the torque is followed
 int check_command(const GateLimits& limits, const GateMemory& memory,
                   const GateSituation& situation, const joint_torque_t& command) noexcept;

@@ -1,0 +1,126 @@
+#include "drivers/arm_joint.h"
+
+#include <cmath>
+#include <limber/joint_state_t.hpp>
+
+#include "drivers/motor_view.h"
+
+namespace limber {
+namespace {
+
+constexpr double kPositionMargin_rad = 0.02;
+constexpr double kVelocityMargin = 1.1;
+
+bool within(double x, double low, double high) noexcept {
+  return x >= low - kPositionMargin_rad && x <= high + kPositionMargin_rad;
+}
+
+}  // namespace
+
+ArmJoint::ArmJoint(const Robot& robot, const JointConfig& joint, int bridged_cycles)
+    : joint_(joint) {
+  for (int motor = 0; motor < joint.motors(); ++motor) {
+    const JointConfig view = motor_view(joint, motor);
+    const bool fd = robot.buses.at(static_cast<std::size_t>(view.drive.bus)).fd;
+    motors_.emplace_back(view, fd, robot.rate_hz, bridged_cycles);
+  }
+}
+
+// --- towards the motors --------------------------------------------------------------------------
+
+double ArmJoint::share(const JointTorque& torque, std::size_t motor) const noexcept {
+  if (!two_motors()) return torque.tau;
+  return motor == 0 ? first_share(torque) : second_share(torque);
+}
+
+void ArmJoint::enter(DriveState state, const JointTorque& held) noexcept {
+  for (std::size_t m = 0; m < motors_.size(); ++m) motors_[m].enter(state, share(held, m));
+}
+
+void ArmJoint::close_cycle(DriveState state, std::int64_t cycle) noexcept {
+  for (Drive& motor : motors_) motor.close_cycle(state, cycle);
+  if (!fresh()) return;
+  fast_cycles_ = std::abs(v()) <= kVelocityMargin * joint_.velocity_limit ? 0 : fast_cycles_ + 1;
+}
+
+void ArmJoint::acknowledge() noexcept {
+  for (Drive& motor : motors_) motor.acknowledge();
+}
+
+// --- what is known -------------------------------------------------------------------------------
+
+double ArmJoint::q() const noexcept { return joint_.link_encoder.present ? first().q() : theta(); }
+
+double ArmJoint::v() const noexcept {
+  return joint_.link_encoder.present ? first().v() : theta_dot();
+}
+
+double ArmJoint::theta() const noexcept {
+  return two_motors() ? 0.5 * (first().theta() - second().theta()) : first().theta();
+}
+
+double ArmJoint::theta_dot() const noexcept {
+  return two_motors() ? 0.5 * (first().theta_dot() - second().theta_dot()) : first().theta_dot();
+}
+
+double ArmJoint::preload() const noexcept {
+  return two_motors() ? 0.5 * (first().theta() + second().theta()) : 0.0;
+}
+
+double ArmJoint::preload_dot() const noexcept {
+  return two_motors() ? 0.5 * (first().theta_dot() + second().theta_dot()) : 0.0;
+}
+
+double ArmJoint::tau() const noexcept {
+  const bool sensed = joint_.torque_sensor.present || !two_motors();
+  return sensed ? first().tau() : first().tau() - second().tau();
+}
+
+JointTorque ArmJoint::applied() const noexcept {
+  const double one = first().tau_applied();
+  if (!two_motors()) return {one, 0.0};
+  const double other = second().tau_applied();
+  return {one - other, one + other};
+}
+
+double ArmJoint::current_A() const noexcept {
+  const double one = first().current_A();
+  const double other = second().current_A();
+  return std::abs(one) >= std::abs(other) ? one : other;
+}
+
+double ArmJoint::temperature_degC() const noexcept {
+  return std::max(first().temperature_degC(), second().temperature_degC());
+}
+
+std::int32_t ArmJoint::age_cycles() const noexcept {
+  return std::max(first().age_cycles(), second().age_cycles());
+}
+
+std::int32_t ArmJoint::flags() const noexcept {
+  using State = joint_state_t;
+  return (fresh() ? State::JOINT_FRESH : 0) | (enabled() ? State::JOINT_ENABLED : 0) |
+         (any(&Drive::failed) ? State::JOINT_DRIVE_ERROR : 0) |
+         (out_of_range() ? State::JOINT_OUT_OF_RANGE : 0) |
+         (joint_.link_encoder.present ? State::JOINT_LINK_ENCODER : 0) |
+         (joint_.torque_sensor.present ? State::JOINT_TORQUE_SENSOR : 0) |
+         (two_motors() ? State::JOINT_TWO_MOTORS : 0);
+}
+
+std::int64_t ArmJoint::silent_cycles() const noexcept {
+  return std::min(motors_.front().missing_cycles(), motors_.back().missing_cycles());
+}
+
+bool ArmJoint::out_of_range() const noexcept {
+  if (age_cycles() == JointLink::kNever) return false;
+  if (!within(q(), joint_.position_min, joint_.position_max)) return true;
+  const double wound = winding_limit(joint_);
+  return two_motors() &&
+         !(within(first().theta(), -wound, wound) && within(second().theta(), -wound, wound));
+}
+
+bool ArmJoint::ready_to_enable() const noexcept {
+  return fresh() && !out_of_range() && fast_cycles_ == 0;
+}
+
+}  // namespace limber

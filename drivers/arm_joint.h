@@ -1,0 +1,112 @@
+// One joint of the arm: its drive, or the two drives that pull against each other, seen as one.
+//
+//   equilibrium e = (theta_1 - theta_2) / 2      tau         = tau_1 - tau_2
+//   preload     c = (theta_1 + theta_2) / 2      tau_preload = tau_1 + tau_2
+//
+// so that tau e' + tau_preload c' is the power of both. The joint is as bad as the worse of its
+// motors. Allowed inside the cycle: everything but the constructor.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "drivers/drive.h"
+#include "robots/robot.h"
+
+namespace limber {
+
+/// N m; `preload` is zero for joints with one motor.
+struct JointTorque {
+  double tau = 0.0;
+  double preload = 0.0;
+};
+
+/// What each of two motors adds to it.
+inline double first_share(const JointTorque& torque) noexcept {
+  return 0.5 * (torque.preload + torque.tau);
+}
+inline double second_share(const JointTorque& torque) noexcept {
+  return 0.5 * (torque.preload - torque.tau);
+}
+
+class ArmJoint {
+ public:
+  ArmJoint(const Robot& robot, const JointConfig& joint, int bridged_cycles);
+
+  // --- towards the motors ---------------------------------------------------------------------
+
+  std::vector<Drive>& motors() noexcept { return motors_; }
+  const std::vector<Drive>& motors() const noexcept { return motors_; }
+  /// The part of a torque that motor 0 or 1 makes.
+  double share(const JointTorque& torque, std::size_t motor) const noexcept;
+  /// The arm's state changed; `held` is what the motors go on making in HOLD.
+  void enter(DriveState state, const JointTorque& held) noexcept;
+  void close_cycle(DriveState state, std::int64_t cycle) noexcept;
+  /// The operator has seen it: the watchdogs start afresh.
+  void acknowledge() noexcept;
+
+  // --- what is known --------------------------------------------------------------------------
+
+  double q() const noexcept;             ///< rad; without link encoder the motor's, of two motors e
+  double v() const noexcept;             ///< rad/s
+  double theta() const noexcept;         ///< rad; of two motors e
+  double theta_dot() const noexcept;     ///< rad/s
+  double preload() const noexcept;       ///< rad; 0 for one motor
+  double preload_dot() const noexcept;   ///< rad/s
+  double tau() const noexcept;           ///< N m, on the link if there is a torque sensor
+  JointTorque applied() const noexcept;  ///< what the drives were told and obeyed
+  double current_A() const noexcept;     ///< the greater one
+  double temperature_degC() const noexcept;  ///< the higher one
+  std::int32_t age_cycles() const noexcept;  ///< the greater one
+  std::int32_t flags() const noexcept;       ///< JOINT_* of joint_state_t
+
+  bool answered() const noexcept { return all(&Drive::answered); }
+  bool configured() const noexcept { return all(&Drive::configured); }
+  bool configuration_wrong() const noexcept { return any(&Drive::configuration_wrong); }
+  bool enabling_done() const noexcept { return all(&Drive::enabling_done); }
+  bool enabled() const noexcept { return all(&Drive::enabled); }
+  bool disabled() const noexcept { return all(&Drive::disabled); }
+  bool lost() const noexcept { return any(&Drive::lost); }
+  /// Cycles since one of its motors was last heard.
+  std::int64_t silent_cycles() const noexcept;
+  /// 0.02 rad beyond a position limit; of two motors each also beyond what it may wind up.
+  bool out_of_range() const noexcept;
+  /// Above 110 % of the velocity limit in three cycles in a row.
+  bool too_fast() const noexcept { return fast_cycles_ >= 3; }
+  /// Fit to be moved: answered, enabled, within its position limits and not too fast.
+  bool healthy() const noexcept { return ready_to_enable() && enabled(); }
+  /// The same but for being enabled.
+  bool ready_to_enable() const noexcept;
+
+  // --- counts, of both motors -----------------------------------------------------------------
+
+  std::int32_t replies_late() const noexcept { return sum(&Drive::replies_late); }
+  std::int32_t replies_lost() const noexcept { return sum(&Drive::replies_lost); }
+  std::int32_t replies_invalid() const noexcept { return sum(&Drive::replies_invalid); }
+
+ private:
+  bool all(bool (Drive::*test)() const noexcept) const noexcept {
+    return std::all_of(motors_.begin(), motors_.end(),
+                       [test](const Drive& motor) { return (motor.*test)(); });
+  }
+  bool any(bool (Drive::*test)() const noexcept) const noexcept {
+    return std::any_of(motors_.begin(), motors_.end(),
+                       [test](const Drive& motor) { return (motor.*test)(); });
+  }
+  std::int32_t sum(std::int32_t (Drive::*count)() const noexcept) const noexcept {
+    std::int32_t total = 0;
+    for (const Drive& motor : motors_) total += (motor.*count)();
+    return total;
+  }
+  bool two_motors() const noexcept { return motors_.size() == 2; }
+  bool fresh() const noexcept { return age_cycles() == 0; }
+  const JointLink& first() const noexcept { return motors_.front().link(); }
+  const JointLink& second() const noexcept { return motors_.back().link(); }
+
+  JointConfig joint_;
+  std::vector<Drive> motors_;  ///< one or two
+  int fast_cycles_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,104 @@
+#include "drivers/families/cia402_family.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limber {
+namespace {
+
+DriveCondition condition_of(cia402::State state) noexcept {
+  switch (state) {
+    case cia402::State::kOperationEnabled:
+      return DriveCondition::kEnabled;
+    case cia402::State::kQuickStopActive:
+    case cia402::State::kFaultReactionActive:
+    case cia402::State::kFault:
+      return DriveCondition::kFailed;
+    case cia402::State::kNotReady:
+    case cia402::State::kSwitchOnDisabled:
+    case cia402::State::kReadyToSwitchOn:
+    case cia402::State::kSwitchedOn:
+      break;
+  }
+  return DriveCondition::kDisabled;
+}
+
+}  // namespace
+
+Cia402Family::Cia402Family(const JointConfig& joint, bool fd, double period_s)
+    : drive_(joint.drive),
+      fd_(fd),
+      link_encoder_(joint.link_encoder.present),
+      rad_per_count_(std::ldexp(2.0 * std::numbers::pi, -joint.drive.encoder_bits)),
+      link_rad_per_count_(std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)),
+      rated_current_A_(joint.drive.rated_torque_Nm / joint.drive.torque_constant_Nm_per_A),
+      most_torque_(most_permille(joint) * drive_.rated_torque_Nm / 1000.0),
+      startup_(joint, period_s) {}
+
+// --- towards the drive ---------------------------------------------------------------------------
+
+bool Cia402Family::command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
+                           DriveCommand* sent) noexcept {
+  const DriveReport& seen = memory.seen;
+  double tau = command.torque_Nm + carry_;
+  carry_ = 0.0;
+  if (memory.recent) {
+    tau += command.kp_Nm_per_rad * (command.angle_rad - seen.angle_rad) +
+           command.kd_Nms_per_rad * (command.speed_rad_per_s - seen.speed_rad_per_s);
+  }
+  if (!all_finite(command) || !std::isfinite(tau)) return false;
+  const double wanted = std::clamp(tau, -most_torque_, most_torque_);
+  const std::int16_t permille = cia402::to_permille(wanted, drive_.rated_torque_Nm);
+  const std::uint16_t controlword = cia402::towards_enabled(cia402::state_of(seen.status));
+  *frame = cia402::encode_command({controlword, permille}, drive_.command_id, fd_);
+  *sent = {command.angle_rad, command.speed_rad_per_s, 0.0, 0.0,
+           cia402::from_permille(permille, drive_.rated_torque_Nm)};
+  carry_ = wanted - sent->torque_Nm;
+  return true;
+}
+
+CanFrame Cia402Family::without_torque(std::uint16_t controlword) noexcept {
+  carry_ = 0.0;
+  return cia402::encode_command({controlword, 0}, drive_.command_id, fd_);
+}
+
+CanFrame Cia402Family::enable(const DriveMemory& memory) noexcept {
+  return without_torque(cia402::towards_enabled(cia402::state_of(memory.seen.status)));
+}
+
+CanFrame Cia402Family::presence_request() const noexcept {
+  return canopen::encode_sdo_read(canopen::kDeviceType.id, node());
+}
+
+// --- from the drive ------------------------------------------------------------------------------
+
+bool Cia402Family::is_mine(const CanFrame& frame) const noexcept {
+  return has_id(frame, drive_.reply_id) || is_aside(frame);
+}
+
+bool Cia402Family::is_aside(const CanFrame& frame) const noexcept {
+  return has_id(frame, canopen::kSdoAnswerCode + node()) ||
+         has_id(frame, canopen::kEmergencyCode + node()) ||
+         has_id(frame, canopen::kHeartbeatCode + node());
+}
+
+bool Cia402Family::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
+  cia402::DriveState state;
+  if (!has_id(frame, drive_.reply_id) || !cia402::decode_state(frame, link_encoder_, &state))
+    return false;
+  report->condition = condition_of(cia402::state_of(state.statusword));
+  report->status = state.statusword;
+  report->angle_rad = state.position_counts * rad_per_count_;
+  report->speed_rad_per_s = state.velocity_counts_per_s * rad_per_count_;
+  report->link_angle_rad =
+      link_encoder_ ? state.link_position_counts * link_rad_per_count_ : report->angle_rad;
+  report->link_speed_rad_per_s = link_encoder_
+                                     ? state.link_velocity_counts_per_s * link_rad_per_count_
+                                     : report->speed_rad_per_s;
+  report->torque_Nm = cia402::from_permille(state.torque_permille, drive_.rated_torque_Nm);
+  report->current_A = cia402::from_permille(state.current_permille, rated_current_A_);
+  return true;
+}
+
+}  // namespace limber

@@ -1,0 +1,24 @@
+#include "drivers/motor_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+JointConfig motor_view(const JointConfig& joint, int motor) {
+  JointConfig view = joint;
+  if (motor == 0) return view;
+  view.name += " (antagonist)";
+  view.drive = joint.antagonist;
+  view.link_encoder.present = false;
+  view.torque_sensor.present = false;
+  view.torque_loop = {};
+  return view;
+}
+
+double winding_limit(const JointConfig& joint) noexcept {
+  return std::max(std::abs(joint.position_min), std::abs(joint.position_max)) +
+         joint.transmission.preload_max_rad;
+}
+
+}  // namespace limber
