@@ -72,7 +72,7 @@ def effect_checks(found: drawing.Effect) -> list[Check]:
             Check(f"friction lag, {name}, {how}", lag / rho, friction * lag, "mrad", 0.02),
             Check(
                 f"torque made by a bias of {BIAS_NM:g} N m, {name}, {how}",
-                -(1 - 1 / rho) * BIAS_NM,
+                (1 / rho - 1) * BIAS_NM,
                 bias * BIAS_NM,
                 "N m",
                 0.01,

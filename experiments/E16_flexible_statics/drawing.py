@@ -43,11 +43,11 @@ def one_joint(found: list[Stiffness], ax: Any) -> None:
     ideal, bus = ([joint.PUSH_NM / k * 1e3 for k in values] for values in zip(
         *((one.ideal, one.bus) for one in found), strict=True))  # fmt: skip
     _marks(at, ideal, bus, ax, named=True)
-    labels = ["motor,\n500", "motor, 500,\nconstant\ngravity torque"]
-    labels += [f"link at rest,\n{K:g}" for K in joint.ASKED]
+    labels = ["on the motor,\n500", "on the motor, 500,\nconstant gravity\ntorque"]
+    labels += [f"at rest of the\nlink, {K:g}" for K in joint.ASKED]
     ax.set_xticks(at, labels)
     ax.set_title(f"One joint, spring of {joint.SPRING:g} N m/rad, pushed by {joint.PUSH_NM:g} N m")
-    ax.set_xlabel("law on the ..., its stiffness in N m/rad")
+    ax.set_xlabel("law, and its stiffness (N m/rad)")
     ax.set_ylabel("deflection of the link (mrad)")
     ax.legend(loc="upper left")
 

@@ -3,6 +3,8 @@
 τ_m = g(q_d) - K_P (θ - θ_d) - K_D θ̇,  θ_d = q_d + g(q_d)/K_J (Tomei 1991).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -43,6 +45,24 @@ def final_error_model(K_P: float, start: float, seconds: float, spring: float = 
     first = [UPRIGHT - start, 0.0, UPRIGHT - start, 0.0]
     found = solve_ivp(rate, (0.0, seconds), first, method="LSODA", rtol=1e-8, atol=1e-10)
     return abs(float(found.y[0, -1]) - UPRIGHT)
+
+
+def path_model(K_P: float, t: np.ndarray, q_d: np.ndarray) -> np.ndarray:
+    """Angles of the link while the goal goes up; at rest at first."""
+    A, inputs = bench.elastic(SPRING)
+
+    def rate(now: float, x: np.ndarray) -> np.ndarray:
+        goal = np.interp(now, t, q_d)
+        carried = bench.weight(goal, GRAVITY)
+        u = carried - K_P * (x[2] - goal - carried / SPRING) - K_D * x[3]
+        return A @ x + inputs @ [u, -bench.weight(x[0], GRAVITY)]
+
+    first = [q_d[0], 0.0, q_d[0] + bench.weight(q_d[0], GRAVITY) / SPRING, 0.0]
+    span = (t[0], t[-1])
+    found = solve_ivp(
+        rate, span, first, t_eval=t, method="LSODA", rtol=1e-7, atol=1e-9, max_step=0.02
+    )
+    return found.y[0]
 
 
 def critical_model() -> float:
@@ -93,8 +113,17 @@ def final_error_bus(
     return abs(bench.mean(log, end - 0.5, end) - UPRIGHT)
 
 
-def from_afar_bus(context: Context, K_P: float, start: float) -> tuple[np.ndarray, np.ndarray]:
-    """The goal jumps up as fast as goals may. Time and angle of the link."""
+@dataclass(frozen=True)
+class Path:
+    """Time since the goal left, s; goal and link, rad."""
+
+    t: np.ndarray
+    q_d: np.ndarray
+    q: np.ndarray
+
+
+def from_afar_bus(context: Context, K_P: float, start: float) -> Path:
+    """The goal jumps up as fast as goals may."""
     end = 8.0
     log = bench.on_bus(
         context,
@@ -106,7 +135,8 @@ def from_afar_bus(context: Context, K_P: float, start: float) -> tuple[np.ndarra
         start_q=[UPRIGHT - start],
     )
     seen = bench.truth(log, 1.95, end)
-    return seen["t"] - 2.0, seen["q"]
+    t, q_d = bench.goal(log, 1.95, end)
+    return Path(t - 2.0, q_d, np.interp(t, seen["t"], seen["q"]))
 
 
 def critical_bus(context: Context, tried: list[float]) -> float:
