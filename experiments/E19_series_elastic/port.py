@@ -1,0 +1,141 @@
+"""What passes through the spring: the motor's torque outwards, the link's motion inwards."""
+
+from typing import Any
+
+import numpy as np
+
+from limber.experiments import testbench as bench
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.elastic import ElasticArm, one_joint
+from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.testbench import B, M
+from limber.experiments.truth import motion
+
+from .soft import FAST_KGM2, FREE, K_S, START_S, sensed, sprung, viscous
+
+OMEGA_N = np.sqrt(K_S / B)
+D_MOTOR = 2.0  # N m s/rad, low-pass
+K_T = 4.0
+D_LOOP = 0.2  # N m s/rad at the motor: what the sampled loop needs
+RATE_HZ = 4000.0
+SLOW_S, FAST_S = 1.256, 0.010  # periods of the pushes, about 5 and 600 rad/s
+
+
+def low_pass(omega: float | np.ndarray) -> float | np.ndarray:
+    """|τ/τ_m| with the link held."""
+    return 1 / np.abs(1 - (omega / OMEGA_N) ** 2 + 1j * D_MOTOR * omega / K_S)
+
+
+def stiffness(omega: float | np.ndarray, d: float = 0.0, T: float = 0.0) -> float | np.ndarray:
+    """|τ/q| with τ_d = 0; d: at the motor, T: the loop's torque is held so long."""
+    motor = 1j * omega * d - B * omega**2
+    return np.abs(K_S * motor / ((1 + K_T * np.exp(-0.5j * omega * T)) * K_S + motor))
+
+
+def amplitude(t: np.ndarray, y: np.ndarray, omega: float) -> float:
+    """Of y's part at omega, beside an offset and a drift."""
+    basis = np.column_stack([np.ones_like(t), t - t[0], np.cos(omega * t), np.sin(omega * t)])
+    return float(np.hypot(*np.linalg.lstsq(basis, y, rcond=None)[0][2:]))
+
+
+def response(arm: ElasticArm, loop_gain: float, into: int, omega: float) -> np.ndarray:
+    """(q, θ) for a unit sine of the motor's torque (into 0) or of a push (1), by solving
+    (jω - A) x = E u with the torque loop τ_m = -K_T τ in A.
+    """
+    A, E = arm.matrices()
+    A = A - loop_gain * K_S * E[:, :1] @ np.array([[-1.0, 1.0, 0.0, 0.0]])
+    return np.linalg.solve(1j * omega * np.eye(4) - A, E[:, into])[:2]
+
+
+def low_pass_ideal(omega: float) -> float:
+    arm = one_joint(FAST_KGM2, B, K_S, 0.0, motor_damping=D_MOTOR)
+    q, theta = response(arm, 0.0, 0, omega)
+    return float(np.abs(K_S * (theta - q)))
+
+
+def low_pass_bus(context: Context, omega: float) -> tuple[float, float]:
+    """The goal goes to and fro as fast as that; frequency, and sensed over applied torque.
+
+    The joint's gain puts the motor's resonance there.
+    """
+    half_ms = round(np.pi / omega * 1e3)
+    omega = np.pi / (half_ms * 1e-3)
+    changes = {**sprung(K_S, 0.0, friction=viscous(D_MOTOR)), "urdf": "held.urdf"}
+    gains = bench.spring_damper(float(B * omega**2 - K_S), 0.0, position="motor")
+    count = round(4.0 / (half_ms * 1e-3))
+    goals = [
+        {"at_s": START_S + i * half_ms * 1e-3,
+         "goal": {"joints_rad": 0.3 * (-1) ** i, "duration_s": 0.1}}
+        for i in range(count)
+    ]  # fmt: skip
+    end = START_S + count * half_ms * 1e-3
+    name = f"low_pass_{omega:.0f}"
+    log = bench.on_bus(context, name, gains, goals, end, changes=changes)
+    seen, rows = sensed(log, START_S + 1.5, end), motion(log, START_S + 1.5, end)
+    applied = amplitude(rows["time_ns"] * 1e-9, rows["tau_motor"][:, 0], omega)
+    return omega, amplitude(seen["t"], seen["tau"], omega) / applied
+
+
+def stiffness_ideal(omega: float) -> float:
+    """Ratio of the spring's torque to the link's angle when the link is pushed to and fro."""
+    q, theta = response(one_joint(M, B, K_S, 0.0), K_T, 1, omega)
+    return float(np.abs(K_S * (theta - q) / q))
+
+
+def stiffness_bus(context: Context, period_s: float, torque: float) -> tuple[float, float]:
+    """Pushes to and fro; frequency, and sensed torque over the link's angle."""
+    omega, half = 2 * np.pi / period_s, period_s / 2
+    loop = {"inertia_ratio": 1 + K_T, "rate_hz": RATE_HZ}
+    changes = sprung(K_S, 0.0, friction=viscous(D_LOOP), torque_loop=loop)
+    # a quarter of a period first: the link then does not drift away
+    pushes = [bench.push(-torque, START_S, half / 2)]
+    count = 2 * round(max(4.0, 6 * period_s) / period_s)
+    begin = START_S + half / 2
+    pushes += [bench.push(torque * (-1) ** i, begin + i * half, half) for i in range(count)]
+    end = begin + count * half
+    log = bench.on_bus(context, f"push_{omega:.0f}", FREE, pushes, end, changes=changes)
+    whole = np.floor((end - begin - 1.0) / period_s) * period_s
+    seen = sensed(log, end - whole, end)
+    tau, q = (amplitude(seen["t"], seen[name], omega) for name in ("tau", "q"))
+    return omega, tau / q
+
+
+def checks(context: Context) -> list[Check]:
+    made = []
+    for factor in (2, 4):
+        omega = factor * OMEGA_N
+        name = f"motor torque that reaches the link at {factor} times its frequency"
+        made.append(Check(f"{name}, ideal", low_pass(omega), low_pass_ideal(omega), "", 0.01))
+        omega, share = low_pass_bus(context, omega)
+        made.append(Check(f"{name}, bus", low_pass(omega), share, "", 0.01))
+    for period, torque, word in ((SLOW_S, 5.0, "5"), (FAST_S, 100.0, "600")):
+        omega = float(word)
+        name = f"torque for the link's angle at {word} rad/s under a torque loop"
+        made.append(
+            Check(f"{name}, ideal", stiffness(omega), stiffness_ideal(omega), "N m/rad", 0.01)
+        )
+        omega, seen = stiffness_bus(context, period, torque)
+        formula = stiffness(omega, D_LOOP, 1 / RATE_HZ)
+        name = f"{name}, bus, with the motor's damping and the loop's hold"
+        made.append(Check(name, formula, seen, "N m/rad", 0.01))
+    return made
+
+
+def draw(made: list[Check], ax: Any) -> None:
+    omega = np.geomspace(2, 2000, 400)
+    ax.loglog(omega, stiffness(omega), color=BLUE, label="torque loop, gain 4")
+    ax.loglog(omega, B / (1 + K_T) * omega**2, ":", color=GREEN, label="B ω²/5: the loop's")
+    ax.axhline(K_S, ls="--", color=ORANGE, label="the spring's, whatever the loop does")
+    named = [c for c in made if c.name.startswith("torque for")]
+    for (marker, size, word), first in zip(
+        (("o", 5.5, "ideal"), ("s", 9, "bus")), (0, 1), strict=True
+    ):
+        style = {**MEASURED, "marker": marker, "ms": size}
+        found = [c.measured for c in named[first::2]]
+        ax.loglog((5.0, 600.0), found, **style, color=BLUE, label=word)
+    ax.set_ylim(0.05, 3e4)
+    ax.set_title("What a hand feels that moves the link to and fro")
+    ax.set_xlabel("frequency (rad/s)")
+    ax.set_ylabel("torque over angle (N m/rad)")
+    ax.legend()

@@ -1,0 +1,110 @@
+"""Two soft joints: the stiffness they give the tip, whatever tip stiffness is wanted."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.patches import Polygon
+from scipy.optimize import fsolve
+
+from limber.experiments import planar2r as arm
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.pictures import BLUE, ORANGE
+from limber.experiments.probing import Probing
+from limber.experiments.variants import variant
+
+from .soft import FAST_KGM2
+
+SPRINGS = np.array([300.0, 150.0])  # N m/rad
+DAMPERS = [8.0, 3.0]  # N m s/rad, so that a pushed arm comes to rest
+SHOULDER = 0.3
+ELBOWS = (0.7, 1.4, 2.1)
+PROBING = Probing(first_at=2.0, each_s=2.0, axes=2, force=5.0)
+
+Found = dict[float, dict[str, np.ndarray]]
+
+
+def presented(elbow: float) -> np.ndarray:
+    J = arm.jacobian(np.array([SHOULDER, elbow]))
+    return np.linalg.inv(J @ np.diag(1 / SPRINGS) @ J.T)
+
+
+def ideal(elbow: float) -> np.ndarray:
+    """From equilibria of the springs under 0.1 N along each axis, J at the pose they give."""
+    q0 = np.array([SHOULDER, elbow])
+
+    def moved(force: np.ndarray) -> np.ndarray:
+        q = fsolve(lambda q: SPRINGS * (q - q0) - arm.jacobian(q).T @ force, q0, xtol=1e-13)
+        return arm.tip(q) - arm.tip(q0)
+
+    pushes = 0.1 * np.eye(2)
+    return np.linalg.inv(np.column_stack([(moved(f) - moved(-f)) / 0.2 for f in pushes]))
+
+
+def bus(context: Context, elbow: float) -> np.ndarray:
+    name = f"tip_{elbow:g}"
+    joints = {
+        joint: {"transmission": {"kind": "elastic", "damping_Nms_per_rad": d,
+                                 "spring": {"law": "linear", "stiffness_Nm_per_rad": float(K)}},
+                "link_encoder": {"bits": 24}}
+        for joint, K, d in zip(("shoulder", "elbow"), SPRINGS, DAMPERS, strict=True)
+    }  # fmt: skip
+    changes = {
+        "gravity_m_per_s2": [0.0, 0.0, -9.81],
+        "motors": {"ideal": {"rotor_inertia_kgm2": 0.1}},
+        "joints": joints,
+    }
+    scenario = {
+        "robot": variant(context.out / f"robot_{name}", arm.ROBOT, changes),
+        "reality": {"motors": {"ideal": {"rotor_inertia_kgm2": FAST_KGM2}}},
+        "integrator": "reference",
+        "start_q": [SHOULDER, elbow],
+        "duration_s": PROBING.end + 0.1,
+        "timeline": [
+            {"at_s": 0.3, "mode": "hold"},
+            {"at_s": 0.8, "mode": "active"},
+            {"at_s": 1.0, "gains": {"law": "gravity_compensation"}},
+            *PROBING.timeline(),
+        ],
+    }
+    return PROBING.stiffness(context.lab(scenario, name))
+
+
+def found(context: Context) -> Found:
+    return {e: {"ideal": ideal(e), "bus": bus(context, e)} for e in ELBOWS}
+
+
+def checks(seen: Found) -> list[Check]:
+    made = []
+    for elbow, ways in seen.items():
+        for where, K in ways.items():
+            for i, word in enumerate(("soft", "stiff")):
+                asked, got = (np.linalg.eigvalsh((A + A.T) / 2)[i] for A in (presented(elbow), K))
+                name = f"tip of two such joints, elbow at {elbow:g} rad, {where}: {word} axis"
+                made.append(Check(name, asked, got, "N/m", 0.01))
+    return made
+
+
+def draw(seen: Found, ax: Any) -> None:
+    for elbow, ways in seen.items():
+        q = np.array([SHOULDER, elbow])
+        links = np.array([[0, 0], arm.elbow(q), arm.tip(q)])
+        ax.plot(*links.T, color="0.6", lw=2.5, solid_capstyle="round", zorder=1)
+        for K, style in ((presented(elbow), {"ec": BLUE, "lw": 1.6}),
+                         (ways["bus"], {"ec": ORANGE, "lw": 2.4, "ls": ":"})):  # fmt: skip
+            ax.add_patch(Polygon(arm.tip(q) + ellipse(K), fill=False, zorder=2, **style))
+    ax.plot([], [], color=BLUE, label="J⁻ᵀ K J⁻¹")
+    ax.plot([], [], ":", color=ORANGE, lw=2.4, label="felt on the arm")
+    ax.set_aspect("equal")
+    ax.margins(0.12)
+    ax.set_title("Stiffness of the tip; 0.1 m is 1000 N/m")
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    ax.legend(loc="lower right")
+
+
+def ellipse(K: np.ndarray) -> np.ndarray:
+    """Stiffness along each direction of the unit circle's image."""
+    angle = np.linspace(0, 2 * np.pi, 120)
+    values, axes = np.linalg.eigh((K + K.T) / 2)
+    return (axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))).T * 1e-4

@@ -1,0 +1,95 @@
+"""Seven joints with two motors each: how much of a tip stiffness they give; how many motors."""
+
+import numpy as np
+from scipy.optimize import nnls
+
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.evaluate import case
+from limber.experiments.truth import motion, status
+from limber.experiments.variants import variant
+from limber.messages import constants
+from limber.robot import load_robot, read_yaml
+
+ROBOT = "antagonist7"
+K_X = np.diag([100.0] * 3 + [3.0] * 3)  # N/m, N m/rad
+FITS = ("diagonal", "compliance")
+
+
+def fitted(J: np.ndarray) -> dict[str, tuple[np.ndarray, float]]:
+    """Joint stiffness or compliance, and the share missed, for each way of fitting."""
+    K_q = J.T @ K_X @ J
+    diagonal = np.diag(np.diag(K_q))
+    W, C = np.sqrt(np.diag(K_X)), np.linalg.inv(K_X)
+    weigh = np.outer(W, W)
+    columns = np.column_stack([(weigh * np.outer(j, j)).ravel() for j in J.T])
+    s, left = nnls(columns, (weigh * C).ravel())
+    return {
+        "diagonal": (np.diag(K_q), np.linalg.norm(K_q - diagonal) / np.linalg.norm(K_q)),
+        "compliance": (s, left / np.linalg.norm(weigh * C)),
+    }
+
+
+def asked_of_class(context: Context, q: np.ndarray) -> list[Check]:
+    ours = fitted(load_robot(ROBOT).chain.jacobian(q))
+    (answer,) = context.eval([case("vsa_cartesian", ROBOT, q=q, Kx=K_X)])
+    off = np.abs(answer["diag_stiffness"] / ours["diagonal"][0] - 1).max()
+    missed = {"diagonal": "residual_stiffness", "compliance": "residual_compliance_weighted"}
+    made = [Check("7 joints, diagonal of JᵀKJ: controller off by", 0.0, float(off), "", 1e-9,
+                  "absolute")]  # fmt: skip
+    for fit in FITS:
+        name = f"7 joints, {fit} fit, ideal: share of the wish that is missed"
+        made.append(Check(name, float(ours[fit][1]), float(answer[missed[fit]]), "", 1e-6))
+    return made
+
+
+def on_arm(context: Context) -> list[Check]:
+    """Without gravity: carrying the arm takes more stiffness than is asked for here."""
+    gains = {
+        "law": "variable_stiffness",
+        "stiffness_fit": "diagonal",
+        "K_x_translation_N_per_m": float(K_X[0, 0]),
+        "K_x_rotation_Nm_per_rad": float(K_X[3, 3]),
+    }
+    end = 3.0
+    scenario = {
+        "robot": variant(context.out / "seven", ROBOT, {"gravity_m_per_s2": [0.0, 0.0, 0.0]}),
+        "duration_s": end + 0.1,
+        "timeline": [
+            {"at_s": 0.3, "mode": "hold"},
+            {"at_s": 0.8, "mode": "active"},
+            {"at_s": 1.0, "gains": gains},
+        ],
+    }
+    log = context.lab(scenario, "seven")
+    told, rows = status(log, end - 0.2, end), motion(log, end - 0.2, end)
+    diagonal, missed = fitted(load_robot(ROBOT).chain.jacobian(rows["q"][-1, :7]))["diagonal"]
+    sigma = rows["sigma"][:, :7].mean(axis=0)
+    off = float(np.abs(sigma / diagonal - 1).max())
+    return [
+        Check("7 joints, diagonal fit, bus: share of the wish that is missed", float(missed),
+              float(told["fit_residual"][-1]), "", 0.01),
+        Check("7 joints, bus: stiffness of the springs off by at most", 0.0, off, "", 0.02,
+              "absolute"),
+        Check("motors of 7 joints, bus: by the flags of JOINT_STATE", 14.0, flagged(log), "", 0.0),
+        Check("motors of 7 joints, bus: different node ids", 14.0, nodes(), "", 0.0),
+    ]  # fmt: skip
+
+
+def flagged(log) -> float:
+    two = next(bit for bit, name in constants("joint_state_t", "JOINT_").items()
+               if name == "TWO_MOTORS")  # fmt: skip
+    last = log.read("JOINT_STATE")[-1]
+    n = last["num_joints"]
+    return float(n + np.count_nonzero(last["joint_flags"][:n] & two))
+
+
+def nodes() -> float:
+    """Bus and id of every drive in robot.yaml."""
+    joints = read_yaml(load_robot(ROBOT).folder / "robot.yaml")["joints"].values()
+    ids = {(joint["bus"], joint["id"]) for joint in joints}
+    ids |= {
+        (joint["antagonist"].get("bus", joint["bus"]), joint["antagonist"]["id"])
+        for joint in joints
+    }
+    return float(len(ids))

@@ -1,0 +1,83 @@
+"""The same gains on a perfect joint, a real motor, a flexible joint and a series elastic one."""
+
+from typing import Any
+
+import numpy as np
+
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE, PINK
+from limber.experiments.testbench import IDEAL
+
+from . import runs
+from .joints import JOINTS, ZETA, Joint, K
+from .runs import Seen
+
+TITLE = "The same gains on five joints: what was asked, and what a hand gets"
+CLAIM = "Motors do not just provide the torque a control law calculates"
+SECTION = "3.1"
+PLANT = "test bench, one joint; ideal: its equations; bus: a CiA 402 drive with exact sensors"
+FAST = False
+
+COLORS = (BLACK, BLUE, ORANGE, GREEN, PINK)
+OVERSHOOT = float(np.exp(-np.pi * ZETA / np.sqrt(1 - ZETA**2)))  # of the damping asked for
+
+Found = dict[str, tuple[Seen, Seen]]
+
+
+def run(context: Context) -> list[Check]:
+    found: Found = {}
+    for joint in JOINTS:
+        context.say(joint.name)
+        found[joint.name] = runs.ideal(joint), runs.bus(context, joint)
+    with context.picture(TITLE, 2, 2, size=(13.0, 9.0)) as axes:
+        draw_release(found, axes[0, 0])
+        bars(found, [joint.stiffness for joint in JOINTS], "stiffness", K, 1, axes[0, 1])
+        axes[0, 1].set_xlabel("stiffness felt (N m/rad); dotted: asked for")
+        bars(found, [joint.lag for joint in JOINTS], "lag", 0.0, 1e3, axes[1, 0])
+        axes[1, 0].set_xlabel("behind a slow path, by friction (mrad)")
+        bars(found, [joint.sag for joint in JOINTS], "sag", 0.0, 1e3, axes[1, 1])
+        axes[1, 1].set_xlabel("sag under 10 N m that the law compensates (mrad)")
+    return [check for joint in JOINTS for check in checks(joint, *found[joint.name])]
+
+
+def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Check]:
+    made = []
+    for where, seen in (("ideal", ideal), ("bus", bus)):
+        name = f"{joint.name}, {where}: "
+        made += [
+            Check(f"{name}stiffness, asked {K:g}", joint.stiffness, seen.stiffness, "N m/rad",
+                  0.02),
+            Check(f"{name}behind a slow path", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.1,
+                  "absolute"),
+            Check(f"{name}sag under its weight", joint.sag * 1e3, seen.sag * 1e3, "mrad", 0.1,
+                  "absolute"),
+        ]  # fmt: skip
+    name = f"{joint.name}, bus (prediction: ideal): overshoot when let go, asked {OVERSHOOT:.2f}"
+    return [*made, Check(name, ideal.overshoot, bus.overshoot, "", 0.05)]
+
+
+def draw_release(found: Found, ax: Any) -> None:
+    for (name, (_, seen)), color in zip(found.items(), COLORS, strict=True):
+        ax.plot(seen.t, seen.q * 1e3, color=color, label=name)
+    ax.set_title("Pushed by 20 N m and let go, on the bus")
+    ax.set_xlim(0, 1.0)
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel("angle of the link (mrad)")
+    ax.legend(loc="upper right")
+
+
+def bars(
+    found: Found, formula: list[float], name: str, asked: float, scale: float, ax: Any
+) -> None:
+    """A bar is the formula; cross: ideal, circle: bus."""
+    rows = np.arange(len(found))[::-1]
+    ax.barh(rows, scale * np.array(formula), 0.55, color=[*COLORS], alpha=0.3)
+    for i, (style, word) in enumerate(((IDEAL, "ideal"), (MEASURED, "bus"))):
+        values = [scale * getattr(pair[i], name) for pair in found.values()]
+        ax.plot(values, rows, **style, color="0.15", label=word)
+    if asked:
+        ax.axvline(asked, color="0.4", ls=":", lw=1.4)
+    ax.set_yticks(rows, list(found))
+    ax.set_ylim(-0.6, len(found) - 0.4)
+    ax.legend(loc="lower right")

@@ -1,0 +1,146 @@
+"""Joints with motors behind springs under sampled laws, linear between the samples and so exact.
+
+M q̈ + G q = τ_t - d_q q̇ + τ_ext,   B θ̈ = τ_m - τ_t - τ_f,   τ_t = K (θ - q) + D (θ̇ - q̇)
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from limber.experiments.plants import held
+
+PERIOD_S = 1e-3  # of the controller, whose torque comes one period late
+FRICTION_STEPS = 2  # a period of that loop: bristles are stiff
+
+
+@dataclass(frozen=True)
+class ElasticArm:
+    """M, G: n x n, kg m², N m/rad; the others one a joint."""
+
+    M: np.ndarray
+    B: np.ndarray
+    K: np.ndarray
+    D: np.ndarray
+    G: np.ndarray | float = 0.0  # stiffness of gravity
+    link_damping: np.ndarray | float = 0.0
+    motor_damping: np.ndarray | float = 0.0
+
+    @property
+    def size(self) -> int:
+        return len(self.B)
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """ẋ = A x + E (τ_m, τ_ext) with x = (q, θ, q̇, θ̇)."""
+        n, zero, one = self.size, np.zeros((self.size,) * 2), np.eye(self.size)
+        K, D = np.diag(self.K), np.diag(self.D)
+        stiffness = np.block([[K + self.G, -K], [-K, K]])
+        link, motor = (np.diag(d * np.ones(n)) for d in (self.link_damping, self.motor_damping))
+        damping = np.block([[D + link, -D], [-D, D + motor]])
+        inertia = np.block([[self.M, zero], [zero, np.diag(self.B)]])
+        A = np.zeros((4 * n, 4 * n))
+        A[: 2 * n, 2 * n :] = np.eye(2 * n)
+        A[2 * n :] = -np.linalg.solve(inertia, np.hstack([stiffness, damping]))
+        E = np.zeros((4 * n, 2 * n))
+        E[2 * n :] = np.linalg.solve(inertia, np.block([[zero, one], [one, zero]]))
+        return A, E
+
+
+def one_joint(M: float, B: float, K: float, D: float, **others: float) -> ElasticArm:
+    return ElasticArm(np.array([[M]]), np.array([B]), np.array([K]), np.array([D]), **others)
+
+
+@dataclass(frozen=True)
+class Drives:
+    """Torque loop τ_m = κ (ρ u + (1 - ρ) τ_t), and LuGre friction of the motors."""
+
+    rho: float = 1.0
+    rate_hz: float = 4000.0  # of the loop
+    kappa: float = 1.0  # true torque constant over the one assumed
+    coulomb: np.ndarray | float = 0.0  # N m
+    bristle_rad: float = 1e-4
+
+
+class State(NamedTuple):
+    q: np.ndarray
+    theta: np.ndarray
+    v: np.ndarray
+    theta_dot: np.ndarray
+
+
+@dataclass
+class Track:
+    """One row a period: time, state, torque of the spring and of the motor; n each."""
+
+    t: np.ndarray
+    x: State
+    tau: np.ndarray
+    tau_m: np.ndarray
+
+
+Law = Callable[[float, State], np.ndarray]
+
+
+@dataclass
+class Motors:
+    """What drives and friction make of the controller's torque u between two periods."""
+
+    arm: ElasticArm
+    drives: Drives
+    bristle: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.bristle = np.zeros(self.arm.size)
+
+    def torque(self, u: np.ndarray, x: State) -> np.ndarray:
+        rho = self.drives.rho
+        if rho == 1:
+            return self.drives.kappa * u
+        tau_t = self.arm.K * (x.theta - x.q) + self.arm.D * (x.theta_dot - x.v)
+        return self.drives.kappa * (rho * u + (1 - rho) * tau_t)
+
+    def friction(self, speed: np.ndarray, step_s: float) -> np.ndarray:
+        """Bristles that bend up to bristle_rad, where they slip; exact for a constant speed."""
+        z_max = self.drives.bristle_rad
+        slip = np.abs(speed) / z_max
+        towards = np.sign(speed) * z_max
+        self.bristle = towards + (self.bristle - towards) * np.exp(-slip * step_s)
+        return self.drives.coulomb * self.bristle / z_max
+
+
+def run(
+    arm: ElasticArm,
+    law: Law,
+    seconds: float,
+    push: Callable[[float], np.ndarray] | None = None,
+    drives: Drives | None = None,
+    start: State | None = None,
+) -> Track:
+    """From rest, or from `start`. `law` sees the state now; its torque u acts a period later."""
+    n, drives = arm.size, drives or Drives()
+    steps = FRICTION_STEPS if np.any(drives.coulomb) else 1
+    loops = round(PERIOD_S * drives.rate_hz) if drives.rho != 1 or steps > 1 else 1
+    step_s = PERIOD_S / loops / steps
+    A, E = held(*arm.matrices(), step_s)
+    x = np.zeros(4 * n) if start is None else np.concatenate(start)
+    motors, u, rows = Motors(arm, drives), np.zeros(n), []
+    for k in range(round(seconds / PERIOD_S)):
+        t, now = k * PERIOD_S, State(*x.reshape(4, n))
+        tau_ext = np.zeros(n) if push is None else push(t)
+        asked = law(t, now)
+        rows.append((t, x.copy(), motors.torque(u, now)))
+        pushed = E[:, n:] @ tau_ext
+        for _ in range(loops):
+            tau_m = motors.torque(u, State(*x.reshape(4, n)))
+            for _ in range(steps):
+                friction = motors.friction(x[3 * n :], step_s) if steps > 1 else 0.0
+                x = A @ x + E[:, :n] @ (tau_m - friction) + pushed
+        u = asked
+    return _track(arm, rows)
+
+
+def _track(arm: ElasticArm, rows: list[tuple]) -> Track:
+    t, x, tau_m = (np.array(column) for column in zip(*rows, strict=True))
+    state = State(*np.moveaxis(x.reshape(len(t), 4, arm.size), 1, 0))
+    return Track(t, state, arm.K * (state.theta - state.q), tau_m)
