@@ -12,11 +12,14 @@ from limber.experiments.context import Context
 from limber.experiments.pictures import BLUE, ORANGE
 from limber.experiments.probing import Probing
 from limber.experiments.variants import variant
+from limber.paths import robot_folder
+from limber.robot import read_yaml
 
-from .soft import FAST_KGM2
-
+ROBOT = "antagonist2r"  # its links, with one motor a joint
 SPRINGS = np.array([300.0, 150.0])  # N m/rad
 DAMPERS = [8.0, 3.0]  # N m s/rad, so that a pushed arm comes to rest
+ROTOR_KGM2 = 0.2  # behind the gear
+HELD = {"K_q_Nm_per_rad": 2000.0, "D_q_Nms_per_rad": 28.0}  # by the drives, on the bus
 SHOULDER = 0.3
 ELBOWS = (0.7, 1.4, 2.1)
 PROBING = Probing(first_at=2.0, each_s=2.0, axes=2, force=5.0)
@@ -24,9 +27,10 @@ PROBING = Probing(first_at=2.0, each_s=2.0, axes=2, force=5.0)
 Found = dict[float, dict[str, np.ndarray]]
 
 
-def presented(elbow: float) -> np.ndarray:
+def presented(elbow: float, held: float = np.inf) -> np.ndarray:
+    """J⁻ᵀ K J⁻¹; motors that give way add to what the springs yield."""
     J = arm.jacobian(np.array([SHOULDER, elbow]))
-    return np.linalg.inv(J @ np.diag(1 / SPRINGS) @ J.T)
+    return np.linalg.inv(J @ np.diag(1 / SPRINGS + 1 / held) @ J.T)
 
 
 def ideal(elbow: float) -> np.ndarray:
@@ -43,31 +47,45 @@ def ideal(elbow: float) -> np.ndarray:
 
 def bus(context: Context, elbow: float) -> np.ndarray:
     name = f"tip_{elbow:g}"
-    joints = {
-        joint: {"transmission": {"kind": "elastic", "damping_Nms_per_rad": d,
-                                 "spring": {"law": "linear", "stiffness_Nm_per_rad": float(K)}},
-                "link_encoder": {"bits": 24}}
-        for joint, K, d in zip(("shoulder", "elbow"), SPRINGS, DAMPERS, strict=True)
-    }  # fmt: skip
-    changes = {
-        "gravity_m_per_s2": [0.0, 0.0, -9.81],
-        "motors": {"ideal": {"rotor_inertia_kgm2": 0.1}},
-        "joints": joints,
-    }
     scenario = {
-        "robot": variant(context.out / f"robot_{name}", arm.ROBOT, changes),
-        "reality": {"motors": {"ideal": {"rotor_inertia_kgm2": FAST_KGM2}}},
+        "robot": variant(context.out / name, ROBOT, sprung()),
         "integrator": "reference",
         "start_q": [SHOULDER, elbow],
         "duration_s": PROBING.end + 0.1,
         "timeline": [
             {"at_s": 0.3, "mode": "hold"},
             {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": {"law": "gravity_compensation"}},
+            {"at_s": 1.0, "gains": {"law": "joint_pd", "position": "motor",
+                                    "joint_damping": "given", **HELD}},
             *PROBING.timeline(),
         ],
-    }
+    }  # fmt: skip
     return PROBING.stiffness(context.lab(scenario, name))
+
+
+def sprung() -> dict[str, Any]:
+    """A linear spring and one motor without friction at each joint; the arm lies."""
+    joints = {}
+    for joint, K, d in zip(("shoulder", "elbow"), SPRINGS, DAMPERS, strict=True):
+        transmission = {
+            "kind": "elastic",
+            "spring": {
+                "law": "linear",
+                "stiffness_Nm_per_rad": float(K),
+                "k2_Nm_per_rad2": None,
+            },
+            "damping_Nms_per_rad": d,
+            "preload_rad": None,
+            "preload_max_rad": None,
+        }
+        still = {"coulomb_Nm": 0.0, "viscous_Nms_per_rad": 0.0}
+        joints[joint] = {"transmission": transmission, "antagonist": None, "friction": still}
+    motor = read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"]["puller"]
+    return {
+        "gravity_m_per_s2": [0.0, 0.0, -9.81],
+        "motors": {"puller": {"rotor_inertia_kgm2": ROTOR_KGM2 / motor["gear_ratio"] ** 2}},
+        "joints": joints,
+    }
 
 
 def found(context: Context) -> Found:
@@ -78,9 +96,13 @@ def checks(seen: Found) -> list[Check]:
     made = []
     for elbow, ways in seen.items():
         for where, K in ways.items():
-            for i, word in enumerate(("soft", "stiff")):
-                asked, got = (np.linalg.eigvalsh((A + A.T) / 2)[i] for A in (presented(elbow), K))
-                name = f"tip of two such joints, elbow at {elbow:g} rad, {where}: {word} axis"
+            held = np.inf if where == "ideal" else HELD["K_q_Nm_per_rad"]
+            word = where if where == "ideal" else f"bus, motors held by {held:g} N m/rad"
+            for i, axis in enumerate(("soft", "stiff")):
+                asked, got = (
+                    np.linalg.eigvalsh((A + A.T) / 2)[i] for A in (presented(elbow, held), K)
+                )
+                name = f"tip of two such joints, elbow at {elbow:g} rad, {word}: {axis} axis"
                 made.append(Check(name, asked, got, "N/m", 0.01))
     return made
 
@@ -90,7 +112,8 @@ def draw(seen: Found, ax: Any) -> None:
         q = np.array([SHOULDER, elbow])
         links = np.array([[0, 0], arm.elbow(q), arm.tip(q)])
         ax.plot(*links.T, color="0.6", lw=2.5, solid_capstyle="round", zorder=1)
-        for K, style in ((presented(elbow), {"ec": BLUE, "lw": 1.6}),
+        held = HELD["K_q_Nm_per_rad"]
+        for K, style in ((presented(elbow, held), {"ec": BLUE, "lw": 1.6}),
                          (ways["bus"], {"ec": ORANGE, "lw": 2.4, "ls": ":"})):  # fmt: skip
             ax.add_patch(Polygon(arm.tip(q) + ellipse(K), fill=False, zorder=2, **style))
     ax.plot([], [], color=BLUE, label="J⁻ᵀ K J⁻¹")
