@@ -6,6 +6,7 @@ import pytest
 from conftest import records, write_log
 from limber import messages
 from limber.errors import InputError
+from limber.identify.arm import load_arm
 from limber.identify.payload import identify
 from limber.identify.static_poses import static_poses
 from limber.robot import load_robot
@@ -95,26 +96,26 @@ def write_run(path, poses: np.ndarray, tau: np.ndarray, seconds: float = 1.0):
     time_ns = np.arange(count) * (10**9 // RATE_HZ)
     state = records("joint_state_t", count, time_ns=time_ns, num_joints=7)
     state["q"][:, :7] = q
-    state["tau_applied"][:, :7] = torque + 1.0
+    state["tau_applied"][:, :7] = torque + load_arm("openarm").dynamics.gravity_torque(q)
     status = records("controller_status_t", count, time_ns=time_ns, num_joints=7)
     status["state_seq"], status["mode"] = np.arange(count), modes.MODE_HOLD
-    status["tau_gravity"][:, :7] = 1.0  # what the model says the arm itself weighs
     return write_log(path, {"JOINT_STATE": state, "CONTROLLER_STATUS": status})
 
 
 def test_command_reads_the_poses_of_a_run(robot, poses, tmp_path, limber):
     path = write_run(tmp_path / "run.lcmlog", poses, weight(robot, poses))
-    found = static_poses([path], 7)
+    found = static_poses([path], load_arm("openarm").dynamics)
     assert len(found.q) == len(poses)
     np.testing.assert_allclose(found.q, poses, atol=1e-9)
-    result = limber("identify", "payload", str(path))
+    result = limber("identify", "payload", str(path), "--robot", "openarm")
     assert result.returncode == 0, result.stderr
     assert "0.8000" in result.stdout
     assert "8 poses" in result.stdout
+    assert (tmp_path / "identify" / "payload.png").stat().st_size > 10_000
 
 
 def test_a_run_without_rest_is_refused(robot, poses, tmp_path, limber):
     path = write_run(tmp_path / "run.lcmlog", poses, weight(robot, poses), seconds=0.1)
-    result = limber("identify", "payload", str(path))
+    result = limber("identify", "payload", str(path), "--robot", "openarm")
     assert result.returncode == 2
     assert "stand still" in result.stderr

@@ -72,15 +72,14 @@ def gravity(runs: Runs, robot: Robot = None, out: Out = None) -> None:
 
 @app.command("payload")
 def payload(
-    runs: Annotated[
-        list[Path], typer.Argument(help="Logs, or folders of runs, with the arm at rest.")
-    ],
-    robot: Annotated[str, typer.Option(help="The arm's name or folder.")] = "openarm",
+    runs: Runs,
+    robot: Robot = None,
     offsets: Annotated[
         bool, typer.Option("--offsets", help="Estimate constant joint torque offsets as well.")
     ] = False,
+    out: Out = None,
 ) -> None:
     """Mass and centre of mass of what the tip carries, from the torques of static poses."""
     from limber.identify import payload as module
 
-    raise typer.Exit(module.run(runs, robot, offsets, console))
+    module.run(runs, robot, offsets, out, console)

@@ -18,8 +18,11 @@ from rich.console import Console
 from rich.table import Table
 
 from limber.errors import InputError
-from limber.identify.static_poses import static_poses
-from limber.robot import load_robot
+from limber.identify.arm import Arm
+from limber.identify.findings import Panel
+from limber.identify.report import arm_of, folder_of
+from limber.identify.static_poses import StaticPoses, static_poses
+from limber.paths import output_folder
 from limber.urdf import Chain
 
 LENGTH_M = 0.1  # makes m c comparable with m
@@ -95,17 +98,27 @@ def _payload(
     return Payload(mass, std[0], com, com_std, x[4:], std[4:], condition, rms, poses)
 
 
-def run(runs: list[Path], robot_name: str, offsets: bool, console: Console) -> int:
-    robot = load_robot(robot_name)
-    found = static_poses(runs, len(robot.joints))
-    payload = identify(robot.chain, found.q, found.tau, robot.gravity, offsets)
-    table = Table("", "value", "std. deviation", "unit", title=f"payload at {robot.tip}")
+def run(
+    runs: list[Path], robot: str | None, offsets: bool, out: Path | None, console: Console
+) -> None:
+    arm = arm_of(runs, robot)
+    found = static_poses(runs, arm.dynamics)
+    payload = identify(arm.robot.chain, found.q, found.tau, arm.robot.gravity, offsets)
+    _say(payload, arm, console)
+    from limber.identify import picture  # matplotlib takes a second to load
+
+    path = output_folder(out or folder_of(runs)) / "payload.png"
+    picture.save(_panels(payload, arm, found), f"payload at {arm.robot.tip}", path)
+    console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+
+
+def _say(payload: Payload, arm: Arm, console: Console) -> None:
+    table = Table("", "value", "std. deviation", "unit", title=f"payload at {arm.robot.tip}")
     rows = [("mass", payload.mass_kg, payload.mass_std, "kg")]
     for i, axis in enumerate("xyz"):
         rows.append((f"centre {axis}", payload.com_m[i], payload.com_std[i], "m"))
-    for name, value, std in zip(
-        robot.joint_names if offsets else (), payload.offsets, payload.offsets_std, strict=True
-    ):
+    names = arm.robot.joint_names if len(payload.offsets) else []
+    for name, value, std in zip(names, payload.offsets, payload.offsets_std, strict=True):
         rows.append((f"offset {name}", value, std, "N m"))
     for name, value, std, unit in rows:
         table.add_row(name, f"{value:.4f}", f"{std:.4f}", unit)
@@ -115,4 +128,19 @@ def run(runs: list[Path], robot_name: str, offsets: bool, console: Console) -> i
         f"{payload.residual_rms:.3f} N m rms unexplained",
         highlight=False,
     )
-    return 0
+
+
+def _panels(payload: Payload, arm: Arm, found: StaticPoses) -> list[Panel]:
+    parameters = payload.mass_kg * np.array([1.0, *payload.com_m])
+    asked = np.array(
+        [regressor(arm.robot.chain, q, arm.robot.gravity) @ parameters for q in found.q]
+    )
+    if len(payload.offsets):
+        asked = asked + payload.offsets
+    panels = []
+    for i, joint in enumerate(arm.joints):
+        ends = np.array([asked[:, i].min(), asked[:, i].max()])
+        line = {"this payload": (ends, ends)}
+        x_label, y_label = "torque that it asks for (N m)", "torque beyond the arm's (N m)"
+        panels.append(Panel(joint.name, x_label, y_label, asked[:, i], found.tau[:, i], line))
+    return panels

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from limber import messages
+from limber.dynamics import ArmDynamics
 from limber.errors import InputError
 from limber.logs import Log
 
@@ -16,14 +17,17 @@ APART = 0.05  # rad or m: closer poses are one
 
 @dataclass(frozen=True)
 class StaticPoses:
-    """One row a pose: mean position, mean applied torque less the model's gravity torque."""
+    """One row a pose: mean position, and mean torque less what gravity asks of the model.
+
+    The torque is what the joint's torque sensor reads or, without one, what was applied.
+    """
 
     q: np.ndarray
     tau: np.ndarray
 
 
-def static_poses(paths: list[Path], joints: int) -> StaticPoses:
-    windows = [window for path in paths for window in _windows(path, joints)]
+def static_poses(paths: list[Path], dynamics: ArmDynamics) -> StaticPoses:
+    windows = [window for path in paths for window in _windows(path, dynamics.size)]
     if not windows:
         raise InputError(f"nowhere does the arm stand still for {WINDOW_S} s while it is held")
     groups: list[list[tuple[np.ndarray, np.ndarray]]] = []
@@ -34,7 +38,8 @@ def static_poses(paths: list[Path], joints: int) -> StaticPoses:
         else:
             near.append((q, tau))
     means = [[np.mean(values, axis=0) for values in zip(*g, strict=True)] for g in groups]
-    return StaticPoses(np.array([m[0] for m in means]), np.array([m[1] for m in means]))
+    q, tau = (np.array([mean[i] for mean in means]) for i in range(2))
+    return StaticPoses(q, tau - dynamics.gravity_torque(q))
 
 
 def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -43,9 +48,10 @@ def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
     status, state = log.read("CONTROLLER_STATUS"), log.read("JOINT_STATE")
     _, of_status, of_state = np.intersect1d(status["state_seq"], state["seq"], return_indices=True)
     status, state = status[of_status], state[of_state]
-    modes = messages.message_class("controller_status_t")
+    modes, flags = map(messages.message_class, ("controller_status_t", "joint_state_t"))
     held = np.isin(status["mode"], (modes.MODE_HOLD, modes.MODE_ACTIVE))
-    q, tau = state["q"][:, :n], state["tau_applied"][:, :n] - status["tau_gravity"][:, :n]
+    sensor = state["joint_flags"][:, :n] & flags.JOINT_TORQUE_SENSOR != 0
+    q, tau = state["q"][:, :n], np.where(sensor, state["tau"][:, :n], state["tau_applied"][:, :n])
     slots = state["time_ns"] // int(WINDOW_S * 1e9)
     found = []
     for slot in np.unique(slots):
