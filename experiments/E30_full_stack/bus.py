@@ -13,7 +13,7 @@ from limber.paths import robot_folder
 from limber.robot import read_yaml
 
 from .arm import COULOMB_NM, D_J, D_NULL, K_J, K_NULL, K_X, KAPPA, ROBOT, ZETA, B
-from .ideal import PUSH_N
+from .ideal import PUSH_N, load
 
 PROBED = Probing(first_at=3.0, each_s=1.2, axes=3, force=9.0)
 FIRST_S = 2.5  # of load and unload
@@ -94,6 +94,5 @@ def loop(
     status(log, FIRST_S, end)
     rows = motion(log, FIRST_S + up_s, end)
     t = rows["time_ns"] * 1e-9 - FIRST_S
-    force = PUSH_N * (1 - np.abs((t / up_s) % 2 - 1))
     start = motion(log, FIRST_S - 0.05, FIRST_S)["p_BT"].mean(axis=0)
-    return force, (rows["p_BT"] - start) @ axis[:3]
+    return PUSH_N * load(t, up_s), (rows["p_BT"] - start) @ axis[:3]

@@ -20,16 +20,15 @@ def stiffness(pose: Pose) -> np.ndarray:
     return np.linalg.inv(np.column_stack(columns))
 
 
-def triangle(t: float, up_s: float) -> float:
-    """0 to 1, back to 0, and so on."""
-    return 1 - abs((t / up_s) % 2 - 1)
+def load(t: np.ndarray | float, up_s: float) -> np.ndarray | float:
+    """0 to 1, back to 0, and so on, with smooth edges as the simulator's pushes have."""
+    return 0.5 - 0.5 * np.cos(np.pi * t / up_s)
 
 
 def loop(pose: Pose, axis: np.ndarray, up_s: float) -> tuple[np.ndarray, np.ndarray]:
     """Force and deflection of an unload and the load after it along `axis`, with friction."""
     tau = pose.J.T @ axis * PUSH_N
     drives = Drives(pose.rho, kappa=KAPPA, coulomb=COULOMB_NM)
-    track = run(pose.plant(), pose.law(), 3 * up_s, lambda t: tau * triangle(t, up_s), drives)
+    track = run(pose.plant(), pose.law(), 3 * up_s, lambda t: tau * load(t, up_s), drives)
     after = track.t >= up_s
-    force = PUSH_N * np.array([triangle(t, up_s) for t in track.t[after]])
-    return force, track.x.q[after] @ pose.J.T @ axis
+    return PUSH_N * load(track.t[after], up_s), track.x.q[after] @ pose.J.T @ axis

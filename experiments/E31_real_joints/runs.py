@@ -15,6 +15,7 @@ from limber.experiments.elastic import run
 from .joints import WEIGHT_NM, D, Joint, K
 
 PUSH_NM, RAMP_S, HOLD_S, FREE_S = 20.0, 1.0, 0.5, 1.5
+STEPS = 100  # of the ramp
 MOVE_RAD, MOVE_S = 1.0, 3.0
 REST_S = 4.0
 START_S = 2.0
@@ -39,9 +40,9 @@ def pushed(t: np.ndarray | float) -> np.ndarray | float:
 
 
 def pushes() -> list[dict[str, Any]]:
-    """The same in pieces, since the edges of one push are equal: steps of a twentieth."""
-    step = RAMP_S / 20
-    up = [bench.push(PUSH_NM * (i + 0.5) / 20, START_S + i * step, step) for i in range(20)]
+    """The same in steps: edges of a push are no straight ramps."""
+    step = RAMP_S / STEPS
+    up = [bench.push(PUSH_NM * (i + 0.5) / STEPS, START_S + i * step, step) for i in range(STEPS)]
     return [*up, bench.push(PUSH_NM, START_S + RAMP_S, HOLD_S)]
 
 
