@@ -49,10 +49,10 @@ def test_torque_acts_one_period_late():
 @pytest.mark.parametrize("push, rest", [(0.9, 0.0), (5.0, 5.0 - 1.0)])
 def test_dry_friction_holds_up_to_its_torque(push, rest):
     def law(t: float, x: State) -> np.ndarray:
-        return -100.0 * x.theta - 5.0 * x.theta_dot
+        return -100.0 * x.theta - 30.0 * x.theta_dot
 
     drives = Drives(coulomb=1.0)
     track = run(
         one_joint(M, B, 1e4, 20.0), law, 3.0, lambda t: np.array([push * min(t, 1.0)]), drives
     )
-    assert 100.0 * track.x.theta[-1, 0] == pytest.approx(rest, abs=2e-2)
+    assert 100.0 * track.x.theta[-1, 0] == pytest.approx(rest, abs=4e-2)
