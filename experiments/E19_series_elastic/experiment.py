@@ -3,7 +3,7 @@
 from limber.experiments.check import Check
 from limber.experiments.context import Context
 
-from . import passive, port, tip, tracking
+from . import baxter, passive, port, tip, tracking
 
 TITLE = "A spring in the joint filters and spares, cannot be made stiff, and has to be led"
 CLAIM = (
@@ -11,7 +11,7 @@ CLAIM = (
 )
 CLAIM += " is safe without any control"
 SECTION = "3.3"
-PLANT = "one joint and two joints with springs; ideal: reduced plants; bus: CiA 402 drives"
+PLANT = "one, two and seven joints with springs; ideal: reduced plants; bus: CiA 402 drives"
 FAST = False
 
 
@@ -20,9 +20,10 @@ def run(context: Context) -> list[Check]:
     through = port.checks(context)
     followed = tracking.found(context)
     tips = tip.found(context)
+    whole = baxter.checks(context)
     with context.picture(TITLE, 2, 2, size=(13.0, 10.0)) as axes:
         port.draw(through, axes[0, 0])
         tracking.draw(followed, axes[0, 1])
         tip.draw(tips, axes[1, 0])
         passive.draw(clamped, axes[1, 1])
-    return [*clamped, *through, *tracking.checks(followed), *tip.checks(tips)]
+    return [*clamped, *through, *tracking.checks(followed), *tip.checks(tips), *whole]

@@ -21,7 +21,7 @@ DAMPERS = [8.0, 3.0]  # N m s/rad, so that a pushed arm comes to rest
 ROTOR_KGM2 = 0.2  # behind the gear
 HELD = {"K_q_Nm_per_rad": 2000.0, "D_q_Nms_per_rad": 28.0}  # by the drives, on the bus
 SHOULDER = 0.3
-ELBOWS = (0.7, 1.4, 2.1)
+ELBOWS = (1.2, 1.7, 2.2)
 PROBING = Probing(first_at=2.0, each_s=2.0, axes=2, force=5.0)
 
 Found = dict[float, dict[str, np.ndarray]]

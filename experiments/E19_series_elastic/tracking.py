@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from scipy.interpolate import CubicSpline
 
 from limber.experiments import testbench as bench
 from limber.experiments.check import Check
@@ -85,9 +86,8 @@ def bus(context: Context, feed_forward: bool) -> Followed:
     goal = {"at_s": START_S, "goal": {"joints_rad": ANGLE, "duration_s": MOVE_S}}
     end = START_S + END_S
     log = bench.on_bus(context, law, gains, [goal], end, changes=sprung(K_S, 0.0))
-    seen = bench.truth(log, START_S, end)
-    t = seen["t"] - START_S
-    return Followed(t, seen["q"] - np.array([along(QUINTIC, s) for s in t]))
+    seen, path = bench.truth(log, START_S, end), CubicSpline(*bench.goal(log, START_S - 0.01, end))
+    return Followed(seen["t"] - START_S, seen["q"] - path(seen["t"]))
 
 
 def found(context: Context) -> dict[str, Followed]:

@@ -56,7 +56,7 @@ def outwards(q: np.ndarray) -> np.ndarray:
     return arm.tip(q) / np.linalg.norm(arm.tip(q))
 
 
-FREE = Case("no load", np.array([0.5, 1.5]), np.zeros(2))
+FREE = Case("no load", np.array([0.5, 1.9]), np.zeros(2))
 LOADED = replace(FREE, name="pulled outwards by 20 N", load=20.0 * outwards(FREE.q))
 EXACT = replace(FREE, name="no load, cos q₂ = -0.8", q=np.array([0.5, np.arccos(-0.8)]))
 CASES = (FREE, LOADED, EXACT)
@@ -180,11 +180,11 @@ def ellipse(K: np.ndarray) -> np.ndarray:
 
 
 def draw_tips(tips: Tips, ax: Any) -> None:
-    ax.plot(*ellipse(ASKED * np.eye(2)), "--", color="0.4", label="asked")
     for wanted, color in zip(CASES, (BLUE, ORANGE, GREEN), strict=True):
         ax.plot(*ellipse(wanted.presented()), color=color, label=f"presented, {wanted.name}")
         ax.plot(*ellipse(tips[wanted.name]["bus"])[:, ::6], **MEASURED, color=color)
     ax.plot([], [], **MEASURED, color="0.3", label="felt on the arm")
+    ax.plot(*ellipse(ASKED * np.eye(2)), "--", color="0.2", lw=1.2, label="asked")
     ax.set_aspect("equal")
     ax.margins(0.05)
     ax.set_title("Tip stiffness of two joints with variable springs")

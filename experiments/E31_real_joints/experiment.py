@@ -59,8 +59,11 @@ def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Check]:
 
 def draw_release(found: Found, ax: Any) -> None:
     for (name, (_, seen)), color in zip(found.items(), COLORS, strict=True):
-        ax.plot(seen.t, seen.q * 1e3, color=color, label=name)
-    ax.set_title("Pushed by 20 N m and let go, on the bus")
+        label = f"{name}: {100 * seen.overshoot:.0f} %"
+        ax.plot(seen.t, seen.q * 1e3, color=color, label=label)
+    ax.set_title(
+        f"Pushed by 20 N m and let go, on the bus; overshoot, {100 * OVERSHOOT:.0f} % asked"
+    )
     ax.set_xlim(0, 1.0)
     ax.set_xlabel("time (s)")
     ax.set_ylabel("angle of the link (mrad)")
@@ -78,6 +81,7 @@ def bars(
         ax.plot(values, rows, **style, color="0.15", label=word)
     if asked:
         ax.axvline(asked, color="0.4", ls=":", lw=1.4)
+        ax.set_xlim(0, 1.25 * asked)
     ax.set_yticks(rows, list(found))
     ax.set_ylim(-0.6, len(found) - 0.4)
-    ax.legend(loc="lower right")
+    ax.legend(loc="lower right" if asked else "upper right")
