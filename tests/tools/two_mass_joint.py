@@ -68,7 +68,11 @@ def write_robot(folder: Path, believed: Truth) -> Path:
     <origin xyz="0 -0.5 0"/></joint>
 </robot>""")
     spring = f"{{law: linear, stiffness_Nm_per_rad: {believed.stiffness}}}"
-    kind = "{kind: rigid}" if believed.rigid else f"{{kind: elastic, spring: {spring}}}"
+    kind = (
+        "{kind: rigid}"
+        if believed.rigid
+        else f"{{kind: elastic, spring: {spring}, damping_Nms_per_rad: {believed.damping}}}"
+    )
     viscous = believed.friction.viscous
     (folder / "robot.yaml").write_text(f"""format: limber-robot/1
 name: bench

@@ -50,7 +50,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
         found.values += _values(joint, side, bool(motion.torque_sensor[i]))
         found.panels.append(_panel(joint, side))
         if motion.torque_sensor[i]:
-            found.values += _link_side(joint, motion, model, i)
+            found.values += _link_side(joint, motion, all_loads, model, i)
     return found
 
 
@@ -101,7 +101,9 @@ def _value(
     return Value(joint.name, f"{section}: {key}", unit, value, std, believed, path, proposed)
 
 
-def _link_side(joint: JointBelief, motion: Motion, model: np.ndarray, i: int) -> list[Value]:
+def _link_side(
+    joint: JointBelief, motion: Motion, sensed: np.ndarray, model: np.ndarray, i: int
+) -> list[Value]:
     """From tau = s model + F_c sign(v) + d v + o; nothing if it does not stand out."""
     rows = motion.moving[:, i]
     speed = motion.v[rows, i]
@@ -109,7 +111,7 @@ def _link_side(joint: JointBelief, motion: Motion, model: np.ndarray, i: int) ->
     if not np.ptp(model[rows, i]) > LEAST_LOAD:
         A = np.delete(A, 2, axis=1)
     try:
-        found = fit(A, motion.tau[rows, i], motion.block[rows])
+        found = fit(A, sensed[rows, i], motion.block[rows])
     except PoorLogError:
         return []
     if not np.any(found.x[:2] > SURE * found.std[:2]):

@@ -47,7 +47,19 @@ class MotorSide:
 def loads(arm: Arm, motion: Motion) -> np.ndarray:
     """Torque behind each gear, N x n: sensed where there is a sensor, else by the model."""
     model = arm.dynamics.torque(motion.q, motion.v, motion.a)
-    return np.where(motion.torque_sensor, motion.tau, model)
+    return np.where(motion.torque_sensor, sensed(arm, motion), model)
+
+
+def sensed(arm: Arm, motion: Motion) -> np.ndarray:
+    """What springs and, as far as robot.yaml knows them, dampers pass on to the links, N x n.
+
+    A torque sensor feels the spring; the damper beside it adds D_J (theta' - q').
+    """
+    damping = [
+        joint.believed("transmission", joint.key("damping_Nms_per_rad")) or 0.0
+        for joint in arm.joints
+    ]
+    return motion.tau + np.array(damping) * (motion.theta_dot - motion.v)
 
 
 def balance(arm: Arm, motion: Motion, loads: np.ndarray, i: int, known: bool = False) -> MotorSide:

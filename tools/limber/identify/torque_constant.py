@@ -27,8 +27,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
     for i, joint in enumerate(arm.joints):
         try:
             side = balance(arm, motion, all_loads, i)
-            if not (side.kappa_std <= WORST_STD and np.ptp(side.load) > LEAST_NM):
-                raise PoorLogError(_too_little_load(side))
+            _require_load(side)
         except PoorLogError as reason:
             found.refused[joint.name] = str(reason)
             continue
@@ -44,12 +43,13 @@ def identify(arm: Arm, motion: Motion) -> Findings:
     return found
 
 
-def _too_little_load(side: MotorSide) -> str:
+def _require_load(side: MotorSide) -> None:
     span = float(np.ptp(side.load))
-    return (
-        f"its load changes by only {span:.2g} N m, which leaves the torque constant uncertain by "
-        f"{side.kappa_std:.0%}; move it where gravity pulls more, or hang a known weight on"
-    )
+    cure = "move it where gravity pulls more, or hang a known weight on"
+    if not span > LEAST_NM:
+        raise PoorLogError(f"its load changes by only {span:.2g} N m; {cure}")
+    if not side.kappa_std <= WORST_STD:
+        raise PoorLogError(f"the result would be uncertain by {side.kappa_std:.0%}; {cure}")
 
 
 def _by_motor(arm: Arm, sides: dict[int, MotorSide]) -> dict[str, list[int]]:
