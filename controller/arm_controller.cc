@@ -45,7 +45,7 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
 struct ArmController::Impl {
   Impl(const LoadedRobot& robot, const ArmControllerOptions& given)
       : options(given),
-        supervisor(robot.robot.size(), given.bridged_cycles),
+        supervisor(robot.robot.size(), given.bridged_cycles, equipment_of(robot.robot)),
         cycle(controllable(robot), given.law) {
     answer.controller = options.controller;
     answer.num_joints = static_cast<std::int16_t>(robot.robot.size());
@@ -91,7 +91,7 @@ void ArmController::Impl::follow_mode() noexcept {
   activity = activity_of(supervisor);
   if (activity == before) return;
   if (before == Activity::kRest && activity != Activity::kRest) {
-    cycle.rest(cycle.tau_applied(), false);  // the first torque is the one present
+    cycle.rest(cycle.tau_applied(), false, true);  // the first torque is the one present
   }
   if (activity == Activity::kHold) cycle.hold();
   if (activity == Activity::kLaw) cycle.activate();
@@ -113,11 +113,11 @@ void ArmController::Impl::rest() noexcept {
   const Mode mode = supervisor.mode();
   const bool latched = mode == Mode::kFault || mode == Mode::kEstop;
   if (supervisor.powered_mode()) {
-    cycle.rest(cycle.tau_applied(), false);  // the drives are still coming: no wind-up
+    cycle.rest(cycle.tau_applied(), false, true);  // the drives are still coming: no wind-up
   } else if (latched || supervisor.drives_carry()) {
-    cycle.rest(cycle.gravity(), supervisor.drives_on());
+    cycle.rest(cycle.gravity(), supervisor.drives_on(), true);
   } else {
-    cycle.rest(VectorJ::Zero(answer.num_joints), supervisor.drives_on());
+    cycle.rest(VectorJ::Zero(answer.num_joints), supervisor.drives_on(), false);
   }
 }
 
@@ -129,6 +129,7 @@ void ArmController::Impl::write_answer(const joint_state_t& state) noexcept {
   answer.mode = static_cast<std::int8_t>(supervisor.mode());
   const int n = answer.num_joints;
   Eigen::Map<VectorJ>(answer.tau, n) = cycle.torque();
+  Eigen::Map<VectorJ>(answer.tau_preload, n) = cycle.preload_torque();
   Eigen::Map<VectorJ>(answer.tau_gravity, n) = cycle.gravity();
 }
 

@@ -15,14 +15,18 @@ struct ArmState {
         v(VectorJ::Zero(joints)),
         theta(VectorJ::Zero(joints)),
         theta_dot(VectorJ::Zero(joints)),
+        preload(VectorJ::Zero(joints)),
+        preload_dot(VectorJ::Zero(joints)),
         tau_measured(VectorJ::Zero(joints)),
         tau_applied(VectorJ::Zero(joints)) {}
 
-  VectorJ q;             ///< link side
-  VectorJ v;             ///< link side
-  VectorJ theta;         ///< motor side, behind the gear
-  VectorJ theta_dot;     ///< motor side, behind the gear
-  VectorJ tau_measured;  ///< as the drive reports it
+  VectorJ q;             ///< link side; the motor's where the joint has no link encoder
+  VectorJ v;             ///< likewise
+  VectorJ theta;         ///< motor side, behind the gear; of two motors (theta_1 - theta_2) / 2
+  VectorJ theta_dot;     ///< likewise
+  VectorJ preload;       ///< (theta_1 + theta_2) / 2; zero for joints with one motor
+  VectorJ preload_dot;   ///< likewise
+  VectorJ tau_measured;  ///< torque on the link by a torque sensor, else the drive's estimate
   VectorJ tau_applied;   ///< what the drive was sent in this cycle
   std::int64_t time_ns = 0;
   double period_s = 0.0;
@@ -35,6 +39,8 @@ inline void read_arm_state(const joint_state_t& message, ArmState* state) noexce
   state->v = Eigen::Map<const Eigen::VectorXd>(message.v, n);
   state->theta = Eigen::Map<const Eigen::VectorXd>(message.theta, n);
   state->theta_dot = Eigen::Map<const Eigen::VectorXd>(message.theta_dot, n);
+  state->preload = Eigen::Map<const Eigen::VectorXf>(message.preload, n).cast<double>();
+  state->preload_dot = Eigen::Map<const Eigen::VectorXf>(message.preload_dot, n).cast<double>();
   state->tau_measured = Eigen::Map<const Eigen::VectorXd>(message.tau, n);
   state->tau_applied = Eigen::Map<const Eigen::VectorXd>(message.tau_applied, n);
   state->time_ns = message.time_ns;

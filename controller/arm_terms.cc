@@ -15,7 +15,12 @@ namespace {
 
 std::vector<double> rotor_inertias(const Robot& robot) {
   std::vector<double> inertias;
-  for (const JointConfig& joint : robot.joints) inertias.push_back(joint.drive.rotor_inertia_kgm2);
+  for (const JointConfig& joint : robot.joints) {
+    double B = joint.apparent_rotor_inertia_kgm2();
+    if (joint.has_antagonist)
+      B += joint.antagonist.rotor_inertia_kgm2 / joint.torque_loop.inertia_ratio;
+    inertias.push_back(B);
+  }
   return inertias;
 }
 

@@ -16,11 +16,12 @@ struct ArmTerms {
   explicit ArmTerms(int joints);
 
   Pose X_BT;
-  Vector6 V_BT;      ///< J v
-  Matrix6J J;        ///< 6 x n
-  Vector6 Jdot_v;    ///< (dJ/dt) v: tip acceleration at zero joint acceleration
-  MatrixJ M;         ///< link inertia, n x n, kg m^2
-  VectorJ B;         ///< rotor inertia behind the gear, kg m^2 (constant)
+  Vector6 V_BT;    ///< J v
+  Matrix6J J;      ///< 6 x n
+  Vector6 Jdot_v;  ///< (dJ/dt) v: tip acceleration at zero joint acceleration
+  MatrixJ M;       ///< link inertia, n x n, kg m^2
+  VectorJ B;       ///< rotor inertia behind the gear and the drive's torque loop; of two motors the
+                   ///< sum, which their equilibrium has; kg m^2 (constant)
   MatrixJ M_total;   ///< M + diag(B): what a rigidly geared joint has to accelerate
   MatrixJ6 Minv_JT;  ///< M_total^-1 J^T, n x 6: joint acceleration by a wrench at the tip
   VectorJ Cv;        ///< Coriolis and centrifugal torque, N m
@@ -49,6 +50,7 @@ class ArmModel {
   ~ArmModel();
 
   int size() const noexcept { return size_; }
+  const VectorJ& rotor_inertia() const noexcept { return rotor_inertia_; }
 
   /// All terms at (q, v), both of length size(). May be called in the cycle.
   void evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;

@@ -24,7 +24,7 @@ void TorqueCycle::describe(controller_status_t* status) noexcept {
   status->law = static_cast<std::int8_t>(selected_);
   status->num_joints = static_cast<std::int8_t>(model_.size());
   status->limits = limits_active_;
-  status->kinetic_energy_J = terms_.kinetic_energy(state_.v);
+  status->kinetic_energy_J = terms_.kinetic_energy(seen_.v);
   status->spring_energy_J = law_.spring_energy_J;
   const LawSettings& settings = gains_.now().settings;
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -50,6 +50,8 @@ void TorqueCycle::describe_parts(controller_status_t* status) const noexcept {
   write(law_.tau_stiffness + law_.tau_feedforward, status->tau_stiffness);
   write(law_.tau_damping, status->tau_damping);
   write(tau_null_, status->tau_null);
+  write(law_.sigma, status->sigma);
+  status->fit_residual = static_cast<float>(law_.fit_residual);
   write(tau_gravity_, status->tau_gravity);
   write(tau_coriolis_, status->tau_coriolis);
   write(tau_friction_, status->tau_friction);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "controller/laws/registry.h"
 #include "controller/observers/coriolis_transpose.h"
 #include "controller/singularity.h"
 
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double kFrictionFade_rad_per_s = 0.02;
 constexpr double kLeastNoise_rad = 1e-7;
+constexpr double kLeastInertia_kgm2 =
+    1e-9;  // a rotor without any: friction is the difference of torques
 
 // Standard deviation of the coarsest encoder's rounding.
 double rounding_noise(const Robot& robot) {
@@ -40,6 +43,8 @@ MomentumObserver momentum_observer(int joints, double gain, double T) {
 
 Estimation::Estimation(const LoadedRobot& robot)
     : joints_(robot.robot.size()),
+      elastic_((sensors_of(robot.robot) & sensors::kSprings) != 0),
+      torque_sensors_((sensors_of(robot.robot) & sensors::kTorqueSensor) != 0),
       T_(1.0 / robot.robot.rate_hz),
       q_(VectorJ::Zero(joints_)),
       v_(q_),
@@ -50,6 +55,7 @@ Estimation::Estimation(const LoadedRobot& robot)
       levant_(joints_, settings_.velocity_acceleration_rad_per_s2, T_),
       momentum_(momentum_observer(joints_, std::min(settings_.observer_gain_per_s, 1.0 / T_), T_)),
       tip_acceleration_(6, 1.0 / settings_.acceleration_filter_s, T_),
+      rotor_inertia_(ArmModel(robot).rotor_inertia().cwiseMax(kLeastInertia_kgm2)),
       estimates_(joints_) {
   if (robot.robot.has_tip_sensor) tip_force_.emplace(robot.robot);
 }
@@ -72,6 +78,12 @@ void Estimation::make_contact_observers() noexcept {
   estimates_.F_ext.setZero();
 }
 
+void Estimation::make_friction_observer() noexcept {
+  if (settings_.friction != FrictionCompensation::kObserver || !torque_sensors_) return;
+  const double gain = std::min(settings_.friction_observer_gain_per_s, 1.0 / T_);
+  friction_observer_.emplace(rotor_inertia_, VectorJ::Constant(joints_, gain), T_);
+}
+
 void Estimation::set(const LawSettings& settings) noexcept {
   const LawSettings before = settings_;
   settings_ = settings;
@@ -84,6 +96,10 @@ void Estimation::set(const LawSettings& settings) noexcept {
       settings.observer_gain_per_s != before.observer_gain_per_s) {
     make_contact_observers();
   }
+  if (settings.friction != before.friction ||
+      settings.friction_observer_gain_per_s != before.friction_observer_gain_per_s) {
+    make_friction_observer();
+  }
   if (settings.acceleration_filter_s != before.acceleration_filter_s) {
     tip_acceleration_.set_corner(1.0 / settings.acceleration_filter_s);
   }
@@ -95,6 +111,7 @@ void Estimation::restart() noexcept {
   started_ = false;
   make_velocity_estimators();
   make_contact_observers();
+  make_friction_observer();
   tip_acceleration_ = {6, 1.0 / settings_.acceleration_filter_s, T_};
   estimates_.A_BT.setZero();
 }
@@ -108,27 +125,30 @@ void Estimation::set_period(double T) noexcept {
 
 void Estimation::estimate_velocity(ArmState* state) noexcept {
   set_period(state->period_s);
+  const VectorJ& position = elastic_ ? state->theta : state->q;
+  VectorJ& velocity = elastic_ ? state->theta_dot : state->v;
   switch (settings_.velocity) {
     case VelocitySource::kDrive:
       break;
     case VelocitySource::kFilteredDifference:
-      state->v = filtered_difference_.update(state->q);
+      velocity = filtered_difference_.update(position);
       break;
     case VelocitySource::kAlphaBeta:
-      state->v = alpha_beta_.update(state->q);
+      velocity = alpha_beta_.update(position);
       break;
     case VelocitySource::kLevant:
-      state->v = levant_.update(state->q);
+      velocity = levant_.update(position);
       break;
   }
-  q_ = state->q;
-  v_ = state->v;
+  q_ = position;
+  v_ = velocity;
   started_ = true;
 }
 
 void Estimation::observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,
                          const TaskRows& rows, ArmModel* model) noexcept {
   estimates_.A_BT = tip_acceleration_.update(terms.V_BT);
+  if (settings_.friction == FrictionCompensation::kObserver) observe_friction(state);
   if (settings_.contact == ContactSource::kJointTorque) {
     observe_joint_torque(state, terms, rows, model);
   } else if (settings_.contact == ContactSource::kTipSensor && tip_force_) {
@@ -138,16 +158,27 @@ void Estimation::observe(const joint_state_t& message, const ArmState& state, co
   }
 }
 
-// From the motors' torque and the momentum of links and rotors: their friction is in it, too.
+void Estimation::observe_friction(const ArmState& state) noexcept {
+  if (!friction_observer_) return;
+  friction_observer_->update(state.theta_dot, state.tau_applied, state.tau_measured);
+}
+
+// From the sensed torque and the momentum of the links alone; or from the motors' torque and the
+// momentum of links and rotors: their friction is then in it, too.
 void Estimation::observe_joint_torque(const ArmState& state, const ArmTerms& terms,
                                       const TaskRows& rows, ArmModel* model) noexcept {
   const VectorJ beta = coriolis_transpose(model, terms, state.q, state.v) - terms.g;
-  estimates_.tau_ext = momentum_.update(terms.M_total * state.v, state.tau_applied, beta);
+  estimates_.tau_ext = torque_sensors_
+                           ? momentum_.update(terms.M * state.v, state.tau_measured, beta)
+                           : momentum_.update(terms.M_total * state.v, state.tau_applied, beta);
   const DampedInverse inverse = damped_inverse(rows.of(terms.J));
   estimates_.F_ext = inverse.inverse.transpose() * estimates_.tau_ext;
 }
 
 VectorJ Estimation::friction(const VectorJ& v_d, const ArmState& state) const noexcept {
+  if (settings_.friction == FrictionCompensation::kObserver && friction_observer_) {
+    return settings_.friction_share * friction_observer_->friction();
+  }
   return friction_.torque(v_d, state.v);
 }
 

@@ -12,6 +12,7 @@
 #include "controller/nullspace.h"
 #include "controller/observers/alpha_beta.h"
 #include "controller/observers/filtered_difference.h"
+#include "controller/observers/friction_observer.h"
 #include "controller/observers/levant.h"
 #include "controller/observers/momentum_observer.h"
 #include "controller/observers/tip_force.h"
@@ -28,8 +29,8 @@ class Estimation {
   /// The next state does not follow on the last one: all observers start over. In the cycle.
   void restart() noexcept;
 
-  /// Puts the chosen estimate in the place of the drives' velocities. In the cycle, before the
-  /// terms are evaluated.
+  /// Puts the chosen estimate in the place of the drives' velocities, on arms with elastic joints
+  /// those of the motors, where damping acts. In the cycle, before the terms are evaluated.
   void estimate_velocity(ArmState* state) noexcept;
   /// Contact and tip acceleration, from the terms at this state. In the cycle.
   void observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,
@@ -42,13 +43,17 @@ class Estimation {
  private:
   void make_velocity_estimators() noexcept;
   void make_contact_observers() noexcept;
+  void make_friction_observer() noexcept;
   void set_period(double T) noexcept;
+  void observe_friction(const ArmState& state) noexcept;
   void observe_joint_torque(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
                             ArmModel* model) noexcept;
 
   int joints_;
-  double T_;   // s
-  VectorJ q_;  // of the state before
+  bool elastic_;         // some joint has a spring
+  bool torque_sensors_;  // at every joint
+  double T_;             // s
+  VectorJ q_;            // of the state before, where velocity is estimated
   VectorJ v_;
   bool started_ = false;
   double position_noise_;  // rad
@@ -58,7 +63,9 @@ class Estimation {
   AlphaBeta alpha_beta_;
   LevantDifferentiator levant_;
   MomentumObserver momentum_;
+  std::optional<FrictionObserver> friction_observer_;
   TipAcceleration tip_acceleration_;
+  VectorJ rotor_inertia_;
   std::optional<TipForce> tip_force_;
   Estimates estimates_;
 };

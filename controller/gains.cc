@@ -32,6 +32,8 @@ double or_default(float value, double otherwise) noexcept {
 
 LawSettings read_settings(const compliance_gains_t& message) noexcept {
   LawSettings s;
+  s.position = static_cast<Position>(message.position);
+  s.stiffness_fit = static_cast<StiffnessFit>(message.stiffness_fit);
   s.orientation = static_cast<Orientation>(message.orientation);
   s.frame = static_cast<GainFrame>(message.frame);
   s.bias = static_cast<Bias>(message.bias);
@@ -54,6 +56,9 @@ LawSettings read_settings(const compliance_gains_t& message) noexcept {
       or_default(message.velocity_acceleration_rad_per_s2, s.velocity_acceleration_rad_per_s2);
   s.acceleration_filter_s = or_default(message.acceleration_filter_s, s.acceleration_filter_s);
   s.observer_gain_per_s = or_default(message.observer_gain_per_s, s.observer_gain_per_s);
+  s.friction_observer_gain_per_s =
+      or_default(message.friction_observer_gain_per_s, s.friction_observer_gain_per_s);
+  s.torque_gain = static_cast<double>(message.torque_gain);
   s.tank_J = static_cast<double>(message.tank_J);
   s.passivity_damping_Ns_per_m = static_cast<double>(message.passivity_damping_Ns_per_m);
   s.spring_force_N = or_default(message.spring_force_N, s.spring_force_N);

@@ -11,6 +11,23 @@ namespace limber::controller {
 
 // Numbers of compliance_gains_t throughout.
 
+/// Which side of an elastic joint the terms are evaluated at and the law looks at. Damping stays at
+/// the motor in all of them: across the spring it would feed the joint's oscillation. Rigid joints
+/// have only one side.
+enum class Position : std::int8_t {
+  kOfArm = 0,   ///< kStatic for laws with a static form, else kMotor
+  kLink = 1,    ///< q; needs link encoders
+  kMotor = 2,   ///< theta: the springs add their own compliance to the law's
+  kStatic = 3,  ///< q_bar, where the link rests while the motor is where it is, see qbar.h
+};
+
+/// How variable_stiffness finds the stiffness of the joints.
+enum class StiffnessFit : std::int8_t {
+  kDiagonal = 0,    ///< diagonal of K_x in joint coordinates
+  kCompliance = 1,  ///< the compliances that come nearest to K_x^-1
+  kJoint = 2,       ///< K_q itself
+};
+
 /// Axes in which K_x, D_x and M_x are given. The goal's, not the tip's: in axes that turn with the
 /// tip the spring would not be conservative.
 enum class GainFrame : std::int8_t { kBase = 0, kGoal = 1 };
@@ -59,6 +76,8 @@ inline constexpr int kTerms = 5;
 struct LawSettings {
   bool operator==(const LawSettings&) const = default;
 
+  Position position = Position::kOfArm;
+  StiffnessFit stiffness_fit = StiffnessFit::kDiagonal;
   Orientation orientation = Orientation::kLog;
   GainFrame frame = GainFrame::kBase;
   Bias bias = Bias::kOfLaw;
@@ -79,6 +98,8 @@ struct LawSettings {
   double velocity_acceleration_rad_per_s2 = 50.0;
   double acceleration_filter_s = 0.005;
   double observer_gain_per_s = 50.0;
+  double friction_observer_gain_per_s = 100.0;
+  double torque_gain = 0.0;  ///< K_T of full_state
   double tank_J = 0.0;
   double passivity_damping_Ns_per_m = 0.0;
   double spring_force_N = 100.0;

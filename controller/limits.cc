@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limber/controller_status_t.hpp>
+#include <string>
+
+#include "common/config_error.h"
+#include "controller/motor_side/spring_law.h"
 
 namespace limber::controller {
 namespace {
@@ -22,6 +26,26 @@ VectorJ collect(const Robot& robot, Member member) {
   return values;
 }
 
+// Two motors have to hold their preload besides.
+VectorJ torque_limits(const Robot& robot) {
+  VectorJ limits = collect(robot, &JointConfig::torque_limit_Nm);
+  for (int i = 0; i < robot.size(); ++i) {
+    const JointConfig& joint = robot.joints[static_cast<std::size_t>(i)];
+    if (!joint.has_antagonist) continue;
+    const double both = 2.0 * std::min(joint.drive.peak_torque_Nm, joint.antagonist.peak_torque_Nm);
+    const SpringPair pair{joint.transmission.spring};
+    const double left = both - pair.preload_torque(joint.transmission.preload_rad, 0.0);
+    if (!(left > 0.0)) {
+      throw ConfigError(robot.name + ": joint " + joint.name +
+                        ": its motors cannot hold preload_rad: together they have " +
+                        std::to_string(both) + " N m, the springs take " +
+                        std::to_string(both - left));
+    }
+    limits[i] = std::min(limits[i], left);
+  }
+  return limits;
+}
+
 }  // namespace
 
 JointLimits::JointLimits(const Robot& robot)
@@ -31,7 +55,9 @@ JointLimits::JointLimits(const Robot& robot)
       velocity_(collect(robot, &JointConfig::velocity_limit)),
       torque_rate_(collect(robot, &JointConfig::torque_rate_limit_Nm_per_s)),
       power_W_(robot.power_limit_W),
-      limiter_(collect(robot, &JointConfig::torque_limit_Nm), kShareOfGateStep * torque_rate_) {}
+      limiter_(torque_limits(robot), kShareOfGateStep * torque_rate_) {
+  for (const JointConfig& joint : robot.joints) rigid_.push_back(joint.rigid());
+}
 
 void JointLimits::set_previous(const VectorJ& tau) noexcept {
   limiter_.set_previous(tau.cwiseMax(-torque_limit()).cwiseMin(torque_limit()));
@@ -71,7 +97,8 @@ bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* ta
     const double depth = std::max(below, above);
     if (!(depth > 0.0)) continue;
     const double outwards = below > above ? -1.0 : 1.0;
-    const double speed = std::max(outwards * state.v[i], 0.0);
+    const double v = rigid_[static_cast<std::size_t>(i)] ? state.v[i] : state.theta_dot[i];
+    const double speed = std::max(outwards * v, 0.0);
     const double K = kWallTorqueAtLimit * torque_limit()[i] / wall_[i];
     // The damper comes in with the depth: at the edge of the wall nothing jumps.
     const double D =

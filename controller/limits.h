@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "common/types.h"
 #include "controller/arm_state.h"
@@ -20,7 +21,7 @@ namespace limber::controller {
 ///   position  from 0.10 rad (0.10 m) inside the limits on, at most a tenth of the range, a spring
 ///   that
 ///             reaches half the joint's torque at the limit, and a damper against motion into the
-///             wall;
+///             wall (of the motor where it has a spring before it);
 ///   torque    clamped to the limit;
 ///   rate      the step from the torque sent before is clamped to 80 % of what the gate lets pass.
 class JointLimits {
@@ -50,6 +51,7 @@ class JointLimits {
 
   VectorJ position_min_;
   VectorJ position_max_;
+  std::vector<bool> rigid_;
   VectorJ wall_;  // width of the soft wall, rad or m
   VectorJ velocity_;
   VectorJ torque_rate_;

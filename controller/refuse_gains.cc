@@ -91,6 +91,8 @@ struct Choice {
 };
 
 constexpr Choice kChoices[] = {
+    {&Message::position, 3, "position must be one of POSITION_*"},
+    {&Message::stiffness_fit, 2, "stiffness_fit must be one of FIT_*"},
     {&Message::orientation, 4, "orientation must be one of ORIENTATION_*"},
     {&Message::frame, 1, "frame must be one of FRAME_*"},
     {&Message::bias, 3, "bias must be one of BIAS_*"},
@@ -121,6 +123,9 @@ constexpr Setting kSettings[] = {
      "velocity_acceleration must be within 0..1e5 rad/s^2"},
     {&Message::acceleration_filter_s, 1.0, "acceleration_filter_s must be within 0..1 s"},
     {&Message::observer_gain_per_s, 500.0, "observer_gain must be within 0..500 1/s"},
+    {&Message::friction_observer_gain_per_s, 500.0,
+     "friction_observer_gain must be within 0..500 1/s"},
+    {&Message::torque_gain, 20.0, "torque_gain must be within 0..20"},
     {&Message::tank_J, 100.0, "tank_J must be within 0..100 J"},
     {&Message::passivity_damping_Ns_per_m, 1e3, "passivity_damping must be within 0..1e3 N s/m"},
     {&Message::spring_force_N, 1e4, "spring_force_N must be within 0..1e4 N"},

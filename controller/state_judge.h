@@ -1,16 +1,28 @@
 // Is this JOINT_STATE new, complete and fit to be acted on?
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
 
+#include "common/joints.h"
+#include "robots/robot.h"
+
 namespace limber::controller {
+
+/// What a joint has, as its flags tell.
+using JointFlags = std::array<std::int32_t, kMaxJoints>;
+inline constexpr std::int32_t kEquipment = int{joint_state_t::JOINT_LINK_ENCODER} |
+                                           int{joint_state_t::JOINT_TORQUE_SENSOR} |
+                                           int{joint_state_t::JOINT_TWO_MOTORS};
+/// As robot.yaml has it. For set-up.
+JointFlags equipment_of(const Robot& robot);
 
 struct StateJudgement {
   bool repeated = false;     ///< its number was seen before in this session: nothing may advance
   bool first = false;        ///< the first state of all
   bool new_session = false;  ///< another run of the driver
-  bool usable = false;       ///< this arm's joint count, all numbers finite, sensible period
+  bool usable = false;       ///< this arm's joints, all numbers finite, sensible period
   bool fresh = false;        ///< usable, and every joint has answered in this cycle
   std::int64_t missed = 0;   ///< states between the last one and this one
   bool silent = false;  ///< states, or a joint's answers, are missing for longer than is bridged
@@ -19,8 +31,11 @@ struct StateJudgement {
 /// Follows the stream by session and number. All members may be called in the cycle.
 class StateJudge {
  public:
-  /// So many cycles in a row without a state, or without a joint's answer, are bridged.
-  StateJudge(int joints, int bridged_cycles) : joints_(joints), bridged_(bridged_cycles) {}
+  /// `flags`: the JOINT_* bits of kEquipment that each joint has; a state that says otherwise is of
+  /// another arm. So many cycles in a row without a state, or without a joint's answer, are
+  /// bridged.
+  StateJudge(int joints, int bridged_cycles, const JointFlags& flags = {})
+      : joints_(joints), bridged_(bridged_cycles), flags_(flags) {}
   StateJudgement judge(const joint_state_t& state) noexcept;
 
   std::int64_t received() const noexcept { return received_; }
@@ -29,6 +44,7 @@ class StateJudge {
  private:
   int joints_;
   int bridged_;
+  JointFlags flags_;
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
   std::int64_t received_ = 0;

@@ -18,7 +18,8 @@ class Supervisor {
   static constexpr std::int64_t kDrivesOnWithin_ns = 2'000'000'000;
   static constexpr std::int64_t kSoftStop_ns = 300'000'000;
 
-  Supervisor(int joints, int bridged_cycles) : judge_(joints, bridged_cycles) {}
+  Supervisor(int joints, int bridged_cycles, const JointFlags& flags = {})
+      : judge_(joints, bridged_cycles, flags) {}
 
   /// Each state once, before anything else. Nothing happens if the state is a repetition.
   StateJudgement on_state(const joint_state_t& state) noexcept;

@@ -27,13 +27,26 @@ int checked_law(const std::string& name, unsigned sensors) {
   return index;
 }
 
+void check_joint_springs(const Robot& robot, const MatrixJ& K_q, const JointSprings& springs) {
+  for (int i = 0; i < robot.size(); ++i) {
+    const double most = JointSprings::kHighestShare * springs.at_rest()[i];
+    if (K_q(i, i) <= most) continue;
+    throw ConfigError(robot.name + ": gains: K_q of joint " +
+                      robot.joints[static_cast<std::size_t>(i)].name + " is " +
+                      std::to_string(K_q(i, i)) + " N m/rad; its spring allows at most " +
+                      std::to_string(most) + ", " + "0.9 times its own stiffness");
+  }
+}
+
 }  // namespace
 
 TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
     : model_(robot),
       state_(model_.size()),
+      seen_(model_.size()),
       terms_(model_.size()),
       sensors_(sensors_of(robot.robot)),
+      side_(robot.robot, &model_),
       hold_(checked_law("joint_pd", sensors_)),
       selected_(checked_law(law, sensors_)),
       running_(hold_),
@@ -49,6 +62,7 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       rows_(gains_.now().K_x),
       blend_(model_.size()),
       limits_(robot.robot),
+      preload_(robot.robot),
       null_limit_(kNullShare * limits_.torque_limit()),
       none_(VectorJ::Zero(model_.size())),
       law_(model_.size()),
@@ -57,6 +71,7 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
       tau_coriolis_(none_),
       tau_friction_(none_),
       gravity_(none_) {
+  check_joint_springs(robot.robot, gains_.now().K_q, side_.springs());
   for (const LawEntry& entry : laws()) {
     const bool possible = refuse_law(entry, sensors_) == nullptr;
     laws_.push_back(possible ? entry.make(robot) : nullptr);
@@ -68,7 +83,8 @@ bool TorqueCycle::due(Term term) const noexcept {
 }
 
 LawInputs TorqueCycle::inputs(double dt_s) const noexcept {
-  return {.state = state_,
+  return {.state = seen_,
+          .measured = state_,
           .terms = terms_,
           .goal = goal_,
           .gains = active_,
@@ -82,13 +98,26 @@ void TorqueCycle::measure(const joint_state_t& message) noexcept {
   ++cycles_;
   read_arm_state(message, &state_);
   estimation_.estimate_velocity(&state_);
-  const TermsDue terms{.jacobian = due(Term::kJacobian) || cycles_ == 1,
-                       .inertia = due(Term::kInertia) || cycles_ == 1,
-                       .coriolis = due(Term::kCoriolis) || cycles_ == 1};
-  model_.evaluate(state_.q, state_.v, terms, &terms_);
+  look(resting_ ? StaticForm::kGravity : entry().statics);
   estimation_.observe(message, state_, terms_, TaskRows(active_.K_x), &model_);
   if (!terms_.g.allFinite()) return;
   gravity_ = terms_.g.cwiseMax(-limits_.torque_limit()).cwiseMin(limits_.torque_limit());
+}
+
+Position TorqueCycle::position() const noexcept {
+  const Position asked = holding_ ? Position::kOfArm : gains_.now().settings.position;
+  return side_.resolve(asked, entry().statics);
+}
+
+// At rest nothing but the weight is known to act.
+void TorqueCycle::look(StaticForm form) noexcept {
+  const bool gravity = resting_ || with_bias(entry().composition, active_.settings.bias).gravity;
+  side_.look(position(), state_, {form, gravity, goal_, active_, resting_ ? none_ : tau_null_},
+             &seen_);
+  const TermsDue terms{.jacobian = due(Term::kJacobian) || cycles_ == 1,
+                       .inertia = due(Term::kInertia) || cycles_ == 1,
+                       .coriolis = due(Term::kCoriolis) || cycles_ == 1};
+  model_.evaluate(seen_.q, seen_.v, terms, &terms_);
 }
 
 void TorqueCycle::run(int law, bool from_here) noexcept {
@@ -96,11 +125,13 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
   running_ = law;
   switched_ = true;
   if (from_here) {
-    goals_.reset(terms_.X_BT, state_.q);
-    inverse_kinematics_.reset(state_.q);
+    resting_ = true;
+    look(StaticForm::kGravity);
+    goals_.reset(terms_.X_BT, seen_.q);
+    inverse_kinematics_.reset(seen_.q);
   } else if (!joints && follows_joints(entry().follows)) {
     // A goal at the tip, followed by the joints from now on.
-    inverse_kinematics_.reset(state_.q);
+    inverse_kinematics_.reset(seen_.q);
     inverse_kinematics_.approach(TaskRows(active_.K_x), goals_.goal().X_BD);
   } else if (joints && !follows_joints(entry().follows) && !goals_.at_tip()) {
     goals_.follow_tip(goal_.X_BD);
@@ -108,6 +139,10 @@ void TorqueCycle::run(int law, bool from_here) noexcept {
   forget_energy();
   match_goals();
   refresh_gains();
+  resting_ = false;
+  look(entry().statics);
+  tau_null_ = entry().composition.null_space ? null_space() : none_;
+  if (position() == Position::kStatic) look(entry().statics);
   // A law starts with terms of now, due or not.
   LawInputs now = inputs(0.0);
   now.stiffness_due = now.damping_due = true;
@@ -140,6 +175,14 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
   if (const char* reason = refuse_law(wanted, sensors_)) return reason;
   read_gains(message, &asked_);
   if (const char* reason = refuse_settings(asked_.settings, sensors_)) return reason;
+  if (const char* reason = refuse_position(asked_.settings.position, wanted, sensors_))
+    return reason;
+  const bool at_link = side_.resolve(asked_.settings.position, wanted.statics) != Position::kMotor;
+  if (wanted.statics == StaticForm::kJointSpring && at_link) {
+    if (const char* reason = side_.springs().refuse(asked_.K_q, side_.springs().at_rest())) {
+      return reason;
+    }
+  }
   if (wanted.refuse != nullptr) {
     if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
   }
@@ -177,6 +220,9 @@ void TorqueCycle::match_goals() noexcept {
 void TorqueCycle::refresh_gains() noexcept {
   active_ = gains_.now();
   if (holding_) active_.settings = LawSettings{};
+  if (entry().statics == StaticForm::kJointSpring && position() != Position::kMotor) {
+    active_.K_q = side_.springs().within(active_.K_q, side_.K_J());
+  }
   turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
   if (active_.settings.tank_J > 0.0) draw_from_tank();
 }
@@ -220,7 +266,7 @@ VectorJ TorqueCycle::friction() const noexcept {
   if (!follows_joints(entry().follows)) {
     v_d = damped_inverse(terms_.J).inverse * goal_.V_BD;
   }
-  return estimation_.friction(v_d, state_);
+  return estimation_.friction(v_d, seen_);
 }
 
 bool TorqueCycle::control(double dt_s) noexcept {
@@ -233,11 +279,15 @@ bool TorqueCycle::control(double dt_s) noexcept {
   blend_.advance(dt_s, state_.v);
   match_goals();
   refresh_gains();
+  resting_ = false;
+  if (position() == Position::kStatic) look(entry().statics);  // with the goal of now
+  if (side_.solved() != solved_) switched_ = true;
+  solved_ = side_.solved();
 
   const Composition add = with_bias(entry().composition, active_.settings.bias);
   law_.reset();
   laws_[static_cast<std::size_t>(running_)]->compute(inputs(dt_s), &law_);
-  dissipated_W_ = std::max(-law_.tau_damping.dot(state_.v), 0.0);
+  dissipated_W_ = std::max(-law_.tau_damping.dot(seen_.v), 0.0);
   keep_passive();
   tau_null_ = add.null_space ? null_space() : none_;
   tau_gravity_ = add.gravity ? terms_.g : none_;
@@ -252,6 +302,10 @@ bool TorqueCycle::control(double dt_s) noexcept {
   blend_.add_to(&tau);
   if (blend_.active() || gains_.moving()) limits_active_ |= controller_status_t::LIMIT_RAMP;
   limits_active_ |= limits_.clamp(state_.period_s, &tau);
+  if (!solved_) limits_active_ |= controller_status_t::LIMIT_ERROR;
+  limits_active_ |=
+      preload_.control(state_, law_.sets_preload ? law_.preload : preload_.preload_at_rest(),
+                       side_.deflection(), tau, dt_s);
   return true;
 }
 
@@ -259,12 +313,17 @@ VectorJ TorqueCycle::null_space() noexcept {
   const TaskRows rows(active_.K_x);
   if (!(rows == rows_)) switched_ = true;  // the task lost or gained a direction
   rows_ = rows;
-  return null_space_torque(state_, terms_, goal_, active_, rows, null_limit_);
+  return null_space_torque(seen_, terms_, goal_, active_, rows, null_limit_);
 }
 
-void TorqueCycle::rest(const VectorJ& target, bool in_steps) noexcept {
+void TorqueCycle::rest(const VectorJ& target, bool in_steps, bool wound) noexcept {
   VectorJ tau = target;
-  goals_.reset(terms_.X_BT, state_.q);
+  if (!resting_) {
+    resting_ = true;
+    look(StaticForm::kGravity);
+  }
+  preload_.rest(state_, side_.deflection(), wound, in_steps);
+  goals_.reset(terms_.X_BT, seen_.q);
   goal_ = goals_.goal();
   law_.reset();
   forget_energy();

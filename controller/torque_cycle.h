@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "controller/arm_side.h"
 #include "controller/arm_state.h"
 #include "controller/arm_terms.h"
 #include "controller/energy_tank.h"
@@ -19,6 +20,7 @@
 #include "controller/limits.h"
 #include "controller/nullspace.h"
 #include "controller/observers/passivity_observer.h"
+#include "controller/preload_servo.h"
 #include "controller/torque_blend.h"
 
 namespace limber::controller {
@@ -37,8 +39,9 @@ class TorqueCycle {
 
   /// Runs joint_pd, or the selected law, around the place where the arm is. The torque
   /// continues from the last one and fades over to the law (TorqueBlend).
-  /// Holding knows no choices of the user's, only K_q and its damping ratio: it carries the weight
-  /// and damps, whatever was tried before.
+  /// Holding knows no choices of the user's, only K_q (as far as the springs of elastic joints
+  /// allow) and its damping ratio: it carries the weight and damps, whatever was tried before, and
+  /// brings the preload of two motors to robot.yaml's.
   void hold() noexcept {
     holding_ = true;
     run(hold_, true);
@@ -58,10 +61,12 @@ class TorqueCycle {
   /// torque is then the one before.
   bool control(double dt_s) noexcept;
   /// One cycle without a law, the goal where the arm is: straight to `target`, or in steps the gate
-  /// lets pass if `in_steps`.
-  void rest(const VectorJ& target, bool in_steps) noexcept;
+  /// lets pass if `in_steps`. The preload of two motors is kept if `wound`, else let go.
+  void rest(const VectorJ& target, bool in_steps, bool wound) noexcept;
 
   const VectorJ& torque() const noexcept { return limits_.previous(); }
+  /// Of two motors the sum of their torques, n; zero for joints with one.
+  const VectorJ& preload_torque() const noexcept { return preload_.torque(); }
   const VectorJ& tau_applied() const noexcept { return state_.tau_applied; }
   /// The model's gravity torque, within the joints' limits; the last finite one.
   const VectorJ& gravity() const noexcept { return gravity_; }
@@ -72,6 +77,8 @@ class TorqueCycle {
  private:
   void run(int law, bool from_here) noexcept;
   bool due(Term term) const noexcept;
+  Position position() const noexcept;
+  void look(StaticForm form) noexcept;
   void match_goals() noexcept;
   void refresh_gains() noexcept;
   void draw_from_tank() noexcept;
@@ -85,14 +92,18 @@ class TorqueCycle {
   const LawEntry& entry() const noexcept { return laws()[static_cast<std::size_t>(running_)]; }
 
   ArmModel model_;
-  ArmState state_;
+  ArmState state_;  // as measured
+  ArmState seen_;   // on the side the law looks at; the terms are evaluated there
   ArmTerms terms_;
   unsigned sensors_;
+  ArmSide side_;
   std::vector<std::unique_ptr<Law>> laws_;  // by registry index; empty where the arm lacks a sensor
   int hold_;
   int selected_;
   int running_;
   bool holding_ = true;
+  bool resting_ = true;
+  bool solved_ = true;
 
   GoalGenerator goals_;
   Goal goal_;  // of this cycle: tip and joints matched
@@ -110,6 +121,7 @@ class TorqueCycle {
   TorqueBlend blend_;
   bool switched_ = false;
   JointLimits limits_;
+  PreloadServo preload_;
   VectorJ null_limit_;
   VectorJ none_;
 

@@ -41,7 +41,7 @@ VectorJ LawRun::torque() {
   if (entry_.refuse != nullptr) {
     if (const char* reason = entry_.refuse(gains, arm.model.size())) throw ConfigError(reason);
   }
-  const LawInputs inputs{state, terms, goal, gains, estimates};
+  const LawInputs inputs{state, state, terms, goal, gains, estimates};
   const auto law = entry_.make(arm.robot);
   law->start(inputs);
   output.reset();

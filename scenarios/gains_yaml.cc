@@ -120,6 +120,8 @@ void read_switch(const YamlMap& yaml, const std::string& key, std::int8_t* value
 void read_choices(const YamlMap& yaml, compliance_gains_t* gains) {
   const std::vector<std::string> designs = {"double_diagonalisation", "factorisation", "given",
                                             "without_inertia"};
+  read_choice(yaml, "position", {"of_arm", "link", "motor", "static"}, &gains->position);
+  read_choice(yaml, "stiffness_fit", {"diagonal", "compliance", "joint"}, &gains->stiffness_fit);
   read_choice(yaml, "orientation", {"log", "quat", "log_simple", "quat_simple", "rpy"},
               &gains->orientation);
   read_choice(yaml, "frame", {"base", "goal"}, &gains->frame);
@@ -147,6 +149,9 @@ void read_settings(const YamlMap& yaml, compliance_gains_t* gains) {
              &gains->velocity_acceleration_rad_per_s2);
   read_float(yaml, "acceleration_filter_s", {0.0, 1.0}, &gains->acceleration_filter_s);
   read_float(yaml, "observer_gain_per_s", {0.0, 500.0}, &gains->observer_gain_per_s);
+  read_float(yaml, "friction_observer_gain_per_s", {0.0, 500.0},
+             &gains->friction_observer_gain_per_s);
+  read_float(yaml, "torque_gain", {0.0, 20.0}, &gains->torque_gain);
   read_float(yaml, "tank_J", {0.0, 100.0}, &gains->tank_J);
   read_float(yaml, "passivity_damping_Ns_per_m", {0.0, 1e3}, &gains->passivity_damping_Ns_per_m);
   read_float(yaml, "spring_force_N", {0.0, 1e4}, &gains->spring_force_N);

@@ -39,7 +39,7 @@ class AccelFeedback : public Law {
 LawEntry accel_feedback_law() {
   return {.name = "accel_feedback",
           .summary = "Cartesian impedance with an inertia added by acceleration feedback",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kPoseGoal,
           .composition = {.gravity = true, .coriolis = true, .null_space = true},
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {

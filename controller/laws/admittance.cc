@@ -86,7 +86,7 @@ const char* refuse(const Gains& gains, int joints) {
 LawEntry admittance_law() {
   return {.name = "admittance",
           .summary = "virtual mass, spring and damper around a stiff position loop",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kPoseGoal,
           .composition = {.gravity = true, .coriolis = true},
           .refuse = refuse,

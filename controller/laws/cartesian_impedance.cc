@@ -79,9 +79,10 @@ class CartesianImpedance : public Law {
 LawEntry cartesian_impedance_law() {
   return {.name = "cartesian_impedance",
           .summary = "spring and damper between the tip and its goal",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kPoseGoal,
           .composition = {.gravity = true, .coriolis = true, .null_space = true},
+          .statics = StaticForm::kTipSpring,
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<CartesianImpedance>();
           }};

@@ -37,7 +37,7 @@ class ComputedTorque : public Law {
 LawEntry computed_torque_law() {
   return {.name = "computed_torque",
           .summary = "inverse dynamics: joints as oscillators of their own",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true, .coriolis = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {

@@ -57,7 +57,7 @@ class Eq4 : public Law {
 LawEntry eq4_law() {
   return {.name = "eq4",
           .summary = "joint stiffness for a Cartesian one around a loaded posture",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoalAndWrench,
           .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {

@@ -47,7 +47,7 @@ class Eq7 : public Law {
 LawEntry eq7_law() {
   return {.name = "eq7",
           .summary = "Cartesian impedance as joint gains times the finite joint error",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoalAndWrench,
           .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {

@@ -15,9 +15,10 @@ class GravityCompensation : public Law {
 LawEntry gravity_compensation_law() {
   return {.name = "gravity_compensation",
           .summary = "floats: carries its weight and nothing else",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kNothing,
           .composition = {.gravity = true},
+          .statics = StaticForm::kGravity,
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<GravityCompensation>();
           }};

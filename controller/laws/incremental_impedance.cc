@@ -62,7 +62,7 @@ class IncrementalImpedance : public Law {
 LawEntry incremental_impedance_law() {
   return {.name = "incremental_impedance",
           .summary = "Cartesian impedance at a slow rate, its tangent in between",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kPoseGoal,
           .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {

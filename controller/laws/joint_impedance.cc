@@ -58,7 +58,7 @@ const char* refuse(const Gains& gains, int /*joints*/) {
 LawEntry joint_impedance_law() {
   return {.name = "joint_impedance",
           .summary = "joint inertia, damping and stiffness, contact torque measured",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true, .coriolis = true},
           .refuse = refuse,

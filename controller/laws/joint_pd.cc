@@ -36,9 +36,10 @@ class JointPd : public Law {
 LawEntry joint_pd_law() {
   return {.name = "joint_pd",
           .summary = "spring and damper at every joint",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true},
+          .statics = StaticForm::kJointSpring,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<JointPd>(robot.robot.size());
           }};

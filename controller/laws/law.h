@@ -26,6 +26,10 @@ inline constexpr unsigned kLinkEncoder = 1;   ///< q, v: on a rigid joint the mo
 inline constexpr unsigned kMotorEncoder = 2;  ///< theta, theta_dot
 inline constexpr unsigned kTorqueSensor = 4;  ///< tau_measured from a sensor, not from the current
 inline constexpr unsigned kTipForceSensor = 8;
+inline constexpr unsigned kElasticJoints = 16;  ///< a spring between motor and link everywhere
+inline constexpr unsigned kTwoMotors = 32;      ///< that pull against each other, everywhere
+inline constexpr unsigned kDeflection = 64;  ///< of the springs, by link encoder or torque sensor
+inline constexpr unsigned kSprings = 128;    ///< some joint is not rigid
 }  // namespace sensors
 
 /// Laws for the joints take goals at the tip too: the cycle solves the inverse kinematics.
@@ -39,6 +43,16 @@ enum class Follows : std::uint8_t {
 inline bool follows_joints(Follows follows) noexcept {
   return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench;
 }
+
+/// What a law asks of the link at rest, as a function of the link's position: what it needs to be
+/// evaluated at q_bar (Position::kStatic, see qbar.h). Only laws whose torque at rest is the
+/// gradient of a potential have one.
+enum class StaticForm : std::uint8_t {
+  kNone,
+  kGravity,      ///< carries the weight
+  kJointSpring,  ///< and -K_q (q - q_d)
+  kTipSpring,    ///< and J^T (F_ff - h A^T K_x e)
+};
 
 /// What the observers say of this instant; zero where LawSettings::contact names no source.
 struct Estimates {
@@ -66,7 +80,8 @@ inline Composition with_bias(Composition composition, Bias bias) noexcept {
 
 /// Everything a law may look at, of the same instant. The references outlive the call only.
 struct LawInputs {
-  const ArmState& state;
+  const ArmState& state;     ///< q, v on the side the law looks at, see Position
+  const ArmState& measured;  ///< as the joints report it
   const ArmTerms& terms;
   const Goal& goal;    ///< after interpolation
   const Gains& gains;  ///< after ramps, in base axes
@@ -81,7 +96,9 @@ struct LawOutput {
   explicit LawOutput(int joints)
       : tau_stiffness(VectorJ::Zero(joints)),
         tau_damping(VectorJ::Zero(joints)),
-        tau_feedforward(VectorJ::Zero(joints)) {}
+        tau_feedforward(VectorJ::Zero(joints)),
+        preload(VectorJ::Zero(joints)),
+        sigma(VectorJ::Zero(joints)) {}
 
   void reset() noexcept {
     tau_stiffness.setZero();
@@ -89,6 +106,10 @@ struct LawOutput {
     tau_feedforward.setZero();
     F.setZero();
     F_other.setZero();
+    preload.setZero();
+    sigma.setZero();
+    sets_preload = false;
+    fit_residual = 0.0;
     spring_energy_J = 0.0;
     limits = 0;
   }
@@ -108,6 +129,10 @@ struct LawOutput {
   VectorJ tau_feedforward;
   Vector6 F = Vector6::Zero();  ///< wrench on the arm at the tip, base axes; zero if it has none
   Vector6 F_other = Vector6::Zero();  ///< what of it is neither spring nor damper
+  bool sets_preload = false;          ///< false: the preload goes to robot.yaml's
+  VectorJ preload;                    ///< of two motors, wanted, rad
+  VectorJ sigma;                      ///< stiffness asked of the springs, N m/rad; zero if none is
+  double fit_residual = 0.0;          ///< share of the wanted tip stiffness that they miss
   double spring_energy_J = 0.0;       ///< potential whose gradient tau_stiffness is, if it is one
   std::int32_t limits = 0;            ///< controller_status_t LIMIT_* bits
 };
@@ -128,6 +153,7 @@ struct LawEntry {
   unsigned needs;       ///< sensors::*
   Follows follows;
   Composition composition;
+  StaticForm statics = StaticForm::kNone;
   /// nullptr, or what in these gains the law cannot work with. May be called in the cycle.
   const char* (*refuse)(const Gains& gains, int joints) = nullptr;
   /// Makes the law for an arm that has what it needs. May throw ConfigError.

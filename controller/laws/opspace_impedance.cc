@@ -75,7 +75,7 @@ const char* refuse(const Gains& gains, int joints) {
 LawEntry opspace_impedance_law() {
   return {.name = "opspace_impedance",
           .summary = "inertia, damping and stiffness at the tip, contact wrench measured",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kPoseGoal,
           .composition = {.gravity = true, .coriolis = true, .null_space = true},
           .refuse = refuse,

@@ -51,9 +51,10 @@ const char* refuse(const Gains& gains, int /*joints*/) {
 LawEntry pd_plus_law() {
   return {.name = "pd_plus",
           .summary = "joint springs and dampers, goal's dynamics fed forward",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true},
+          .statics = StaticForm::kJointSpring,
           .refuse = refuse,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<PdPlus>(robot);

@@ -1,5 +1,6 @@
 #include "controller/laws/registry.h"
 
+#include <algorithm>
 #include <array>
 
 // One line a law. The order is the numbering of controller_status_t.law: append, do not insert.
@@ -41,8 +42,26 @@ int find_law(const std::string& name) noexcept {
 
 unsigned sensors_of(const Robot& robot) noexcept {
   if (robot.size() == 0) return 0U;
-  return sensors::kLinkEncoder | sensors::kMotorEncoder |
-         (robot.has_tip_sensor ? sensors::kTipForceSensor : 0U);
+  unsigned have = sensors::kMotorEncoder | (robot.has_tip_sensor ? sensors::kTipForceSensor : 0U);
+  const auto add = [&](unsigned sensor, auto has) {
+    if (std::all_of(robot.joints.begin(), robot.joints.end(), has)) have |= sensor;
+  };
+  const auto link = [](const JointConfig& joint) {
+    return joint.rigid() || joint.link_encoder.present;
+  };
+  const auto torque = [](const JointConfig& joint) { return joint.torque_sensor.present; };
+  const auto kind = [](TransmissionKind wanted) {
+    return [wanted](const JointConfig& joint) { return joint.transmission.kind == wanted; };
+  };
+  add(sensors::kLinkEncoder, link);
+  add(sensors::kTorqueSensor, torque);
+  add(sensors::kDeflection, [&](const JointConfig& joint) { return link(joint) || torque(joint); });
+  add(sensors::kElasticJoints, kind(TransmissionKind::kElastic));
+  add(sensors::kTwoMotors, kind(TransmissionKind::kAntagonistic));
+  if (!std::all_of(robot.joints.begin(), robot.joints.end(), kind(TransmissionKind::kRigid))) {
+    have |= sensors::kSprings;
+  }
+  return have;
 }
 
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
@@ -51,6 +70,16 @@ const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
   if ((missing & sensors::kMotorEncoder) != 0) return "the law needs motor encoders";
   if ((missing & sensors::kTorqueSensor) != 0) return "the law needs joint torque sensors";
   if ((missing & sensors::kTipForceSensor) != 0) return "the law needs a force sensor at the tip";
+  if ((missing & sensors::kElasticJoints) != 0) {
+    return "the law needs an elastic joint (transmission: elastic) everywhere";
+  }
+  if ((missing & sensors::kTwoMotors) != 0) {
+    return "the law needs two motors at every joint (transmission: antagonistic)";
+  }
+  if ((missing & sensors::kDeflection) != 0) {
+    return "the law needs the springs' deflection: a link encoder or a torque sensor at every "
+           "joint";
+  }
   return nullptr;
 }
 
@@ -62,6 +91,18 @@ const char* refuse_settings(const LawSettings& settings, unsigned available) noe
   if (settings.friction == FrictionCompensation::kObserver &&
       (available & sensors::kTorqueSensor) == 0) {
     return "friction: the observer needs joint torque sensors";
+  }
+  return nullptr;
+}
+
+const char* refuse_position(Position position, const LawEntry& law, unsigned available) noexcept {
+  if ((available & sensors::kSprings) == 0) return nullptr;
+  if (position == Position::kLink && (available & sensors::kLinkEncoder) == 0) {
+    return "position: link needs link encoders";
+  }
+  if (position == Position::kStatic && law.statics == StaticForm::kNone) {
+    return "position: the law has no static form (its torque at rest is no spring's at the link); "
+           "choose motor or link";
   }
   return nullptr;
 }

@@ -20,6 +20,9 @@ unsigned sensors_of(const Robot& robot) noexcept;
 /// nullptr if an arm with these sensors can run the law, else why not. May be called in the cycle.
 const char* refuse_law(const LawEntry& law, unsigned available) noexcept;
 
+/// The same for the side of elastic joints it shall look at.
+const char* refuse_position(Position position, const LawEntry& law, unsigned available) noexcept;
+
 /// The same for what the settings ask of the arm, whatever the law.
 const char* refuse_settings(const LawSettings& settings, unsigned available) noexcept;
 

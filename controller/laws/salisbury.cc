@@ -50,7 +50,7 @@ class Salisbury : public Law {
 LawEntry salisbury_law() {
   return {.name = "salisbury",
           .summary = "Cartesian stiffness mapped to the joints, constant joint damping",
-          .needs = sensors::kLinkEncoder,
+          .needs = sensors::kMotorEncoder,
           .follows = Follows::kJointGoal,
           .composition = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {

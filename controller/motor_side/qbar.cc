@@ -15,6 +15,7 @@ QbarSolver::QbarSolver(ArmModel* model, const VectorJ& K_J, const Options& optio
     : model_(model),
       K_J_(K_J),
       options_(options),
+      besides_(VectorJ::Zero(model->size())),
       terms_(model->size()),
       q_(VectorJ::Zero(model->size())),
       l_(q_) {}
@@ -22,13 +23,15 @@ QbarSolver::QbarSolver(ArmModel* model, const VectorJ& K_J, const Options& optio
 VectorJ QbarSolver::law(const VectorJ& q, const TipSpring& spring) noexcept {
   model_->evaluate_statics(q, &terms_);
   const PoseError error = pose_error(terms_.X_BT, spring.X_BD, spring.orientation);
-  const Vector6 F = error.A.transpose() * (spring.K_x * error.e);
-  return terms_.g - terms_.J.transpose() * F;
+  const Vector6 Ke = spring.K_x * error.e;
+  const double scale = spring.limit.apply(0.5 * error.e.dot(Ke)).scale;
+  const Vector6 F = spring.F_ff - scale * (error.A.transpose() * Ke);
+  return fixed_part() + terms_.J.transpose() * F;
 }
 
 VectorJ QbarSolver::law(const VectorJ& q, const JointSpring& spring) noexcept {
   model_->evaluate_statics(q, &terms_);
-  return terms_.g - spring.K_d * (q - spring.q_d);
+  return fixed_part() - spring.K_d * (q - spring.q_d);
 }
 
 bool QbarSolver::solve(const VectorJ& theta, const TipSpring& spring) noexcept {
@@ -75,7 +78,7 @@ bool QbarSolver::fixpoint(const VectorJ& theta, const Spring& spring) noexcept {
 
 template <typename Spring>
 bool QbarSolver::newton(const VectorJ& theta, const Spring& spring) noexcept {
-  for (int i = 0; i < options_.max_iterations; ++i) {
+  for (int i = 0; i < options_.max_newton_steps; ++i) {
     const VectorJ residual = K_J_.cwiseProduct(q_ - theta) + law(q_, spring);
     MatrixJ S = tangent(q_, spring);
     S.diagonal() += K_J_;

@@ -3,14 +3,17 @@
 
 #include "controller/arm_terms.h"
 #include "controller/pose_error.h"
+#include "controller/spring_limit.h"
 
 namespace limber::controller {
 
 /// Static laws of the link: l(q) is the torque it shall see at rest.
-struct TipSpring {  ///< l = g - J^T A^T K_x e
+struct TipSpring {  ///< l = g + J^T (F_ff - h A^T K_x e), h see spring_limit.h
   Pose X_BD;
   Matrix6 K_x;
   Orientation orientation = Orientation::kLog;
+  Vector6 F_ff = Vector6::Zero();
+  SpringLimit limit{Matrix6::Zero(), 0.0, 0.0};  ///< none
 };
 struct JointSpring {  ///< l = g - K_d (q - q_d)
   VectorJ q_d;
@@ -30,13 +33,22 @@ class QbarSolver {
  public:
   struct Options {
     double tolerance = 1e-12;  ///< of q_bar, rad
-    int max_iterations = 100;  ///< of either kind; three or four are usual when warm
-    bool newton = true;        ///< without: give up where the fixpoint does not contract
+    int max_iterations = 100;  ///< three or four are usual when warm
+    int max_newton_steps = 100;
+    bool newton = true;  ///< without: give up where the fixpoint does not contract
   };
 
   /// K_J: joint springs, n, > 0, N m/rad. The model must outlive the solver.
   QbarSolver(ArmModel* model, const VectorJ& K_J, const Options& options);
   QbarSolver(ArmModel* model, const VectorJ& K_J) : QbarSolver(model, K_J, Options()) {}
+
+  /// From now on: other springs, whether l has gravity's part, and a torque besides, which does not
+  /// change with q. n each. May be called in the cycle.
+  void set(const VectorJ& K_J, bool gravity, const VectorJ& besides) noexcept {
+    K_J_ = K_J;
+    gravity_ = gravity;
+    besides_ = besides;
+  }
 
   /// theta: motor position behind the gear, n. True: solved. False: q_bar() is theta and u() is
   /// l(theta), the law without this correction, which is softer; a theta that
@@ -53,6 +65,7 @@ class QbarSolver {
   int iterations() const noexcept { return iterations_; }
 
  private:
+  VectorJ fixed_part() const noexcept { return gravity_ ? VectorJ(terms_.g + besides_) : besides_; }
   VectorJ law(const VectorJ& q, const TipSpring& spring) noexcept;
   VectorJ law(const VectorJ& q, const JointSpring& spring) noexcept;
   template <typename Spring>
@@ -67,6 +80,8 @@ class QbarSolver {
   ArmModel* model_;
   VectorJ K_J_;
   Options options_;
+  bool gravity_ = true;
+  VectorJ besides_;
   ArmTerms terms_;
   VectorJ q_;
   VectorJ l_;

@@ -87,6 +87,37 @@ LoadedRobot seven_joint_arm() {
   return with_drives(chain, Eigen::Vector3d(0, 0, -9.81));
 }
 
+LoadedRobot elastic_arm(bool sensors) {
+  LoadedRobot arm = seven_joint_arm();
+  for (std::size_t i = 0; i < arm.robot.joints.size(); ++i) {
+    JointConfig& joint = arm.robot.joints[i];
+    joint.drive.rotor_inertia_kgm2 = i < 4 ? 0.4 : 0.08;
+    joint.transmission.kind = TransmissionKind::kElastic;
+    joint.transmission.spring.stiffness_Nm_per_rad = i < 4 ? 843.0 : 250.0;
+    joint.transmission.damping_Nms_per_rad = i < 4 ? 0.5 : 0.1;
+    joint.link_encoder.present = joint.torque_sensor.present = sensors;
+  }
+  return arm;
+}
+
+LoadedRobot antagonistic_arm() {
+  LoadedRobot arm = seven_joint_arm();
+  for (JointConfig& joint : arm.robot.joints) {
+    joint.drive.rotor_inertia_kgm2 = 0.02;
+    joint.drive.peak_torque_Nm = 80.0;
+    joint.has_antagonist = true;
+    joint.antagonist = joint.drive;
+    joint.transmission.kind = TransmissionKind::kAntagonistic;
+    joint.transmission.spring.law = SpringLaw::kQuadratic;
+    joint.transmission.spring.k2_Nm_per_rad2 = 400.0;
+    joint.transmission.damping_Nms_per_rad = 0.1;
+    joint.transmission.preload_rad = 0.3;
+    joint.transmission.preload_max_rad = 0.6;
+    joint.link_encoder.present = joint.torque_sensor.present = true;
+  }
+  return arm;
+}
+
 LoadedRobot random_arm(int joints, unsigned seed, bool prismatic) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -27,6 +27,11 @@ inline constexpr double kSliderMass = 2.0;
 /// Seven joints like a human arm's, all axes different, no symmetric inertia.
 LoadedRobot seven_joint_arm();
 
+/// The same with series elastic joints: springs and rotors of about Baxter's size, link encoders
+/// and torque sensors if `sensors`.
+LoadedRobot elastic_arm(bool sensors);
+/// The same with two motors and quadratic springs at every joint, all sensors.
+LoadedRobot antagonistic_arm();
 /// Any arm: revolute and prismatic joints about random axes with fixed and massless segments
 /// between, tilted base, gravity in no particular direction.
 LoadedRobot random_arm(int joints, unsigned seed, bool prismatic);

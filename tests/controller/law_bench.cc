@@ -20,6 +20,7 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
 
 LawInputs LawBench::inputs() const {
   return {.state = state,
+          .measured = state,
           .terms = terms,
           .goal = goal,
           .gains = gains,

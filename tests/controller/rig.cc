@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "controller/state_judge.h"
 #include "scenarios/gains_yaml.h"
 
 namespace limber::testing {
@@ -29,7 +30,15 @@ Rig::Rig(const LoadedRobot& given, const std::string& law, int bridged_cycles)
   state.num_joints = static_cast<std::int8_t>(n);
   state.drive_state = joint_state_t::DRIVE_OFF;
   state.fault_joint = -1;
-  for (int i = 0; i < n; ++i) state.joint_flags[i] = joint_state_t::JOINT_FRESH;
+  const controller::JointFlags flags = controller::equipment_of(robot.robot);
+  for (int i = 0; i < n; ++i) {
+    state.joint_flags[i] = joint_state_t::JOINT_FRESH | flags[static_cast<std::size_t>(i)];
+  }
+  if (std::any_of(robot.robot.joints.begin(), robot.robot.joints.end(),
+                  [](const JointConfig& joint) { return !joint.rigid(); })) {
+    elastic.emplace(robot);
+    elastic->rest_at(plant.q);
+  }
 }
 
 const joint_torque_t& Rig::step() {
@@ -39,15 +48,9 @@ const joint_torque_t& Rig::step() {
   const bool on = state.drive_state == joint_state_t::DRIVE_ON;
   const VectorJ sent =
       on ? VectorJ(Eigen::Map<const Eigen::VectorXd>(answer.tau, n)) : VectorJ::Zero(n);
-  for (int i = 0; i < n; ++i) {
-    state.q[i] = state.theta[i] = plant.q[i];
-    state.v[i] = state.theta_dot[i] = plant.v[i];
-    state.tau_applied[i] = state.tau[i] = sent[i];
-  }
+  read_sensors(sent);
   if (on) {
-    plant.advance(1e-3, [&](const VectorJ&, const VectorJ& v) {
-      return VectorJ(sent - viscous.cwiseProduct(v));
-    });
+    move(sent);
   } else {
     plant.v.setZero();
   }
@@ -57,6 +60,37 @@ const joint_torque_t& Rig::step() {
   limits_ |= controller.status().limits;
   follow_request();
   return answer;
+}
+
+void Rig::read_sensors(const VectorJ& sent) {
+  for (int i = 0; i < state.num_joints; ++i) {
+    const bool spring = elastic && !robot.robot.joints[static_cast<std::size_t>(i)].rigid();
+    state.theta[i] = spring ? elastic->theta[i] : plant.q[i];
+    state.theta_dot[i] = spring ? elastic->theta_dot[i] : plant.v[i];
+    const bool link = !spring || (state.joint_flags[i] & joint_state_t::JOINT_LINK_ENCODER) != 0;
+    state.q[i] = link ? plant.q[i] : state.theta[i];
+    state.v[i] = link ? plant.v[i] : state.theta_dot[i];
+    state.tau_applied[i] = state.tau[i] = sent[i];
+    if (!spring) continue;
+    if ((state.joint_flags[i] & joint_state_t::JOINT_TORQUE_SENSOR) != 0) {
+      state.tau[i] = elastic->joint_torque(i);
+    }
+    state.preload[i] = static_cast<float>(elastic->c[i]);
+    state.preload_dot[i] = static_cast<float>(elastic->c_dot[i]);
+  }
+}
+
+void Rig::move(const VectorJ& sent) {
+  if (!elastic) {
+    plant.advance(1e-3, [&](const VectorJ&, const VectorJ& v) {
+      return VectorJ(sent - viscous.cwiseProduct(v));
+    });
+    return;
+  }
+  elastic->F_ext = plant.F_ext;
+  elastic->advance(1e-3, sent, Eigen::Map<const Eigen::VectorXd>(answer.tau_preload, sent.size()));
+  plant.q = elastic->q;
+  plant.v = elastic->v;
 }
 
 void Rig::follow_request() {

@@ -1,8 +1,11 @@
 // A controller at an arm whose driver is perfect: the loop without bus, drives and clock.
 #pragma once
 
+#include <optional>
+
 #include "controller/arm_controller.h"
 #include "tests/controller/arms.h"
+#include "tests/controller/elastic_plant.h"
 
 namespace limber::testing {
 
@@ -37,12 +40,15 @@ class Rig {
   LoadedRobot robot;
   ArmController controller;
   Plant plant;
+  std::optional<ElasticPlant> elastic;  ///< of an arm with springs; q, v and F_ext are plant's
   VectorJ viscous;  ///< friction of the plant's joints, N m s/rad; none unless set
   joint_state_t state{};
   joint_torque_t answer{};
 
  private:
   void follow_request();
+  void move(const VectorJ& sent);
+  void read_sensors(const VectorJ& sent);
 
   double jump_ = 0.0;
   int limits_ = 0;

@@ -1,0 +1,62 @@
+#include "controller/motor_side/joint_springs.h"
+
+#include <algorithm>
+
+#include "controller/motor_side/spring_law.h"
+
+namespace limber::controller {
+namespace {
+
+// Below it the secant is the tangent.
+constexpr double kNoDeflection_rad = 1e-6;
+
+}  // namespace
+
+JointSprings::JointSprings(const Robot& robot) : at_rest_(robot.size()) {
+  for (const JointConfig& joint : robot.joints) {
+    const TransmissionConfig& transmission = joint.transmission;
+    joints_.push_back({transmission.kind, transmission.spring, transmission.preload_rad});
+    any_ = any_ || !joint.rigid();
+    at_rest_[static_cast<Eigen::Index>(joints_.size()) - 1] =
+        stiffness_of(joints_.back(), 0.0, transmission.preload_rad);
+  }
+}
+
+double JointSprings::stiffness_of(const OneJoint& joint, double d, double preload) noexcept {
+  if (joint.kind == TransmissionKind::kRigid) return kRigid_Nm_per_rad;
+  const bool relaxed = std::abs(d) < kNoDeflection_rad;
+  double K = 0.0;
+  if (joint.kind == TransmissionKind::kElastic) {
+    K = relaxed ? spring_stiffness(joint.spring, d) : spring_torque(joint.spring, d) / d;
+  } else {
+    const SpringPair pair{joint.spring};
+    K = relaxed ? pair.stiffness(preload, d) : pair.torque(preload, d) / d;
+  }
+  return std::max(K, kLeast_Nm_per_rad);
+}
+
+VectorJ JointSprings::stiffness(const VectorJ& d, const VectorJ& preload) const noexcept {
+  VectorJ K(d.size());
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    K[i] = stiffness_of(joints_[static_cast<std::size_t>(i)], d[i], preload[i]);
+  }
+  return K;
+}
+
+const char* JointSprings::refuse(const MatrixJ& K_q, const VectorJ& K_J) const noexcept {
+  for (Eigen::Index i = 0; i < K_J.size(); ++i) {
+    if (!(K_q(i, i) <= kHighestShare * K_J[i])) {
+      return "K_q must be at most 0.9 times the stiffness of each joint's spring: the link cannot "
+             "be made stiffer than its spring (position: motor takes more, in series with it)";
+    }
+  }
+  return nullptr;
+}
+
+MatrixJ JointSprings::within(const MatrixJ& K_q, const VectorJ& K_J) const noexcept {
+  MatrixJ K = K_q;
+  K.diagonal() = K.diagonal().cwiseMin(kHighestShare * K_J);
+  return K;
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,190 @@
+// The cycle at arms with springs in their joints: what the link meets, and that it stays quiet.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/config_error.h"
+#include "tests/controller/rig.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::Rig;
+using Gains = compliance_gains_t;
+using Status = controller_status_t;
+
+// One joint about a vertical axis that carries a rod: motor 0.2, spring 1000, link 0.5 kg m^2.
+LoadedRobot one_joint(bool sensors) {
+  KDL::Chain chain;
+  chain.addSegment(KDL::Segment(
+      KDL::Joint("j", KDL::Joint::RotZ), KDL::Frame(KDL::Vector(0, -0.5, 0)),
+      KDL::RigidBodyInertia(2.0, KDL::Vector::Zero(), KDL::RotationalInertia::Zero())));
+  LoadedRobot robot = limber::testing::with_drives(chain, Eigen::Vector3d(0, -9.81, 0));
+  JointConfig& joint = robot.robot.joints[0];
+  joint.drive.rotor_inertia_kgm2 = 0.2;
+  joint.transmission.kind = TransmissionKind::kElastic;
+  joint.transmission.spring.stiffness_Nm_per_rad = 1000.0;
+  joint.transmission.damping_Nms_per_rad = 2.0;
+  joint.link_encoder.present = joint.torque_sensor.present = sensors;
+  robot.robot.gains.K_q = {500.0};
+  return robot;
+}
+
+double deflection_by(Rig* rig, double force) {
+  const double before = rig->plant.q[0];
+  rig->plant.F_ext[0] = force;
+  rig->run(4.0);
+  rig->plant.F_ext.setZero();
+  return rig->plant.q[0] - before;
+}
+
+struct Side {
+  const char* name;
+  std::int8_t position;
+  double stiffness;  // of the link, N m/rad, at K_q = 500 and K_J = 1000
+};
+
+class OneJoint : public ::testing::TestWithParam<Side> {};
+
+// Near q = 0 the rod hangs; its weight is carried wherever it is, but the motor's side carries it
+// at theta instead of q.
+TEST_P(OneJoint, LinkMeetsTheStiffnessOfItsSide) {
+  Rig rig(one_joint(true), "joint_pd");
+  rig.plant.q[0] = 0.0;
+  rig.elastic->rest_at(rig.plant.q);
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.position = GetParam().position;
+  gains.joint_damping_ratio = 0.3;
+  ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
+  rig.run(2.0);
+  const double force = 8.0;  // 0.5 m below the axis: 4 N m
+  const double angle = deflection_by(&rig, force);
+  const double tau = force * 0.5 * std::cos(rig.plant.q[0]);
+  const double weight = 2.0 * 9.81 * 0.5;
+  // The gradient of the weight that the springs carry, where it is not carried at the link itself.
+  const double alpha = GetParam().position == Gains::POSITION_MOTOR ? weight : 0.0;
+  const double motor = 500.0 - alpha;
+  const double expected = GetParam().position == Gains::POSITION_MOTOR
+                              ? motor * 1000.0 / (motor + 1000.0) + alpha
+                              : GetParam().stiffness;
+  EXPECT_NEAR(tau / angle, expected, 0.005 * expected);
+  EXPECT_NEAR(GetParam().stiffness, expected, 0.03 * expected);
+}
+INSTANTIATE_TEST_SUITE_P(Sides, OneJoint,
+                         ::testing::Values(Side{"link", Gains::POSITION_LINK, 500.0},
+                                           Side{"motor", Gains::POSITION_MOTOR, 1000.0 / 3.0},
+                                           Side{"static", Gains::POSITION_STATIC, 500.0}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(ElasticArm, RefusesWhatItsSpringsCannotGive) {
+  Rig rig(one_joint(false), "joint_pd");
+  rig.run(0.2);
+  Gains gains = rig.gains();
+  gains.position = Gains::POSITION_LINK;
+  EXPECT_NE(rig.controller.on_gains(gains), nullptr) << "no link encoder";
+  gains.position = Gains::POSITION_STATIC;
+  EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+  gains.K_q[0] = 901.0;
+  EXPECT_NE(rig.controller.on_gains(gains), nullptr) << "stiffer than its spring";
+  gains.position = Gains::POSITION_MOTOR;
+  EXPECT_EQ(rig.controller.on_gains(gains), nullptr) << "in series with it";
+  gains = rig.gains();
+  gains.law = "computed_torque";
+  EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+  gains.position = Gains::POSITION_STATIC;
+  EXPECT_NE(rig.controller.on_gains(gains), nullptr) << "no static form";
+  LoadedRobot stiff = one_joint(false);
+  stiff.robot.gains.K_q = {950.0};
+  EXPECT_THROW(Rig(stiff, "joint_pd"), ConfigError);
+}
+
+// HOLD carries the arm where the drives took over: the link stays within what its oscillation and
+// the blend from no torque leave.
+TEST(ElasticArm, HoldCarriesTheWeightExactly) {
+  for (const bool sensors : {false, true}) {
+    Rig rig(limber::testing::elastic_arm(sensors));
+    rig.to_hold();
+    rig.run(4.0);
+    const VectorJ g = rig.plant.model.gravity(rig.plant.q);
+    EXPECT_LT((rig.tau() - g).norm(), 2e-3 * g.norm() + 0.02) << sensors;
+    EXPECT_LT(rig.plant.v.norm(), 1e-3);
+    for (int i = 0; i < 7; ++i) {
+      EXPECT_NEAR(rig.answer.tau_gravity[i], g[i], 0.02 * g.norm() + 0.02);
+    }
+  }
+}
+
+// A push that ends leaves a motion that dies out, on every side, stiff and soft; sampled at 1 kHz,
+// the torque a period late.
+struct Case {
+  const char* law;
+  std::int8_t position;
+  double share;  // of the spring's stiffness
+};
+
+double fastest_tip(Rig* rig, double seconds) {
+  double fastest = 0.0;
+  for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i) {
+    rig->step();
+    const Vector6 V = rig->plant.model.jacobian(rig->plant.q) * rig->plant.v;
+    fastest = std::max(fastest, V.head<3>().norm());
+  }
+  return fastest;
+}
+
+class Quiet : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Quiet, PushDiesOut) {
+  LoadedRobot robot = limber::testing::elastic_arm(false);
+  for (std::size_t i = 0; i < 7; ++i) {
+    robot.robot.gains.K_q[i] = GetParam().share * (i < 4 ? 843.0 : 250.0);
+  }
+  robot.robot.gains.D_null.assign(7, 5.0);  // what rotors of this size need at K_null = 5
+  robot.robot.gains.K_x_translation_N_per_m = 400.0 * 4.0 * GetParam().share;
+  robot.robot.gains.K_x_rotation_Nm_per_rad = 20.0 * 4.0 * GetParam().share;
+  Rig rig(robot, GetParam().law);
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.position = GetParam().position;
+  ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
+  rig.run(1.0);
+  rig.plant.F_ext << 10, -8, 6, 0.5, 0.2, -0.4;
+  rig.run(1.0);
+  rig.plant.F_ext.setZero();
+  const double largest = fastest_tip(&rig, 0.1);
+  rig.run(1.5);
+  EXPECT_LT(fastest_tip(&rig, 0.2), 0.02 * largest);
+  EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
+}
+std::vector<Case> quiet_cases() {
+  std::vector<Case> cases;
+  for (const double share : {0.1, 0.25, 0.5}) {
+    for (const char* law : {"joint_pd", "cartesian_impedance"}) {
+      cases.push_back({law, Gains::POSITION_MOTOR, share});
+      cases.push_back({law, Gains::POSITION_STATIC, share});
+    }
+  }
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Laws, Quiet, ::testing::ValuesIn(quiet_cases()), [](const auto& tested) {
+  return std::string(tested.param.law) + (tested.param.position == 2 ? "_motor_" : "_static_") +
+         std::to_string(static_cast<int>(100 * tested.param.share));
+});
+
+TEST(AntagonisticArm, PreloadGoesToWhereItRests) {
+  Rig rig(limber::testing::antagonistic_arm());
+  rig.to_hold();
+  rig.run(3.0);
+  const VectorJ g = rig.plant.model.gravity(rig.plant.q);
+  EXPECT_LT((rig.tau() - g).norm(), 2e-3 * g.norm() + 0.02);
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_NEAR(rig.elastic->c[i], 0.3, 1e-3);
+    const double x = g[i] / 240.0;
+    EXPECT_NEAR(rig.answer.tau_preload[i], 400.0 * (0.09 + x * x), 0.05);
+  }
+  EXPECT_LT(rig.plant.v.norm(), 1e-3);
+}
+
+}  // namespace
+}  // namespace limber
