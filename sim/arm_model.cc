@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include "common/config_error.h"
 #include "common/joints.h"
 
@@ -35,6 +37,18 @@ MassProperties to_mass_properties(KDL::RigidBodyInertia inertia) {
   return out;
 }
 
+void add_motors(const JointConfig& joint, int i, ArmModel* model) {
+  if (joint.rigid()) {
+    model->bodies[i].rotor_inertia = joint.drive.rotor_inertia_kgm2;
+    model->motors.push_back({i, 1.0, true, 0.0});
+    return;
+  }
+  model->motors.push_back({i, 1.0, false, joint.drive.rotor_inertia_kgm2});
+  if (joint.has_antagonist) {
+    model->motors.push_back({i, -1.0, false, joint.antagonist.rotor_inertia_kgm2});
+  }
+}
+
 }  // namespace
 
 MassProperties with_point_mass(const MassProperties& body, double mass,
@@ -51,6 +65,12 @@ MassProperties with_point_mass(const MassProperties& body, double mass,
   add(body.mass, body.com);
   add(mass, position);
   return out;
+}
+
+double own_inertia(const BodyModel& body) noexcept {
+  if (body.prismatic) return body.mass.mass;
+  return body.axis.dot(body.mass.inertia * body.axis) +
+         body.mass.mass * body.mass.com.cross(body.axis).squaredNorm();
 }
 
 ArmModel build_arm_model(const LoadedRobot& robot) {
@@ -93,9 +113,7 @@ ArmModel build_arm_model(const LoadedRobot& robot) {
         "{}: the chain has {} moving joints and the robot {}; 1 to {}, and as many, are allowed",
         robot.robot.name, model.size(), robot.robot.size(), kMaxJoints));
   }
-  for (int i = 0; i < model.size(); ++i) {
-    model.bodies[i].rotor_inertia = robot.robot.joints[i].drive.rotor_inertia_kgm2;
-  }
+  for (int i = 0; i < model.size(); ++i) add_motors(robot.robot.joints[i], i, &model);
   return model;
 }
 

@@ -31,7 +31,20 @@ struct BodyModel {
   Eigen::Matrix3d R_PJ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_PJ = Eigen::Vector3d::Zero();
   MassProperties mass;
-  double rotor_inertia = 0.0;  ///< reflected (B): adds to the diagonal of M and to nothing else
+  double rotor_inertia = 0.0;  ///< reflected (B): adds to the diagonal of M and to nothing else;
+                               ///< zero where the motor is behind a spring
+};
+
+/// Inertia of the body alone about its joint's axis (its mass on a slider): never more than what
+/// the joint moves.
+double own_inertia(const BodyModel& body) noexcept;
+
+/// One motor.
+struct MotorModel {
+  int joint = 0;
+  double side = 1.0;     ///< -1: the antagonist, which counts the other way than its joint
+  bool rigid = true;     ///< the rotor is part of the link
+  double inertia = 0.0;  ///< B of a motor behind a spring
 };
 
 /// A named frame fixed to a body.
@@ -43,7 +56,8 @@ struct LinkModel {
 };
 
 struct ArmModel {
-  std::vector<BodyModel> bodies;  ///< one a moving joint, base to tip
+  std::vector<BodyModel> bodies;   ///< one a moving joint, base to tip
+  std::vector<MotorModel> motors;  ///< in the order of the joints, one or two each
   std::vector<LinkModel>
       links;  ///< one a segment of the chain, base to tip; the last one is the tip
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< base axes, m/s^2

@@ -19,45 +19,95 @@ void require_inertia(const ArmModel& model) {
   // free; a joint whose own body and rotor have some is fit whatever is behind it.
   for (int i = model.size() - 1; i >= 0; --i) {
     const BodyModel& body = model.bodies[i];
-    const Eigen::Vector3d arm = body.mass.com.cross(body.axis);
-    const double own = body.prismatic ? body.mass.mass
-                                      : body.axis.dot(body.mass.inertia * body.axis) +
-                                            body.mass.mass * arm.squaredNorm();
-    if (own + body.rotor_inertia > kMinInertia) continue;
+    if (own_inertia(body) + body.rotor_inertia > kMinInertia) continue;
     throw ConfigError(
         fmt::format("joint {} moves a link without inertia and has no rotor_inertia_kgm2: its "
                     "acceleration is undefined",
                     i + 1));
   }
+  for (const MotorModel& motor : model.motors) {
+    if (motor.rigid || motor.inertia > kMinInertia) continue;
+    throw ConfigError(
+        fmt::format("a motor of joint {} is behind a spring and has no rotor_inertia_kgm2: its "
+                    "acceleration is undefined",
+                    motor.joint + 1));
+  }
 }
 
 }  // namespace
 
-ArmPlant::ArmPlant(const ArmModel& model)
-    : arm_(model), q_(VectorJ::Zero(model.size())), v_(VectorJ::Zero(model.size())) {}
+ArmPlant::ArmPlant(const ArmModel& model) : arm_(model) {
+  x_.q = x_.v = VectorJ::Zero(model.size());
+  x_.theta = x_.theta_dot = VectorM::Zero(static_cast<int>(model.motors.size()));
+}
 
 void ArmPlant::set_state(const VectorJ& q, const VectorJ& v) noexcept {
-  q_ = q;
-  v_ = v;
-  arm_.set_state(q_, v_);
+  ArmState x = x_;
+  x.q = q;
+  x.v = v;
+  for (std::size_t k = 0; k < motors().size(); ++k) {
+    const MotorModel& motor = motors()[k];
+    x.theta[k] = motor.side * q[motor.joint];
+    x.theta_dot[k] = motor.side * v[motor.joint];
+  }
+  set_state(x);
+}
+
+void ArmPlant::set_state(const ArmState& x) noexcept {
+  x_ = x;
+  carry_rotors();
+  arm_.set_state(x_.q, x_.v);
   state_was_set();
 }
 
+void ArmPlant::carry_rotors() noexcept {
+  for (std::size_t k = 0; k < motors().size(); ++k) {
+    if (!motors()[k].rigid) continue;
+    x_.theta[k] = x_.q[motors()[k].joint];
+    x_.theta_dot[k] = x_.v[motors()[k].joint];
+  }
+}
+
 void ArmPlant::step(ForceModel* forces, double h, std::int64_t t_ns) noexcept {
-  const VectorJ q = q_;
-  const VectorJ v = v_;
+  const ArmState before = x_;
   const Work work = work_;
-  forces->begin_step(&arm_, q_, v_, h, t_ns);
-  integrate(forces, h);
-  if (q_.allFinite() && v_.allFinite() && v_.cwiseAbs().maxCoeff() <= kMaxSpeed) return;
+  const int count = parts(*forces, h);
+  for (int i = 0; i < count; ++i) {
+    forces->begin_step(&arm_, x_, h / count, t_ns);
+    integrate(forces, h / count);
+  }
+  if (x_.finite_and_slower_than(kMaxSpeed)) return;
   ++diverged_;
   work_ = work;
-  set_state(q, VectorJ::Zero(v.size()));
+  x_ = before;
+  x_.v.setZero();
+  x_.theta_dot.setZero();
+  set_state(ArmState(x_));
+}
+
+double ArmPlant::kinetic_energy() const noexcept {
+  double energy = arm_.kinetic_energy();
+  for (std::size_t k = 0; k < motors().size(); ++k) {
+    energy += 0.5 * motors()[k].inertia * x_.theta_dot[k] * x_.theta_dot[k];
+  }
+  return energy;
+}
+
+VectorJ ArmPlant::gravity_torque() noexcept {
+  VectorJ weight;
+  arm_.clear_wrenches();
+  for (int i = 0; i < arm_.size(); ++i) {
+    const MassProperties& mass = arm_.model().bodies[i].mass;
+    arm_.add_wrench(i, arm_.body_position(i) + arm_.body_rotation(i) * mass.com,
+                    mass.mass * arm_.model().gravity, Eigen::Vector3d::Zero());
+  }
+  arm_.wrench_torque(&weight);
+  return -weight;
 }
 
 void ArmPlant::set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept {
   arm_.set_tip_load(mass, p_TL);
-  arm_.set_state(q_, v_);
+  arm_.set_state(x_.q, x_.v);
   payload_was_set();
 }
 

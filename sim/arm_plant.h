@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "scenarios/scenario.h"
+#include "sim/arm_state.h"
 #include "sim/articulated_body.h"
 #include "sim/force_model.h"
 
@@ -25,7 +26,9 @@ class ArmPlant {
   ArmPlant(const ArmPlant&) = delete;
   ArmPlant& operator=(const ArmPlant&) = delete;
 
+  /// Motors behind springs go where the springs are relaxed.
   void set_state(const VectorJ& q, const VectorJ& v) noexcept;
+  void set_state(const ArmState& x) noexcept;
   /// Advances by h seconds from simulated time t. A step that would end in a state that is not
   /// finite or faster than kMaxSpeed is not taken: the arm stops where it was, and diverged()
   /// counts.
@@ -37,10 +40,15 @@ class ArmPlant {
   /// Joint torque of wall and pushes at the present state and simulated time t.
   VectorJ external_torque(const Environment& environment, std::int64_t t_ns) noexcept;
 
-  const VectorJ& q() const noexcept { return q_; }
-  const VectorJ& v() const noexcept { return v_; }
-  /// Kinematics and energies at (q, v).
+  const ArmState& state() const noexcept { return x_; }
+  const VectorJ& q() const noexcept { return x_.q; }
+  const VectorJ& v() const noexcept { return x_.v; }
+  /// Kinematics and energies of the links (with rotors that are part of them).
   const ArticulatedBody& arm() const noexcept { return arm_; }
+  /// Of links and all rotors, J.
+  double kinetic_energy() const noexcept;
+  /// Torque that holds the links against gravity.
+  VectorJ gravity_torque() noexcept;
   /// Since construction.
   const Work& work() const noexcept { return work_; }
   std::int64_t diverged() const noexcept { return diverged_; }
@@ -50,16 +58,20 @@ class ArmPlant {
  protected:
   explicit ArmPlant(const ArmModel& model);
 
-  /// Moves q_, v_, work_ and arm_ on by one step; forces->begin_step() has been done and arm_ is at
-  /// (q_, v_).
+  /// Moves x_, work_ and arm_ on by one step; forces->begin_step() has been done and arm_ is at x_.
   virtual void integrate(ForceModel* forces, double h) noexcept = 0;
-  /// Takes over q_ and v_ after they have been set from outside.
+  /// Into how many equal parts a step is to be cut to be stable.
+  virtual int parts(const ForceModel&, double) const noexcept { return 1; }
+  /// Takes over x_ after it has been set from outside.
   virtual void state_was_set() noexcept {}
-  /// Takes over the tip body's new mass properties; arm_ is at (q_, v_).
+  /// Takes over the tip body's new mass properties; arm_ is at x_.
   virtual void payload_was_set() noexcept {}
+  /// Motors of rigid joints go where their links are.
+  void carry_rotors() noexcept;
+  const std::vector<MotorModel>& motors() const noexcept { return arm_.model().motors; }
 
   ArticulatedBody arm_;
-  VectorJ q_, v_;
+  ArmState x_;
   Work work_;
 
  private:
@@ -67,7 +79,7 @@ class ArmPlant {
 };
 
 /// Throws ConfigError when the integrator cannot take this arm (massless links in ODE; a joint that
-/// moves no mass at all).
+/// moves no mass at all; a motor behind a spring without rotor inertia).
 std::unique_ptr<ArmPlant> make_arm_plant(Integrator integrator, const ArmModel& model);
 
 }  // namespace limber::sim

@@ -70,7 +70,8 @@ OdePlant::OdePlant(const ArmModel& model)
     : ArmPlant(model),
       tau_(VectorJ::Zero(model.size())),
       qdd_(VectorJ::Zero(model.size())),
-      no_extra_inertia_(VectorJ::Zero(model.size())) {
+      extra_inertia_(VectorJ::Zero(model.size())),
+      theta_ddot_(VectorM::Zero(x_.theta.size())) {
   require_mass(model);
   start_ode_once();
   world_ = dWorldCreate();
@@ -112,7 +113,7 @@ void OdePlant::assemble() noexcept {
       dJointSetHingeAxis(joint_[i], z.x(), z.y(), z.z());
     }
   }
-  arm_.set_state(q_, v_);
+  arm_.set_state(x_.q, x_.v);
   place_bodies(arm_);
 }
 
@@ -137,32 +138,34 @@ void OdePlant::state_was_set() noexcept { place_bodies(arm_); }
 void OdePlant::payload_was_set() noexcept { assemble(); }
 
 void OdePlant::integrate(ForceModel* forces, double h) noexcept {
-  Work power;
-  forces->evaluate(&arm_, q_, v_, &tau_, &power);
-  const double contact_power = power.external - forces->stop_torque().dot(v_);
-  arm_.accelerations(tau_, no_extra_inertia_, &qdd_);
+  const double contact_power = forces->apply_environment(&arm_);
+  forces->couple(x_, h, &tau_, &extra_inertia_);
+  arm_.accelerations(tau_, extra_inertia_, &qdd_);
   if (!tau_.allFinite() || !qdd_.allFinite()) {
-    v_.setConstant(
+    x_.v.setConstant(
         std::numeric_limits<double>::quiet_NaN());  // ODE would abort; step() will not take this
     return;
   }
   apply(tau_);
   dWorldStep(world_, h);
   read_joints();
+  forces->motor_accelerations(qdd_, &theta_ddot_);
+  x_.theta_dot += h * theta_ddot_;
+  x_.theta += h * x_.theta_dot;
+  carry_rotors();
   // Forces of the step act along the motion of the step, which is at its end velocity.
-  arm_.set_state(q_, v_);
-  for (int i = 0; i < arm_.size(); ++i) {
-    work_.friction += h * forces->friction_torque()[i] * v_[i];
-    work_.external += h * forces->stop_torque()[i] * v_[i];
-    work_.motor += h * (tau_[i] - forces->friction_torque()[i] - forces->stop_torque()[i]) * v_[i];
-  }
-  work_.external += 0.5 * h * (contact_power + forces->apply_environment(&arm_));
+  arm_.set_state(x_.q, x_.v);
+  const Work power = forces->held_power(x_);
+  work_.motor += h * power.motor;
+  work_.friction += h * power.friction;
+  work_.external +=
+      h * power.external + 0.5 * h * (contact_power + forces->apply_environment(&arm_));
 }
 
 void OdePlant::apply(const VectorJ& tau) noexcept {
   for (int i = 0; i < arm_.size(); ++i) {
     const BodyModel& body = arm_.model().bodies[i];
-    const double torque = tau[i] - body.rotor_inertia * qdd_[i];
+    const double torque = tau[i] - (body.rotor_inertia + extra_inertia_[i]) * qdd_[i];
     if (body.prismatic) {
       dJointAddSliderForce(joint_[i], torque);
     } else {
@@ -180,13 +183,13 @@ void OdePlant::read_joints() noexcept {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (int i = 0; i < arm_.size(); ++i) {
     if (arm_.model().bodies[i].prismatic) {
-      q_[i] = dJointGetSliderPosition(joint_[i]);
-      v_[i] = slider_rate(body_[i], i > 0 ? body_[i - 1] : nullptr, joint_[i]);
+      x_.q[i] = dJointGetSliderPosition(joint_[i]);
+      x_.v[i] = slider_rate(body_[i], i > 0 ? body_[i - 1] : nullptr, joint_[i]);
     } else {
       // ODE's angle lies in +-pi; the turn nearest to the last angle is meant.
       const double angle = dJointGetHingeAngle(joint_[i]);
-      q_[i] = angle + kTurn * std::round((q_[i] - angle) / kTurn);
-      v_[i] = dJointGetHingeAngleRate(joint_[i]);
+      x_.q[i] = angle + kTurn * std::round((x_.q[i] - angle) / kTurn);
+      x_.v[i] = dJointGetHingeAngleRate(joint_[i]);
     }
   }
 }

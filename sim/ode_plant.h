@@ -11,7 +11,8 @@ namespace limber::sim {
 
 /// First order in the step. Rotor inertia has no place in ODE's bodies; each joint gets tau - B qdd
 /// instead of tau, with qdd from the articulated-body algorithm under the very same forces, so that
-/// the links feel M + B.
+/// the links feel M + B. Motors behind springs move beside ODE, one implicit step each
+/// (sim/joints/coupling.h), and come in the same way: tau - B' qdd, B' what the link feels of them.
 class OdePlant final : public ArmPlant {
  public:
   /// ODE wants every body to have mass and a positive definite inertia: throws ConfigError where a
@@ -25,7 +26,7 @@ class OdePlant final : public ArmPlant {
   void payload_was_set() noexcept override;
 
   void create(int i);
-  /// Bodies to the zero posture, masses and joint anchors as the model says, then back to (q_, v_).
+  /// Bodies to the zero posture, masses and joint anchors as the model says, then back to x_.
   void assemble() noexcept;
   void place_bodies(const ArticulatedBody& arm) noexcept;
   void apply(const VectorJ& tau) noexcept;
@@ -35,7 +36,8 @@ class OdePlant final : public ArmPlant {
   dJointGroupID joints_;
   std::array<dBodyID, kMaxJoints> body_{};
   std::array<dJointID, kMaxJoints> joint_{};
-  VectorJ tau_, qdd_, no_extra_inertia_;
+  VectorJ tau_, qdd_, extra_inertia_;
+  VectorM theta_ddot_;
 };
 
 }  // namespace limber::sim

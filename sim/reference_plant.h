@@ -1,12 +1,16 @@
-// Reduced coordinates: articulated-body algorithm and the classical Runge-Kutta method of order 4.
+// Reduced coordinates: articulated-body algorithm and the classical Runge-Kutta method of order 4
+// over links and motors together.
 #pragma once
+
+#include <array>
 
 #include "sim/arm_plant.h"
 
 namespace limber::sim {
 
-/// Forces held over the step (friction, end stops) make the whole first order; without them it is
-/// fourth order.
+/// Forces held over the step (friction, end stops, actuators that are not ideal) make the whole
+/// first order; without them it is fourth order. Joint springs and dampers cut the step into parts
+/// that leave a factor of four to the method's stability border.
 class ReferencePlant final : public ArmPlant {
  public:
   explicit ReferencePlant(const ArmModel& model);
@@ -14,13 +18,17 @@ class ReferencePlant final : public ArmPlant {
  private:
   struct Slope {
     VectorJ v, qdd;
+    VectorM theta_dot, theta_ddot;
     Work power;
   };
   void integrate(ForceModel* forces, double h) noexcept override;
-  void slope_at(const VectorJ& q, const VectorJ& v, ForceModel* forces, Slope* slope) noexcept;
+  int parts(const ForceModel& forces, double h) const noexcept override;
+  void slope_at(const ArmState& x, ForceModel* forces, Slope* slope) noexcept;
+  ArmState moved(const Slope& slope, double h) const noexcept;
 
-  VectorJ tau_;
+  ArmTorque tau_;
   VectorJ no_extra_inertia_;
+  std::array<double, kMaxMotors> link_inertia_{};  // least that a motor's spring may move
   Slope k1_, k2_, k3_, k4_;
 };
 

@@ -12,7 +12,8 @@
 #include "sim/arm_plant.h"
 #include "sim/force_model.h"
 #include "sim/inbox.h"
-#include "sim/nodes/motor_node.h"
+#include "sim/motor_nodes.h"
+#include "sim/start_state.h"
 #include "sim/tick_count.h"
 #include "sim/tip_sensor.h"
 #include "sim/truth.h"
@@ -29,6 +30,11 @@ constexpr std::int64_t kLongest_ns = 366LL * 86400 * 1'000'000'000;
 template <typename... Args>
 [[noreturn]] void refuse(const Robot& robot, fmt::format_string<Args...> text, Args&&... args) {
   throw ConfigError(robot.name + ": " + fmt::format(text, std::forward<Args>(args)...));
+}
+
+void check_bus(const Robot& robot, const JointConfig& joint, int bus) {
+  if (bus >= 0 && bus < static_cast<int>(robot.buses.size())) return;
+  refuse(robot, "joint {} is on bus number {}, which does not exist", joint.name, bus);
 }
 
 void check(const Robot& robot, const std::vector<CanBus*>& buses, const SimulatorOptions& options) {
@@ -49,11 +55,18 @@ void check(const Robot& robot, const std::vector<CanBus*>& buses, const Simulato
   if (robot.has_tip_sensor && !(robot.tip_sensor.bus < static_cast<int>(buses.size())))
     refuse(robot, "the tip sensor is on bus number {}, which does not exist", robot.tip_sensor.bus);
   for (const JointConfig& joint : robot.joints) {
-    if (joint.drive.bus < 0 || joint.drive.bus >= static_cast<int>(buses.size())) {
-      refuse(robot, "joint {} is on bus number {}, which does not exist", joint.name,
-             joint.drive.bus);
-    }
+    check_bus(robot, joint, joint.drive.bus);
+    if (joint.has_antagonist) check_bus(robot, joint, joint.antagonist.bus);
   }
+}
+
+void check_reality(const Robot& robot, const Robot& reality) {
+  bool same = robot.size() == reality.size() && robot.has_tip_sensor == reality.has_tip_sensor;
+  for (int i = 0; same && i < robot.size(); ++i) {
+    same = robot.joints[i].has_antagonist == reality.joints[i].has_antagonist;
+  }
+  if (!same)
+    refuse(robot, "its reality has other joints, motors or tip sensor; the same are needed");
 }
 
 VectorJ start_position(const Robot& robot, const std::vector<double>& start_q) {
@@ -70,6 +83,10 @@ VectorJ start_position(const Robot& robot, const std::vector<double>& start_q) {
     }
   }
   return q;
+}
+
+const LoadedRobot& real(const LoadedRobot& robot, const SimulatorOptions& options) {
+  return options.reality != nullptr ? *options.reality : robot;
 }
 
 }  // namespace
@@ -91,14 +108,12 @@ struct Simulator::Impl {
   void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
   void inject(const sim::NodeFault& fault) noexcept;
   void update_tip_sensor(double h, std::int64_t t_ns) noexcept;
-  sim::JointReading reading(int joint) const noexcept;
   std::int64_t sim_time(std::int64_t steps) const noexcept;
   std::int64_t arm_time_now() const noexcept;
 
   std::unique_ptr<sim::ArmPlant> plant;
   sim::ForceModel forces;
-  std::vector<std::unique_ptr<sim::MotorNode>> nodes;
-  std::vector<int> node_bus;
+  sim::MotorNodes nodes;
   std::optional<sim::TipSensor> tip_sensor;
   std::vector<sim::Inbox> inboxes;
   sim::TickCount ticks;
@@ -124,36 +139,25 @@ struct Simulator::Impl {
 
 Simulator::Impl::Impl(const LoadedRobot& robot, const std::vector<CanBus*>& buses,
                       const SimulatorOptions& options)
-    : forces(robot.robot, options.friction),
+    : forces(real(robot, options).robot, robot.robot, options.friction),
+      nodes(robot.robot, real(robot, options).robot),
       ticks(static_cast<int>(buses.size())),
       lockstep(options.lockstep),
       stand(options.stand) {
   const double period_s = 1.0 / robot.robot.rate_hz;
   period_ns = std::llround(1e9 * period_s);
-  // The tolerance keeps 0.001 / 0.00025 from becoming 5 steps by rounding.
-  steps_per_period = std::max(1LL, std::llround(std::ceil(period_s / options.step_s - 1e-6)));
+  steps_per_period = nodes.steps_per_period(robot.robot.rate_hz, options.step_s);
   step_s = period_s / static_cast<double>(steps_per_period);
 
-  plant = sim::make_arm_plant(options.integrator, sim::build_arm_model(robot));
-  plant->set_state(start_position(robot.robot, options.start_q), VectorJ::Zero(robot.robot.size()));
+  const LoadedRobot& arm = real(robot, options);
+  plant = sim::make_arm_plant(options.integrator, sim::build_arm_model(arm));
+  sim::start_at(arm.robot, start_position(arm.robot, options.start_q), stand, plant.get());
   for (CanBus* bus : buses) inboxes.emplace_back(bus);
-  for (const JointConfig& joint : robot.robot.joints) {
-    node_bus.push_back(joint.drive.bus);
-    nodes.push_back(sim::make_motor_node(joint, robot.robot.buses[joint.drive.bus].fd));
-  }
-  if (robot.robot.has_tip_sensor) {
-    tip_sensor.emplace(robot.robot.tip_sensor, plant->arm());
+  if (arm.robot.has_tip_sensor) {
+    tip_sensor.emplace(arm.robot.tip_sensor, plant->arm());
     update_tip_sensor(step_s, 0);
   }
-  for (int i = 0; stand && i < robot.robot.size(); ++i) {
-    forces.stands[i] = sim::Stand(robot.robot.joints[i], plant->q()[i]);
-  }
-}
-
-sim::JointReading Simulator::Impl::reading(int joint) const noexcept {
-  const double q = plant->q()[joint];
-  const double v = plant->v()[joint];
-  return {q, v, forces.drives[joint].torque(q, v)};
+  if (stand) sim::set_stands(arm.robot, plant->state(), &forces);
 }
 
 std::int64_t Simulator::Impl::sim_time(std::int64_t after_steps) const noexcept {
@@ -181,12 +185,7 @@ bool Simulator::Impl::poll() noexcept {
 }
 
 void Simulator::Impl::on_frame(int bus, const CanFrame& frame) noexcept {
-  CanFrame reply;
-  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
-    if (node_bus[i] == bus && nodes[i]->receive(frame, reading(i), sim_time(steps), &reply)) {
-      inboxes[bus].bus()->send(reply);
-    }
-  }
+  nodes.receive(bus, frame, forces, plant->state(), sim_time(steps), inboxes[bus].bus());
   if (!tip_sensor || tip_sensor->bus != bus) return;
   const std::span<const CanFrame> answer = tip_sensor->node.receive(frame);
   if (!answer.empty()) inboxes[bus].bus()->send(answer);
@@ -213,7 +212,7 @@ bool Simulator::Impl::on_tick(int bus, std::int64_t number) noexcept {
 }
 
 void Simulator::Impl::advance_step() noexcept {
-  for (std::size_t i = 0; i < nodes.size(); ++i) forces.drives[i] = nodes[i]->law();
+  nodes.command(&forces);
   const std::int64_t now = sim_time(steps);
   const std::int64_t next = sim_time(steps + 1);
   if (stand) update_stand(now);
@@ -221,7 +220,7 @@ void Simulator::Impl::advance_step() noexcept {
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant->step(&forces, step_s, now + (next - now) / 2);
   ++steps;
-  for (const auto& node : nodes) node->update(next);
+  nodes.update(forces, plant->state(), step_s, next, inboxes);
   if (tip_sensor) update_tip_sensor(step_s, next);
 }
 
@@ -230,10 +229,8 @@ void Simulator::Impl::update_tip_sensor(double h, std::int64_t t_ns) noexcept {
 }
 
 void Simulator::Impl::update_stand(std::int64_t now_ns) noexcept {
-  const bool enabled =
-      std::all_of(nodes.begin(), nodes.end(), [](const auto& node) { return node->enabled(); });
-  const double left = stand_fade.left(now_ns, enabled);
-  for (std::size_t i = 0; i < nodes.size(); ++i) forces.stands[i].set_left(left);
+  const double left = stand_fade.left(now_ns, nodes.all_enabled());
+  forces.set_stands_left(left);
   stand = left > 0.0;
 }
 
@@ -254,7 +251,7 @@ void Simulator::Impl::clear_world() noexcept {
   forces.environment.wall = sim::Wall();
   forces.environment.pushes.clear();
   set_payload(0.0, Eigen::Vector3d::Zero());
-  for (const auto& node : nodes) node->clear_faults();
+  nodes.clear_faults();
   if (tip_sensor) tip_sensor->node.clear_faults();
 }
 
@@ -297,13 +294,14 @@ void Simulator::Impl::inject(const sim::NodeFault& fault) noexcept {
   if (fault.joint == scenario_event_t::NODE_TIP_SENSOR) {
     tip_sensor->node.silence(until);
   } else {
-    nodes[fault.joint]->inject(fault.fault, reading(fault.joint), until);
+    nodes.inject(fault.joint, fault.fault, forces, plant->state(), until);
   }
 }
 
 Simulator::Simulator(const LoadedRobot& robot, std::vector<CanBus*> buses,
                      const SimulatorOptions& options) {
   check(robot.robot, buses, options);
+  if (options.reality != nullptr) check_reality(robot.robot, options.reality->robot);
   impl_ = std::make_unique<Impl>(robot, buses, options);
 }
 

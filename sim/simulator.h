@@ -17,12 +17,16 @@ namespace limber {
 
 struct SimulatorOptions {
   Integrator integrator = Integrator::kOde;
-  /// Longest integration step, s; shortened until a whole number of steps makes a control period.
+  /// Longest integration step, s; shortened until a whole number of steps makes a control period
+  /// and each drive's loop period.
   double step_s = 250e-6;
   bool friction = true;
   std::vector<double> start_q;  ///< empty: home
   bool stand = false;           ///< carried at the start pose until the drives hold the arm
   bool lockstep = true;         ///< false: TICKs are ignored, time passes by advance_to() alone
+  /// The arm, its motors and sensors as they are, where that is not what robot.yaml says of them;
+  /// null: as it says. The drives' firmware believes robot.yaml in any case.
+  const LoadedRobot* reality = nullptr;
 };
 
 /// What a scenario asks of the simulated world. Lock step is the caller's business.
@@ -39,9 +43,10 @@ inline SimulatorOptions simulator_options(const Scenario& scenario) {
 /// After construction every member is free of allocation, locks, logs and exceptions.
 class Simulator {
  public:
-  /// `buses` in the order of robot.buses; the robot need not outlive the simulator, the buses do.
+  /// `buses` in the order of robot.buses; robot and reality need not outlive the simulator, the
+  /// buses do.
   /// Throws ConfigError: no drives, a start outside the joint limits, links the integrator cannot
-  /// take.
+  /// take, a reality with other joints or motors.
   Simulator(const LoadedRobot& robot, std::vector<CanBus*> buses, const SimulatorOptions& options);
   ~Simulator();
 

@@ -30,8 +30,9 @@ class StandFade {
   bool leaving_ = false;
 };
 
-/// One joint of the arm in the stand: F = left * (k (q - q_start) + d v), k such that the joint's
-/// torque limit moves it by 2 mrad (2 mm on a prismatic joint), d = k * 10 ms.
+/// One joint of the arm in the stand, or one of its motors: F = left * (k (q - q_start) + d v), k
+/// such that the joint's torque limit moves it by 2 mrad (2 mm on a prismatic joint), d = k * 10
+/// ms.
 class Stand {
  public:
   Stand() = default;
@@ -39,6 +40,7 @@ class Stand {
       : q_start_(q_start), stiffness_(joint.torque_limit_Nm / kGive) {}
 
   void set_left(double left) noexcept { left_ = left; }
+  bool holds() const noexcept { return left_ * stiffness_ > 0.0; }
 
   /// As an implicit step wants it: the force opposing positive motion.
   AffineForce step_force(double q, double h) const noexcept {

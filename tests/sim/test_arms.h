@@ -116,6 +116,38 @@ inline LoadedRobot random_arm(int joints, bool sliders, unsigned seed) {
   return robot;
 }
 
+/// One link about +z, 4 kg at 0.25 m along x and `inertia` about the axis, gravity along -y.
+inline LoadedRobot one_joint(double inertia, double rotor_inertia, double gravity) {
+  LoadedRobot robot = arm_on_one_bus();
+  robot.robot.gravity[1] = -gravity;
+  robot.robot.gravity[2] = 0.0;
+  // Given at the segment's end, which is on the axis.
+  add_segment(robot, KDL::Joint("joint1", {}, {0, 0, 1}, KDL::Joint::RotAxis),
+              KDL::Frame::Identity(),
+              KDL::RigidBodyInertia(4.0, {0.25, 0, 0},
+                                    KDL::RotationalInertia(0.1, inertia - 0.25, inertia - 0.25)));
+  robot.robot.joints = {joint_config(0, JointType::kRevolute, rotor_inertia)};
+  return robot;
+}
+
+inline void make_elastic(JointConfig* joint, double stiffness, double damping) {
+  joint->transmission.kind = TransmissionKind::kElastic;
+  joint->transmission.spring.stiffness_Nm_per_rad = stiffness;
+  joint->transmission.damping_Nms_per_rad = damping;
+}
+
+/// A second motor of the same kind, id 0x21 + i, quadratic springs.
+inline void make_antagonistic(JointConfig* joint, double k2, double preload) {
+  joint->transmission.kind = TransmissionKind::kAntagonistic;
+  joint->transmission.spring.law = SpringLaw::kQuadratic;
+  joint->transmission.spring.k2_Nm_per_rad2 = k2;
+  joint->transmission.preload_rad = preload;
+  joint->has_antagonist = true;
+  joint->antagonist = joint->drive;
+  joint->antagonist.command_id += 0x20;
+  joint->antagonist.reply_id += 0x20;
+}
+
 inline VectorJ random_vector(int size, double scale, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-scale, scale);
   VectorJ out(size);
