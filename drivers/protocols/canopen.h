@@ -48,7 +48,12 @@ struct Object {
 // Objects of every node. Communication and mapping records of PDO k = 0, 1, ..
 inline constexpr Object kDeviceType = {{0x1000, 0}, 4};
 inline constexpr Object kErrorRegister = {{0x1001, 0}, 1};
+inline constexpr Object kErrorCount = {{0x1003, 0}, 1};  ///< the errors follow, latest first
 inline constexpr Object kSyncCobId = {{0x1005, 0}, 4};
+/// 0: SYNC has no counter.
+inline constexpr Object kSyncCounterOverflow = {{0x1019, 0}, 1};
+/// What a communication error does: 0 to pre-operational, 1 nothing, 2 to stopped.
+inline constexpr Object kErrorBehaviour = {{0x1029, 1}, 1};
 inline constexpr Object kHeartbeatPeriod_ms = {{0x1017, 0}, 2};
 /// node << 16 | time-out in ms.
 inline constexpr Object kConsumerHeartbeat = {{0x1016, 1}, 4};
@@ -58,6 +63,8 @@ inline constexpr std::uint16_t kTpdoCommunication = 0x1800;
 inline constexpr std::uint16_t kTpdoMapping = 0x1A00;
 constexpr Object pdo_cob_id(std::uint16_t record) noexcept { return {{record, 1}, 4}; }
 constexpr Object pdo_type(std::uint16_t record) noexcept { return {{record, 2}, 1}; }
+/// In 100 us; TPDO on change only.
+constexpr Object pdo_inhibit_time(std::uint16_t record) noexcept { return {{record, 3}, 2}; }
 /// Of an RPDO: reception time-out; 0: none.
 constexpr Object pdo_event_timer_ms(std::uint16_t record) noexcept { return {{record, 5}, 2}; }
 constexpr Object pdo_mapped_count(std::uint16_t mapping) noexcept { return {{mapping, 0}, 1}; }
@@ -113,6 +120,7 @@ inline constexpr std::uint8_t kErrorCurrent = 1U << 1U;
 inline constexpr std::uint8_t kErrorCommunication = 1U << 4U;
 
 inline constexpr std::uint16_t kOverCurrent = 0x2310;
+inline constexpr std::uint16_t kCommunicationError = 0x8100;
 inline constexpr std::uint16_t kHeartbeatLost = 0x8130;
 inline constexpr std::uint16_t kPdoTooShort = 0x8210;
 inline constexpr std::uint16_t kSyncLength = 0x8240;

@@ -234,6 +234,10 @@ const char* text_of(SdoAbort code) noexcept {
       return "no such subindex";
     case SdoAbort::kValueRange:
       return "value out of range";
+    case SdoAbort::kTooHigh:
+      return "value too high";
+    case SdoAbort::kTooLow:
+      return "value too low";
     case SdoAbort::kCannotStore:
       return "value cannot be stored";
     case SdoAbort::kWrongState:

@@ -24,6 +24,8 @@ enum class SdoAbort : std::uint32_t {
   kLength = 0x06070010,
   kNoSuchSub = 0x06090011,
   kValueRange = 0x06090030,
+  kTooHigh = 0x06090031,
+  kTooLow = 0x06090032,
   kCannotStore = 0x08000020,
   kWrongState = 0x08000022,
 };
