@@ -5,11 +5,12 @@ namespace limber {
 void ConfigureDialogue::start() noexcept {
   failed_ = false;
   advanced_ = false;
-  go_to(family_->starts_with_disable() ? 0 : 1);
+  go_to(0);
 }
 
 CanFrame ConfigureDialogue::next_frame() noexcept {
-  if (done() || waited_ > 0) return family_->state_request();
+  if (done() || (waited_ > 0 && !repeat_)) return family_->state_request();
+  repeat_ = false;
   return step_ == 0 ? family_->disable() : family_->ask(question());
 }
 
@@ -21,6 +22,7 @@ bool ConfigureDialogue::receive(const CanFrame& frame) noexcept {
   if (answer == Answer::kNone) return false;
   failure_.answer = answer;
   failure_.found = found;
+  repeat_ = answer == Answer::kNotYet;
   if (answer == Answer::kRight) advance();
   if (answer == Answer::kWrong || answer == Answer::kRefused) failed_ = true;
   return true;
@@ -34,12 +36,13 @@ void ConfigureDialogue::close_cycle() noexcept {
   const bool over = advanced_ || done() || failed_;
   advanced_ = false;
   if (over) return;
-  if (step_ > 0 && !family_->question(question()).answered) {
-    go_to(step_ + 1);
-  } else if (++waited_ >= family_->patience_cycles()) {
-    waited_ = 0;
-    if (++attempts_ >= kAttempts) failed_ = true;
-  }
+  const bool disabling = step_ == 0;
+  if (!disabling && !family_->question(question()).answered) return go_to(step_ + 1);
+  if (++waited_ < (disabling ? 1 : family_->patience_cycles())) return;
+  waited_ = 0;
+  if (++attempts_ < kAttempts) return;
+  if (disabling && !family_->disable_is_answered()) return go_to(1);
+  failed_ = true;
 }
 
 void ConfigureDialogue::advance() noexcept {
@@ -51,6 +54,7 @@ void ConfigureDialogue::go_to(int step) noexcept {
   step_ = step;
   attempts_ = 0;
   waited_ = 0;
+  repeat_ = false;
   failure_ = {};
   if (step_ == 0 || done()) return;
   const StartupQuestion asked = family_->question(question());

@@ -4,8 +4,7 @@
 //   disable -> the family's questions, one after the other -> done
 //
 // It starts with disable because a motor may still be enabled by a process that died; the enabled
-// state of a stranger is never taken over. (A family whose drives must first be made to listen has
-// that among its questions.) One frame a cycle. Allowed inside the cycle: everything
+// state of a stranger is never taken over. One frame a cycle. Allowed inside the cycle: everything
 // but the constructor.
 #pragma once
 
@@ -51,6 +50,7 @@ class ConfigureDialogue {
   int step_ = 0;  ///< 0: disabling, i: question i - 1
   int attempts_ = 0;
   int waited_ = 0;         ///< cycles since the last attempt
+  bool repeat_ = false;    ///< answered, but not yet rightly
   bool advanced_ = false;  ///< in this cycle
   bool failed_ = false;
   StartupFailure failure_;  ///< as it would be now

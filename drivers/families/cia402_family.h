@@ -35,7 +35,7 @@ class Cia402Family final : public DriveFamily {
   bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
   double angle_resolution() const noexcept override { return rad_per_count_; }
 
-  bool starts_with_disable() const noexcept override { return false; }
+  bool disable_is_answered() const noexcept override { return false; }
   int patience_cycles() const noexcept override { return startup_.patience_cycles(); }
   int questions() const noexcept override { return startup_.questions(); }
   StartupQuestion question(int index) const noexcept override { return startup_.question(index); }

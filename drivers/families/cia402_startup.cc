@@ -22,6 +22,8 @@ constexpr std::uint32_t kTorqueMode = 1U << (cia402::kCyclicSynchronousTorque - 
 constexpr std::uint32_t kPowerBits = 0x07;  // of the statusword: none of them, no torque
 constexpr std::uint32_t kSynchronous = 1;
 constexpr double kMostPermille = 32767.0;
+constexpr std::uint32_t kFaultPowerOff = 0;  // 605Eh
+constexpr std::uint32_t kFaultBrakes = 2;    // by the quick stop's ramp
 
 std::uint32_t whole(double value) noexcept {
   return static_cast<std::uint32_t>(std::llround(value));
@@ -46,11 +48,6 @@ CyclePeriod cycle_period(double period_s) noexcept {
     if (std::abs(exact - count) <= 1e-6 * count) break;
   }
   return finest;
-}
-
-cia402::Reaction reaction_of(NodeWatchdogReaction reaction) noexcept {
-  return reaction == NodeWatchdogReaction::kOff ? cia402::Reaction::kDisableVoltage
-                                                : cia402::Reaction::kQuickStop;
 }
 
 }  // namespace
@@ -95,8 +92,9 @@ void Cia402Startup::plan_settings(const JointConfig& joint, double period_s) {
   write_and_compare(canopen::pdo_event_timer_ms(canopen::kRpdoCommunication),
                     std::max(1U, whole(1000.0 * joint.drive.watchdog_s)));
   write_and_compare(cia402::kConnectionLostOption,
-                    static_cast<std::uint32_t>(reaction_of(joint.drive.watchdog_reaction)),
-                    Number::kSigned);
+                    static_cast<std::uint32_t>(cia402::Reaction::kFault), Number::kSigned);
+  const bool damps = joint.drive.watchdog_reaction == NodeWatchdogReaction::kDamp;
+  write_and_compare(cia402::kFaultOption, damps ? kFaultBrakes : kFaultPowerOff, Number::kSigned);
   const CyclePeriod period = cycle_period(period_s);
   write_and_compare(cia402::kCyclePeriod, period.count);
   write_and_compare(cia402::kCyclePeriodExponent,

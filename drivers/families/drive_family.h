@@ -115,8 +115,9 @@ class DriveFamily {
 
   // --- the start-up dialogue, in this order ---------------------------------------------------
 
-  /// True if it begins with disable(), answered with a state; else the questions see to that.
-  virtual bool starts_with_disable() const noexcept { return true; }
+  /// It begins with disable(). False if a drive that was not started yet does not answer that: it
+  /// is then tried, and the questions see to it.
+  virtual bool disable_is_answered() const noexcept { return true; }
   /// Cycles that an answer may take before the question is repeated.
   virtual int patience_cycles() const noexcept { return 1; }
   virtual int questions() const noexcept = 0;
