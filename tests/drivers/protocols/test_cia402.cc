@@ -1,0 +1,194 @@
+// CiA 402 against its tables: statuswords, controlwords, every state with every command, and the
+// two PDOs byte by byte (node 3, rated torque 28 N m where nothing else is said).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "drivers/protocols/cia402.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/frame_text.h"
+
+namespace limber::cia402 {
+namespace {
+
+using limber::testing::parse;
+using limber::testing::text;
+
+/// One letter a state: not ready, (switch on) disabled, ready, switched on, enabled, quick stop,
+/// fault reaction, fault.
+constexpr char kLetters[] = "NDRSEQXF";
+char letter(State state) { return kLetters[static_cast<int>(state)]; }
+
+// --- words ---
+
+TEST(Cia402Words, Statuswords) {
+  const std::map<std::uint16_t, char> words = {
+      {0x0000, 'N'}, {0x0250, 'D'}, {0x0270, 'D'}, {0x0231, 'R'}, {0x0233, 'S'}, {0x1637, 'E'},
+      {0x0237, 'E'}, {0x0217, 'Q'}, {0x021F, 'X'}, {0x023F, 'X'}, {0x0218, 'F'}, {0x0238, 'F'},
+  };
+  for (const auto& [word, state] : words) EXPECT_EQ(letter(state_of(word)), state) << word;
+}
+
+TEST(Cia402Words, EveryStateIsReadBackFromItsStatusword) {
+  for (int i = 0; i < kStates; ++i) {
+    const auto state = static_cast<State>(i);
+    for (const std::uint16_t others : {0x0000, 0x0290, 0x1C00, 0xFF90})
+      EXPECT_EQ(state_of(statusword_of(state) | others), state) << name_of(state);
+  }
+  EXPECT_STREQ(name_of(State::kOperationEnabled), "operation enabled");
+}
+
+TEST(Cia402Words, EveryControlword) {
+  // Bits 7 and 3 to 0, by the profile's table; the others (halt, mode) change nothing.
+  for (unsigned low = 0; low < 16; ++low) {
+    const Command expected = (low & 2U) == 0   ? Command::kDisableVoltage
+                             : (low & 4U) == 0 ? Command::kQuickStop
+                             : (low & 1U) == 0 ? Command::kShutdown
+                             : (low & 8U) == 0 ? Command::kSwitchOn
+                                               : Command::kEnableOperation;
+    for (const unsigned others : {0x0000U, 0x0170U, 0xFF00U}) {
+      const auto word = static_cast<std::uint16_t>(low | others);
+      EXPECT_EQ(command_of(word, 0), expected) << word;
+      EXPECT_EQ(command_of(word, kFaultReset), expected) << word;
+      EXPECT_EQ(command_of(word | kFaultReset, word), Command::kFaultReset) << word;
+      EXPECT_EQ(command_of(word | kFaultReset, kFaultReset), Command::kNone) << word;
+    }
+  }
+}
+
+TEST(Cia402Words, NamesOfControlwords) {
+  EXPECT_EQ(command_of(kShutdown, 0), Command::kShutdown);
+  EXPECT_EQ(command_of(kSwitchOn, 0), Command::kSwitchOn);
+  EXPECT_EQ(command_of(kEnableOperation, 0), Command::kEnableOperation);
+  EXPECT_EQ(command_of(kDisableVoltage, 0), Command::kDisableVoltage);
+  EXPECT_EQ(command_of(kQuickStop, 0), Command::kQuickStop);
+  EXPECT_EQ(command_of(kFaultReset, 0), Command::kFaultReset);
+}
+
+// --- state machine ---
+
+/// Where each state (row order of kLetters) goes.
+std::string goes(Command command, bool enable_after_quick_stop) {
+  std::string to;
+  for (int i = 0; i < kStates; ++i)
+    to += letter(next_state(static_cast<State>(i), command, enable_after_quick_stop));
+  return to;
+}
+
+TEST(Cia402States, EveryCommandInEveryState) {
+  for (const bool after_quick_stop : {false, true}) {
+    // from:                                                         NDRSEQXF
+    EXPECT_EQ(goes(Command::kNone, after_quick_stop), "NDRSEQXF");
+    EXPECT_EQ(goes(Command::kShutdown, after_quick_stop), "NRRRRQXF");
+    EXPECT_EQ(goes(Command::kSwitchOn, after_quick_stop), "NDSSSQXF");
+    EXPECT_EQ(goes(Command::kEnableOperation, after_quick_stop),
+              after_quick_stop ? "NDEEEEXF" : "NDEEEQXF");
+    EXPECT_EQ(goes(Command::kDisableVoltage, after_quick_stop), "NDDDDDXF");
+    EXPECT_EQ(goes(Command::kQuickStop, after_quick_stop), "NDDDQQXF");
+    EXPECT_EQ(goes(Command::kFaultReset, after_quick_stop), "NDRSEQXD");
+  }
+}
+
+TEST(Cia402States, TowardsEnabledArrivesFromEverywhere) {
+  for (int i = 0; i < kStates; ++i) {
+    auto state = static_cast<State>(i);
+    if (state == State::kNotReady || state == State::kFaultReactionActive) continue;  // by itself
+    std::uint16_t last = 0;
+    for (int step = 0; step < 5; ++step) {
+      std::uint16_t word = towards_enabled(state);
+      if (state == State::kFault && step > 0) word = kFaultReset;
+      state = next_state(state, command_of(word, last), false);
+      last = word;
+    }
+    EXPECT_EQ(state, State::kOperationEnabled) << name_of(static_cast<State>(i));
+  }
+}
+
+// --- PDOs ---
+
+TEST(Cia402Pdos, EnableWithTorque) {
+  const std::int16_t torque = to_permille(5.6, 28.0);
+  EXPECT_EQ(torque, 200);
+  EXPECT_EQ(text(encode_command({kEnableOperation, torque}, 0x203, false)), "203#0F00C800");
+  EXPECT_EQ(text(encode_command({kEnableOperation, -200}, 0x203, true)), "203#0F0038FF");
+  DriveCommand command;
+  ASSERT_TRUE(decode_command(parse("203#0F0038FF"), &command));
+  EXPECT_EQ(command.controlword, 0x000F);
+  EXPECT_EQ(command.torque_permille, -200);
+  EXPECT_FALSE(decode_command(parse("203#0F0038"), &command));
+}
+
+TEST(Cia402Pdos, StateWithoutLinkEncoder) {
+  const DriveState state = {0x1637, 81920, -256, -15, 30, 0, 0};
+  const CanFrame frame = encode_state(state, false, 0x183);
+  EXPECT_EQ(text(frame), "183#37160040010000FFFFFFF1FF1E000000");
+  EXPECT_EQ(frame.length, state_bytes(false));
+  DriveState read;
+  ASSERT_TRUE(decode_state(frame, false, &read));
+  EXPECT_EQ(read.statusword, 0x1637);
+  EXPECT_EQ(read.position_counts, 81920);
+  EXPECT_EQ(read.velocity_counts_per_s, -256);
+  EXPECT_EQ(read.torque_permille, -15);
+  EXPECT_EQ(read.current_permille, 30);
+  EXPECT_FALSE(decode_state(frame, true, &read));  // too short for both encoders
+}
+
+TEST(Cia402Pdos, StateWithLinkEncoder) {
+  const CanFrame frame = encode_state({0x0250, 1, 2, 3, 4, -5, -6}, true, 0x183);
+  EXPECT_EQ(text(frame),
+            "183#5002"
+            "01000000"
+            "02000000"
+            "0300"
+            "0400"
+            "FBFFFFFF"
+            "FAFFFFFF"
+            "0000");
+  EXPECT_EQ(frame.length, state_bytes(true));
+  DriveState read;
+  ASSERT_TRUE(decode_state(frame, true, &read));
+  EXPECT_EQ(read.link_position_counts, -5);
+  EXPECT_EQ(read.link_velocity_counts_per_s, -6);
+  CanFrame remote = frame;
+  remote.remote = true;
+  EXPECT_FALSE(decode_state(remote, true, &read));
+}
+
+TEST(Cia402Pdos, ObjectsAddUpToTheFrames) {
+  int bytes = 0;
+  for (const Object& object : command_objects()) bytes += object.bytes;
+  EXPECT_EQ(bytes, kCommandBytes);
+  for (const bool link_encoder : {false, true}) {
+    bytes = 0;
+    for (const Object& object : state_objects(link_encoder)) bytes += object.bytes;
+    EXPECT_EQ(fd_length(bytes), state_bytes(link_encoder));
+  }
+  EXPECT_EQ(state_objects(true)[5].mapping(), 0x60E40120U);
+}
+
+TEST(Cia402Pdos, ThousandthsRoundAndSaturate) {
+  EXPECT_EQ(to_permille(-0.42, 28.0), -15);
+  EXPECT_EQ(to_permille(0.0139, 28.0), 0);  // 0.496 thousandths
+  EXPECT_EQ(to_permille(0.0141, 28.0), 1);
+  EXPECT_EQ(to_permille(1e9, 28.0), 32767);
+  EXPECT_EQ(to_permille(-1e9, 28.0), -32767);
+  EXPECT_EQ(to_permille(std::numeric_limits<double>::quiet_NaN(), 28.0), 0);
+  EXPECT_DOUBLE_EQ(from_permille(-15, 28.0), -0.42);
+  for (int permille = -32767; permille <= 32767; permille += 7)
+    EXPECT_EQ(to_permille(from_permille(static_cast<std::int16_t>(permille), 6.2), 6.2), permille);
+}
+
+TEST(Cia402Pdos, NeverAllocate) {
+  const std::int64_t before = testing::allocations();
+  DriveState state;
+  DriveCommand command;
+  EXPECT_TRUE(decode_state(encode_state({}, true, 0x183), true, &state));
+  EXPECT_TRUE(decode_command(encode_command({}, 0x203, true), &command));
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace limber::cia402
