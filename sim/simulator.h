@@ -29,10 +29,16 @@ struct SimulatorOptions {
   const LoadedRobot* reality = nullptr;
 };
 
-/// What a scenario asks of the simulated world. Lock step is the caller's business.
+/// What a scenario, which must outlive them, asks of the simulated world. Lock step is the caller's
+/// business.
 inline SimulatorOptions simulator_options(const Scenario& scenario) {
-  return {scenario.integrator, scenario.step_s, scenario.friction,
-          scenario.start_q,    scenario.stand,  true};
+  return {scenario.integrator,
+          scenario.step_s,
+          scenario.friction,
+          scenario.start_q,
+          scenario.stand,
+          true,
+          scenario.reality ? &*scenario.reality : nullptr};
 }
 
 /// Lock step: TICK(k) starts the control period [k T, (k+1) T] of arm time. JOINT_STATE(k), taken

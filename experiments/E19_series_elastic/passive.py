@@ -16,7 +16,7 @@ from .soft import CLAMPED, FAST_KGM2, FREE, K_S, START_S, sensed, sprung
 D_S = 0.5  # N m s/rad
 STIFFNESS = (300.0, 5000.0)  # N m/rad, of the two joints that are hit
 PUSH_NM, PUSH_S, RING_S = 3.0, 1.0, 3.0
-HIT_NM, HIT_S = 100.0, 5e-3
+HIT_NM, HIT_S = 50.0, 5e-3
 EVERY = 10  # samples between two that are fitted
 
 

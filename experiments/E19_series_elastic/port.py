@@ -9,8 +9,9 @@ from limber.experiments.check import Check
 from limber.experiments.context import Context
 from limber.experiments.elastic import ElasticArm, one_joint
 from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.ringdown import DELAY_S
 from limber.experiments.testbench import B, M
-from limber.experiments.truth import motion
+from limber.experiments.truth import motion, status
 
 from .soft import FAST_KGM2, FREE, K_S, START_S, sensed, sprung, viscous
 
@@ -62,16 +63,18 @@ def low_pass_bus(context: Context, omega: float) -> tuple[float, float]:
     half_ms = round(np.pi / omega * 1e3)
     omega = np.pi / (half_ms * 1e-3)
     changes = {**sprung(K_S, 0.0, friction=viscous(D_MOTOR)), "urdf": "held.urdf"}
-    gains = bench.spring_damper(float(B * omega**2 - K_S), 0.0, position="motor")
+    K = float(B * omega**2 - K_S)
+    gains = bench.spring_damper(K, K * DELAY_S, position="motor")  # gives back what delay takes
     count = round(4.0 / (half_ms * 1e-3))
     goals = [
         {"at_s": START_S + i * half_ms * 1e-3,
-         "goal": {"joints_rad": 0.3 * (-1) ** i, "duration_s": 0.1}}
+         "goal": {"joints_rad": [0.05 * (-1) ** i], "duration_s": 0.1}}
         for i in range(count)
     ]  # fmt: skip
     end = START_S + count * half_ms * 1e-3
     name = f"low_pass_{omega:.0f}"
     log = bench.on_bus(context, name, gains, goals, end, changes=changes)
+    status(log, START_S + 1.5, end)
     seen, rows = sensed(log, START_S + 1.5, end), motion(log, START_S + 1.5, end)
     applied = amplitude(rows["time_ns"] * 1e-9, rows["tau_motor"][:, 0], omega)
     return omega, amplitude(seen["t"], seen["tau"], omega) / applied
@@ -109,7 +112,7 @@ def checks(context: Context) -> list[Check]:
         made.append(Check(f"{name}, ideal", low_pass(omega), low_pass_ideal(omega), "", 0.01))
         omega, share = low_pass_bus(context, omega)
         made.append(Check(f"{name}, bus", low_pass(omega), share, "", 0.01))
-    for period, torque, word in ((SLOW_S, 5.0, "5"), (FAST_S, 100.0, "600")):
+    for period, torque, word in ((SLOW_S, 5.0, "5"), (FAST_S, 50.0, "600")):
         omega = float(word)
         name = f"torque for the link's angle at {word} rad/s under a torque loop"
         made.append(

@@ -8,8 +8,13 @@ from limber.experiments import testbench as bench
 from limber.logs import Log
 
 K_S = 300.0  # N m/rad
-FAST_KGM2 = 1e6  # a rotor or link of this inertia stays where it is
-CLAMPED = bench.motor(rotor_inertia_kgm2=FAST_KGM2)  # in reality, whatever the motor is told
+FAST_KGM2 = 1e6  # a rotor or link of this inertia, behind the gear, stays where it is
+# In reality, whatever the motor is told; its torque at the joint is as before
+CLAMPED = bench.motor(
+    rotor_inertia_kgm2=1.0,
+    gear_ratio=np.sqrt(FAST_KGM2).item(),
+    rotor_torque_constant_Nm_per_A=1e-3,
+)
 FREE = {"law": "gravity_compensation"}  # no torque at all: the bench lies
 START_S = 2.0  # of what is done to the joint
 

@@ -83,7 +83,7 @@ def bus(context: Context, feed_forward: bool) -> Followed:
     """Errors by the truth: what the link did against the path the controller says."""
     law = "flatness" if feed_forward else "joint_pd"
     gains = bench.given(K_P, float(K_D)) | {"law": law, "position": "motor"}
-    goal = {"at_s": START_S, "goal": {"joints_rad": ANGLE, "duration_s": MOVE_S}}
+    goal = {"at_s": START_S, "goal": {"joints_rad": [ANGLE], "duration_s": MOVE_S}}
     end = START_S + END_S
     log = bench.on_bus(context, law, gains, [goal], end, changes=sprung(K_S, 0.0))
     seen, path = bench.truth(log, START_S, end), CubicSpline(*bench.goal(log, START_S - 0.01, end))

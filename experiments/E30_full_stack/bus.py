@@ -87,8 +87,14 @@ def loop(
     context: Context, rho: float, axis: np.ndarray, up_s: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """As ideal.loop."""
-    shape = {"force_N": (PUSH_N * axis[:3]).tolist(), "ramp_s": up_s, "for_s": 2 * up_s}
-    pushes = [{"at_s": FIRST_S + i * 2 * up_s, "push": shape} for i in range(2)]
+    force = (PUSH_N * axis[:3]).tolist()
+    pushes = [
+        {
+            "at_s": FIRST_S + i * 2 * up_s,
+            "push": {"force_N": [*force], "ramp_s": up_s, "for_s": 2 * up_s},
+        }
+        for i in range(2)
+    ]
     end = FIRST_S + 3 * up_s
     log = run(context, f"loop_{rho:g}", rho, COULOMB_NM, pushes, end)
     status(log, FIRST_S, end)

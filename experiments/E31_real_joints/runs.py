@@ -79,7 +79,7 @@ def bus(context: Context, joint: Joint) -> Seen:
     log = bench.on_bus(context, f"{name}_push", gains, pushes(), end, **real)
     before = bench.mean(log, START_S - 0.2, START_S)
     push = bench.truth(log, START_S, end)
-    goal = {"at_s": START_S, "goal": {"joints_rad": MOVE_RAD, "duration_s": MOVE_S}}
+    goal = {"at_s": START_S, "goal": {"joints_rad": [MOVE_RAD], "duration_s": MOVE_S}}
     log = bench.on_bus(context, f"{name}_path", gains, [goal], START_S + MOVE_S, **real)
     middle = START_S + MOVE_S / 2
     behind = bench.lag(log, middle - 0.5, middle + 0.5)
