@@ -8,9 +8,9 @@ from limber.experiments import testbench as bench
 from limber.experiments.context import Context
 from limber.experiments.ringdown import Mode, modes_seen
 
-from .law import COULOMB_NM, GRAVITY, HYDRAULIC, KAPPA, PUSH_NM, VOLTAGE_D
+from .law import COULOMB_NM, GRAVITY, HORIZONTAL, HYDRAULIC, KAPPA, PUSH_NM, VOLTAGE_D
 
-MOVE_S = 4.0
+MOVE_S = 8.0
 
 
 def _robot(gravity: float = 0.0, **actuator: Any) -> dict[str, Any]:
@@ -28,6 +28,7 @@ def torque_constant(context: Context, K: float, D: float) -> tuple[float, float,
         [bench.push(PUSH_NM, 4.0, 3.0, 0.5)],
         7.0,
         changes=_robot(GRAVITY),
+        start_q=[HORIZONTAL],
         reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
     )
     rest = bench.mean(log, 3.0, 3.9)
@@ -38,7 +39,7 @@ def torque_constant(context: Context, K: float, D: float) -> tuple[float, float,
 def friction_lag(context: Context, K: float, D: float) -> float:
     """In the middle of a smooth motion, where nothing accelerates: mean over a stretch of it."""
     friction = {"coulomb_Nm": COULOMB_NM, "viscous_Nms_per_rad": 0.0}
-    move = {"joints_rad": 1.0, "duration_s": MOVE_S}
+    move = {"joints_rad": [1.0], "duration_s": MOVE_S}
     log = bench.on_bus(
         context,
         f"friction_{K:g}",

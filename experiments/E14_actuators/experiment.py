@@ -7,7 +7,7 @@ from limber.experiments.check import Check
 from limber.experiments.context import Context
 
 from . import bus, drawing, ideal
-from .law import HYDRAULIC, INERTIA, LAGS_S, RING_D, SOFT, STIFF, VOLTAGE_D
+from .law import HORIZONTAL, HYDRAULIC, INERTIA, LAGS_S, RING_D, SOFT, STIFF, VOLTAGE_D
 
 TITLE = "What an actuator does wrong shows as torque over stiffness: a soft law hides nothing"
 CLAIM = "Torque constant, rotor inertia, friction and current dynamics, which a stiff position loop"
@@ -17,7 +17,6 @@ PLANT = "one rigid joint of 0.7 kg m²: its equations (ideal), and the test benc
 FAST = False
 
 LEVELS = {"soft": SOFT, "stiff": STIFF}
-HORIZONTAL = np.pi / 2
 
 
 def run(context: Context) -> list[Check]:

@@ -1,5 +1,6 @@
 """The laws that the actuators are tried under, and what spoils them."""
 
+import math
 from dataclasses import dataclass
 
 from limber.experiments import testbench as bench
@@ -8,6 +9,7 @@ INERTIA = bench.M + bench.B  # a rigid joint carries its rotor
 SOFT, STIFF = (100.0, 10.0), (6000.0, 80.0)  # N m/rad, N m s/rad
 KAPPA = 0.8  # true torque constant over the one that the drive believes in
 PUSH_NM, GRAVITY = 10.0, 20.0  # N m, m/s²
+HORIZONTAL = math.pi / 2  # rad: the link's angle where gravity pulls most
 COULOMB_NM = 2.0
 LAGS_S = (5e-3, 2e-3)  # of the current loop
 RING_D = 2.0  # N m s/rad: little enough to ring

@@ -12,14 +12,14 @@ from limber.logs import Log
 from .ideal import D, K
 
 RATE_HZ = 10_000.0
-STEP_S = 5e-5
-MOVE_S = 4.0
+STEP_S = 1e-4
+MOVE_RAD, MOVE_S = 0.3, 6.0  # slow: nothing accelerates much
 LAW = {**bench.spring_damper(K, D), "position": "motor"}
 # Link held: 20 N m, from a goal that moves in 0.1 s. In its middle the drive hears nothing for
 # 15 ms, less than its watchdog waits, and what it missed comes as a jump.
 HELD_LAW = {**bench.spring_damper(1000.0, 0.0), "position": "link"}
 JUMP = [
-    {"at_s": 1.7, "goal": {"joints_rad": 0.02, "duration_s": 0.1}},
+    {"at_s": 1.7, "goal": {"joints_rad": [0.02], "duration_s": 0.1}},
     {"at_s": 1.74, "fault": {"joint": bench.JOINT, "kind": "drop_commands", "for_s": 0.015}},
 ]
 
@@ -108,7 +108,7 @@ def friction_lag(context: Context, rho: float, coulomb: float) -> float:
         context,
         f"friction_{rho:g}",
         LAW,
-        [{"at_s": 2.0, "goal": {"joints_rad": 1.0, "duration_s": MOVE_S}}],
+        [{"at_s": 2.0, "goal": {"joints_rad": [MOVE_RAD], "duration_s": MOVE_S}}],
         2.0 + MOVE_S,
         changes=bench.joint(**_loop(rho)),
         reality=bench.joint(friction=friction),

@@ -99,7 +99,7 @@ def final_error_bus(
     context: Context, K_P: float, start: float, seconds: float, spring: float = SPRING
 ) -> float:
     """From a goal beside upright, which then goes there."""
-    to_upright = {"joints_rad": UPRIGHT, "duration_s": 0.5}
+    to_upright = {"joints_rad": [UPRIGHT], "duration_s": 0.5}
     end = bench.GAINS_S + seconds
     log = bench.on_bus(
         context,
@@ -129,7 +129,7 @@ def from_afar_bus(context: Context, K_P: float, start: float) -> Path:
         context,
         f"from_afar_{K_P:g}",
         gains(K_P),
-        [{"at_s": 2.0, "goal": {"joints_rad": UPRIGHT, "duration_s": 0.1}}],
+        [{"at_s": 2.0, "goal": {"joints_rad": [UPRIGHT], "duration_s": 0.1}}],
         end,
         changes=changes(SPRING),
         start_q=[UPRIGHT - start],

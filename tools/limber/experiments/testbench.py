@@ -133,6 +133,7 @@ def on_bus(
     robot = variant(context.out / name, ROBOT, changes or {})
     scenario = {
         "robot": robot,
+        "integrator": "reference",
         "duration_s": end_s + 0.05,
         **head,
         "timeline": [
