@@ -110,7 +110,7 @@ def nearly_still() -> np.ndarray:
         (torque_constant, one_way, "one direction only"),
         (friction, one_way, "one direction only"),
         (torque_constant, nearly_still, "changes by only|too uniform"),
-        (gravity, nearly_still, "changes by only"),
+        (gravity, nearly_still, "changes its torque by only"),
     ],
 )
 def test_a_log_that_cannot_tell_is_refused(module, path, reason, tmp_path):

@@ -82,10 +82,12 @@ def test_refuses_what_tells_too_little(robot, poses):
 
 
 def write_run(path, poses: np.ndarray, tau: np.ndarray, seconds: float = 1.0):
-    """Rests in each pose for `seconds`, with half a second of motion between."""
+    """Lies in a stand for a second, then rests in each pose for `seconds`, with half a second of
+    motion between.
+    """
     modes = messages.message_class("controller_status_t")
     still, moving = int(seconds * RATE_HZ), RATE_HZ // 2
-    q, torque = [], []
+    q, torque = [np.tile(poses[0] + 0.2, (RATE_HZ, 1))], [np.full((RATE_HZ, 7), 99.0)]
     for i, pose in enumerate(poses):
         follower = poses[min(i + 1, len(poses) - 1)]
         way = np.linspace(0, 1, moving)[:, None]

@@ -67,12 +67,9 @@ def write_robot(folder: Path, believed: Truth) -> Path:
   <joint name="end" type="fixed"><parent link="link"/><child link="flange"/>
     <origin xyz="0 -0.5 0"/></joint>
 </robot>""")
-    spring = f"{{law: linear, stiffness_Nm_per_rad: {believed.stiffness}}}"
-    kind = (
-        "{kind: rigid}"
-        if believed.rigid
-        else f"{{kind: elastic, spring: {spring}, damping_Nms_per_rad: {believed.damping}}}"
-    )
+    spring = f"spring: {{law: linear, stiffness_Nm_per_rad: {believed.stiffness}}}"
+    elastic = f"{{kind: elastic, {spring}, damping_Nms_per_rad: {believed.damping}}}"
+    kind = "{kind: rigid}" if believed.rigid else elastic
     viscous = believed.friction.viscous
     (folder / "robot.yaml").write_text(f"""format: limber-robot/1
 name: bench

@@ -20,8 +20,9 @@ from limber.identify.motor_side import loads
 MASS_SHARE = 0.3  # standard deviation of what the URDF says of a mass,
 CENTRE_M = 0.05  # and of a centre of mass
 MEASURED = 0.3  # of that deviation: combinations known better than this count as measured
-LEAST_NM = 0.3  # by which gravity's torque has to change
+LEAST_NM = 0.1  # by which gravity's torque has to be able to change
 LEAST_BLOCKS = 10
+GENTLE = 1.0  # rad/s² or m/s²: what is beyond shows inertias, which may be wrong as well
 FLOOR_NM = 1e-3  # no torque is known better
 ROUNDS = 4
 
@@ -30,23 +31,24 @@ ROUNDS = 4
 class Weights:
     """Change of [mass, moment] of every body, kg and kg m; `seen`: how many combinations of them.
 
-    `offset` and `unexplained` (rms before and after), N m, are by joint.
+    By joint, N m: constant offset of its torque, and what is unexplained before and after, rms.
     """
 
     change: np.ndarray
     covariance: np.ndarray
     seen: int
     offset: np.ndarray
+    offset_std: np.ndarray
     before: np.ndarray
     after: np.ndarray
 
 
 def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
     found = Findings("weight of the links")
-    g = arm.dynamics.gravity_torque(motion.q)
+    Y = arm.dynamics.gravity_regressor(motion.q)
     used = []
     for i, joint in enumerate(arm.joints):
-        reason = _refusal(joint.two_motors, motion, g, i)
+        reason = _refusal(arm, motion, Y, i)
         if reason:
             found.refused[joint.name] = reason
         else:
@@ -54,28 +56,36 @@ def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
     if not used:
         return found, None
     excess = _excess(arm, motion)
-    weights = estimate(arm, motion, excess, used)
-    found.values = _values(arm, weights)
+    weights = estimate(arm, motion, Y, excess, used)
+    found.values = _values(arm, weights) + _offsets(arm, weights, used)
     found.notes.append(
         f"{weights.seen} combinations of masses and centres show in these torques. The change "
         "proposed for the URDF is the least one that explains them; how it is spread over the "
         "links is a choice, their gravity torque is not. Torque constants are taken as believed."
     )
-    lighter = g + arm.dynamics.gravity_regressor(motion.q) @ weights.change
+    fits = zip(used, weights.before, weights.after, strict=True)
+    found.notes.append(
+        "Unexplained, N m rms, before and after: "
+        + ", ".join(f"{arm.joints[i].name} {was:.3g} {now:.3g}" for i, was, now in fits)
+    )
+    g = Y @ arm.dynamics.parameters()
+    changed = g + Y @ weights.change
     for i in used:
-        measured = (excess + g)[:, i][motion.moving[:, i]]
-        found.panels.append(_panel(arm, motion, measured, g, lighter, i))
+        measured = (excess + g)[:, i][_slow(motion, i)]
+        found.panels.append(_panel(arm, motion, measured, g, changed, i))
     return found, weights
 
 
-def estimate(arm: Arm, motion: Motion, excess: np.ndarray, used: list[int]) -> Weights:
-    """`excess`: torque at the joints beyond what the model says, N x n."""
-    Y, size = arm.dynamics.gravity_regressor(motion.q), 4 * arm.dynamics.size
+def estimate(
+    arm: Arm, motion: Motion, Y: np.ndarray, excess: np.ndarray, used: list[int]
+) -> Weights:
+    """`Y`: gravity_regressor(); `excess`: torque at the joints beyond the model's, N x n."""
+    size = 4 * arm.dynamics.size
     prior = _prior_std(arm)
     unknowns = size + 3 * len(used)
     problems = []
     for k, i in enumerate(used):
-        rows = motion.moving[:, i]
+        rows = _slow(motion, i)
         A = np.zeros((np.count_nonzero(rows), unknowns))
         A[:, :size] = Y[rows, i]
         own = slice(size + 3 * k, size + 3 * k + 3)
@@ -94,28 +104,34 @@ def estimate(arm: Arm, motion: Motion, excess: np.ndarray, used: list[int]) -> W
         covariance = np.linalg.inv(H)
         x = covariance @ h
         sigma = [max(float(np.std(r - A @ x)), FLOOR_NM) for A, r, _ in problems]
-    whitened = covariance[:size, :size] / np.outer(prior, prior)
-    seen = int(np.count_nonzero(np.linalg.eigvalsh(whitened) < MEASURED**2))
+    changes, offsets = slice(size), slice(size + 2, None, 3)
+    whitened = covariance[changes, changes] / np.outer(prior, prior)
     return Weights(
-        x[:size],
-        covariance[:size, :size],
-        seen,
-        x[size + 2 :: 3],
+        x[changes],
+        covariance[changes, changes],
+        int(np.count_nonzero(np.linalg.eigvalsh(whitened) < MEASURED**2)),
+        x[offsets],
+        np.sqrt(np.diag(covariance))[offsets],
         np.array(before),
         np.array(sigma),
     )
 
 
-def _refusal(two_motors: bool, motion: Motion, g: np.ndarray, i: int) -> str:
-    rows = motion.moving[:, i]
-    if two_motors:
+def _refusal(arm: Arm, motion: Motion, Y: np.ndarray, i: int) -> str:
+    rows = _slow(motion, i)
+    if arm.joints[i].two_motors:
         return "two motors pull at this joint"
     if len(np.unique(motion.block[rows])) < LEAST_BLOCKS:
         return "it moves too little"
-    span = float(np.ptp(g[rows, i]))
-    if not span > LEAST_NM:
-        return f"gravity's torque changes by only {span:.2g} N m here"
+    swing = float(np.linalg.norm(np.ptp(Y[rows, i], axis=0) * _prior_std(arm)))
+    if not swing > LEAST_NM:
+        return f"what the URDF may be wrong by changes its torque by only {swing:.2g} N m"
     return ""
+
+
+def _slow(motion: Motion, i: int) -> np.ndarray:
+    """Samples in which joint i moves and no joint speeds up much."""
+    return motion.moving[:, i] & (np.abs(motion.a).max(axis=1) < GENTLE)
 
 
 def _excess(arm: Arm, motion: Motion) -> np.ndarray:
@@ -164,6 +180,15 @@ def _values(arm: Arm, weights: Weights) -> list[Value]:
     return values
 
 
+def _offsets(arm: Arm, weights: Weights, used: list[int]) -> list[Value]:
+    """Of torque sensors their bias, of motors what their torque is off by."""
+    offsets = zip(used, weights.offset, weights.offset_std, strict=True)
+    return [
+        Value(arm.joints[i].name, "torque at no load", "N m", float(x), float(std), 0.0)
+        for i, x, std in offsets
+    ]
+
+
 def _panel(
     arm: Arm,
     motion: Motion,
@@ -172,7 +197,7 @@ def _panel(
     after: np.ndarray,
     i: int,
 ) -> Panel:
-    rows = motion.moving[:, i]
+    rows = _slow(motion, i)
     order = np.argsort(after[rows, i])
     now, then = after[rows, i][order], before[rows, i][order]
     return Panel(

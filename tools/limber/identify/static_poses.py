@@ -12,6 +12,7 @@ from limber.logs import Log
 
 WINDOW_S = 0.25
 STILL = 2e-3  # rad or m: no joint moves further than this in a window
+STAND_S = 1.0  # from being held until the arm rests on its motors alone
 APART = 0.05  # rad or m: closer poses are one
 
 
@@ -43,16 +44,20 @@ def static_poses(paths: list[Path], dynamics: ArmDynamics) -> StaticPoses:
 
 
 def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(q, tau) of every window in which the arm is held and still."""
+    """(q, tau) of every window in which the arm is held and still, and was held for a while: at
+    first it may lie in a stand.
+    """
     log = Log(path)
     status, state = log.read("CONTROLLER_STATUS"), log.read("JOINT_STATE")
     _, of_status, of_state = np.intersect1d(status["state_seq"], state["seq"], return_indices=True)
     status, state = status[of_status], state[of_state]
     modes, flags = map(messages.message_class, ("controller_status_t", "joint_state_t"))
     held = np.isin(status["mode"], (modes.MODE_HOLD, modes.MODE_ACTIVE))
+    time_ns = state["time_ns"]
+    held &= time_ns > time_ns[np.argmax(held)] + STAND_S * 1e9
     sensor = state["joint_flags"][:, :n] & flags.JOINT_TORQUE_SENSOR != 0
     q, tau = state["q"][:, :n], np.where(sensor, state["tau"][:, :n], state["tau_applied"][:, :n])
-    slots = state["time_ns"] // int(WINDOW_S * 1e9)
+    slots = time_ns // int(WINDOW_S * 1e9)
     found = []
     for slot in np.unique(slots):
         inside = slots == slot
