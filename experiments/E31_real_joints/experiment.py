@@ -33,11 +33,11 @@ def run(context: Context) -> list[Check]:
     with context.picture(TITLE, 2, 2, size=(13.0, 9.0)) as axes:
         draw_release(found, axes[0, 0])
         bars(found, [joint.stiffness for joint in JOINTS], "stiffness", K, 1, axes[0, 1])
-        axes[0, 1].set_xlabel("stiffness felt (N m/rad); dotted: asked for")
+        axes[0, 1].set_xlabel("stiffness felt (N m/rad); bars: formula; dotted: asked")
         bars(found, [joint.lag for joint in JOINTS], "lag", 0.0, 1e3, axes[1, 0])
-        axes[1, 0].set_xlabel("behind a slow path, by friction (mrad)")
+        axes[1, 0].set_xlabel("behind a slow path, by friction (mrad); bars: formula")
         bars(found, [joint.sag for joint in JOINTS], "sag", 0.0, 1e3, axes[1, 1])
-        axes[1, 1].set_xlabel("sag under 10 N m that the law compensates (mrad)")
+        axes[1, 1].set_xlabel("sag under 10 N m that the law compensates (mrad); bars: formula")
     return [check for joint in JOINTS for check in checks(joint, *found[joint.name])]
 
 
@@ -75,13 +75,13 @@ def bars(
 ) -> None:
     """A bar is the formula; cross: ideal, circle: bus."""
     rows = np.arange(len(found))[::-1]
-    ax.barh(rows, scale * np.array(formula), 0.55, color=[*COLORS], alpha=0.3)
+    ax.barh(rows, scale * np.array(formula), 0.55, color=COLORS, alpha=0.3)
     for i, (style, word) in enumerate(((IDEAL, "ideal"), (MEASURED, "bus"))):
         values = [scale * getattr(pair[i], name) for pair in found.values()]
         ax.plot(values, rows, **style, color="0.15", label=word)
     if asked:
         ax.axvline(asked, color="0.4", ls=":", lw=1.4)
-        ax.set_xlim(0, 1.25 * asked)
+        ax.set_xlim(0, 1.3 * asked)
     ax.set_yticks(rows, list(found))
     ax.set_ylim(-0.6, len(found) - 0.4)
     ax.legend(loc="lower right" if asked else "upper right")
