@@ -76,7 +76,8 @@ const Mutation kSections[] = {
     {"WatchdogOff", "timeout_s: 0.02", "timeout_s: 0", "'0' is out of range"},
     {"WatchdogTooShort", "timeout_s: 0.02", "timeout_s: 0.003", "shorter than two cycles at 500"},
     {"WatchdogReaction", "reaction: off", "reaction: brake", "expected one of: damp, off"},
-    {"MotorProtocol", "protocol: damiao_mit", "protocol: canopen", "one of: damiao_mit, moteus, cia402"},
+    {"MotorProtocol", "protocol: damiao_mit", "protocol: canopen",
+     "one of: damiao_mit, moteus, cia402"},
     {"MotorGear", "gear_ratio: 9", "gear_ratio: 0", "motors.big.gear_ratio: '0' is out of range"},
     {"MotorInertiaNegative", "rotor_inertia_kgm2: 0.0002", "rotor_inertia_kgm2: -0.0002", "out of"},
     {"MotorResistance", "phase_resistance_ohm: 0.2", "phase_resistance_ohm: 0", "out of range"},
@@ -198,7 +199,10 @@ TEST(RobotYamlRefusals, TellEverythingThatIsWrong) {
 TEST(RobotYamlRefusals, UnknownRobot) {
   const std::string complaint = testing::complaint_of([] { load_robot("openarn"); });
   EXPECT_NE(complaint.find("did you mean 'openarm'?"), std::string::npos) << complaint;
-  EXPECT_NE(complaint.find("one of: desktop2r, ideal7, openarm, planar2r"), std::string::npos)
+  EXPECT_NE(complaint.find(
+                "one of: antagonist2r, antagonist7, baxter, desktop2r, ideal7, iiwa14, openarm, "
+                "panda, planar2r, testbench"),
+            std::string::npos)
       << complaint;
   testing::complaint_of([] { load_robot(""); });
   testing::complaint_of([] { load_robot("/nowhere"); });

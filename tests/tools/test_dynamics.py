@@ -13,7 +13,10 @@ def dynamics_of(name: str) -> ArmDynamics:
     return ArmDynamics(robot.urdf, robot.chain, robot.gravity)
 
 
-@pytest.mark.parametrize("name", ["openarm", "planar2r", "ideal7", "desktop2r"])
+@pytest.mark.parametrize(
+    "name",
+    ["openarm", "planar2r", "ideal7", "desktop2r", "iiwa14", "panda", "baxter", "antagonist7"],
+)
 def test_same_arm_as_the_controllers(name):
     """KDL's chain, read by other code: M from unit accelerations, C v and g."""
     arm = dynamics_of(name)
