@@ -18,7 +18,8 @@ from limber.logs import Log
 
 CUTOFF_HZ = 10.0
 SAMPLES_HZ = 50.0
-EDGE_S = 0.3  # of a stretch: there the filter has no past or no future
+STAND_S = 1.0  # from the drives being on until the arm rests on them alone
+EDGE_S = 0.3  # at the end: there the filter has no future
 LEAST_S = 2.0
 BLOCK_S = 0.5  # what is further apart than this counts as independent
 SLOWEST = 0.02  # rad/s or m/s: below it friction is on its way from stick to slip
@@ -92,7 +93,7 @@ def _smooth(state: np.ndarray, arm: Arm, first_block: int) -> Motion:
     rate = 1e9 / float(state["period_ns"][0])
     sos = butter(4, CUTOFF_HZ, fs=rate, output="sos")
     every = max(round(rate / SAMPLES_HZ), 1)
-    keep = slice(int(EDGE_S * rate), len(state) - int(EDGE_S * rate), every)
+    keep = slice(int(STAND_S * rate), len(state) - int(EDGE_S * rate), every)
 
     def smooth(values: np.ndarray) -> np.ndarray:
         return sosfiltfilt(sos, np.asarray(values, float), axis=0)

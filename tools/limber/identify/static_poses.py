@@ -8,11 +8,11 @@ import numpy as np
 from limber import messages
 from limber.dynamics import ArmDynamics
 from limber.errors import InputError
+from limber.identify.motion import STAND_S
 from limber.logs import Log
 
 WINDOW_S = 0.25
 STILL = 2e-3  # rad or m: no joint moves further than this in a window
-STAND_S = 1.0  # from being held until the arm rests on its motors alone
 APART = 0.05  # rad or m: closer poses are one
 
 
