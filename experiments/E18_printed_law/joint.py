@@ -92,7 +92,7 @@ def _bench(gravity: float) -> dict[str, Any]:
     spring = {"law": "linear", "stiffness_Nm_per_rad": SPRING}
     return {
         "gravity_m_per_s2": [0.0, -gravity, 0.0],
-        "gains": {"K_q_Nm_per_rad": 20.0, "K_x_translation_N_per_m": 50.0},
+        "gains": {"K_q_Nm_per_rad": 35.0, "K_x_translation_N_per_m": 40.0},
         **bench.joint(transmission={"spring": spring}),
         **bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0),
     }
