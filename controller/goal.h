@@ -14,6 +14,8 @@ struct Goal {
       : q_d(VectorJ::Zero(joints)),
         v_d(VectorJ::Zero(joints)),
         a_d(VectorJ::Zero(joints)),
+        j_d(VectorJ::Zero(joints)),
+        s_d(VectorJ::Zero(joints)),
         q_null(VectorJ::Zero(joints)) {}
 
   Pose X_BD;
@@ -23,6 +25,8 @@ struct Goal {
   VectorJ q_d;
   VectorJ v_d;
   VectorJ a_d;
+  VectorJ j_d;  ///< da_d/dt and its rate along a smooth motion, zero along others
+  VectorJ s_d;
   VectorJ q_null;  ///< null-space posture
 };
 

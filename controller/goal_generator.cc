@@ -37,6 +37,7 @@ GoalGenerator::GoalGenerator(const Robot& robot)
       position_max_(robot.size()),
       velocity_limit_(robot.size()),
       joints_(VectorJ::Zero(robot.size())),
+      smooth_(joints_.x),
       posture_(VectorJ::Zero(robot.size())),
       wrench_(Vector6::Zero()),
       goal_(robot.size()) {
@@ -51,6 +52,7 @@ GoalGenerator::GoalGenerator(const Robot& robot)
 void GoalGenerator::reset(const Pose& X_BT, const VectorJ& q) noexcept {
   pose_.reset(X_BT);
   joints_.reset(q);
+  smooth_ = SmoothMotion<VectorJ>(q);
   posture_.reset(q);
   wrench_.reset(Vector6::Zero());
   copy();
@@ -58,7 +60,7 @@ void GoalGenerator::reset(const Pose& X_BT, const VectorJ& q) noexcept {
 
 const char* GoalGenerator::set(const compliance_goal_t& message, Follows follows) noexcept {
   if (const char* reason = refuse(message, follows)) return reason;
-  start(message);
+  start(message, follows);
   return nullptr;
 }
 
@@ -73,7 +75,8 @@ const char* GoalGenerator::refuse(const compliance_goal_t& message,
   if (!(F.head<3>().norm() <= kMaxForce_N && F.tail<3>().norm() <= kMaxMoment_Nm)) {
     return "F_ff must be within 200 N and 50 N m";
   }
-  if (follows == Follows::kJointGoal && !F.isZero(0.0)) {
+  const bool no_wrench = follows == Follows::kJointGoal || follows == Follows::kSmoothJointGoal;
+  if (no_wrench && !F.isZero(0.0)) {
     return "the law exerts no feed-forward wrench";
   }
   if (message.kind == compliance_goal_t::GOAL_JOINT) {
@@ -125,7 +128,17 @@ const char* GoalGenerator::refuse_joints(const double* q) const noexcept {
   return nullptr;
 }
 
-void GoalGenerator::start(const compliance_goal_t& message) noexcept {
+// A motion under way goes on along the quintic, which takes it as it is.
+void GoalGenerator::start_joints(const VectorJ& q, double T, bool smooth) noexcept {
+  if (smooth && !joints_.moving() && !smooth_.moving()) {
+    smooth_.start(joints_.x, q, T);
+    return;
+  }
+  smooth_.end();
+  joints_.start(q, T);
+}
+
+void GoalGenerator::start(const compliance_goal_t& message, Follows follows) noexcept {
   const VectorJ q = Eigen::Map<const Eigen::VectorXd>(message.q, goal_.q_d.size());
   const bool as_fast_as_allowed = !(message.duration_s > 0.0);
   const double speed = as_fast_as_allowed ? kDefaultSpeed_m_per_s : kFastestSpeed_m_per_s;
@@ -135,8 +148,10 @@ void GoalGenerator::start(const compliance_goal_t& message) noexcept {
 
   if (message.kind == compliance_goal_t::GOAL_JOINT) {
     at_tip_ = false;
-    T = std::max(T, joint_time(joints_.x, q, share));
-    joints_.start(q, T);
+    const bool smooth = follows == Follows::kSmoothJointGoal;
+    const double faster = smooth ? SmoothMotion<VectorJ>::kPeak / kPeak : 1.0;
+    T = std::max(T, faster * joint_time(joints_.x, q, share));
+    start_joints(q, T, smooth);
     wrench_.start(six(message.F_ff), T);
     return;
   }
@@ -191,11 +206,13 @@ void GoalGenerator::follow_tip(const Pose& X_BD) noexcept {
 
 void GoalGenerator::follow_joints(const VectorJ& q_d) noexcept {
   joints_.reset(q_d);
+  smooth_ = SmoothMotion<VectorJ>(q_d);
   copy();
 }
 
 void GoalGenerator::stop(double duration_s) noexcept {
   pose_.stop(duration_s);
+  smooth_.end();
   joints_.stop(duration_s);
   posture_.stop(duration_s);
   wrench_.stop(duration_s);
@@ -204,6 +221,12 @@ void GoalGenerator::stop(double duration_s) noexcept {
 void GoalGenerator::advance(double dt_s) noexcept {
   pose_.advance(dt_s);
   joints_.advance(dt_s);
+  if (smooth_.moving()) {
+    smooth_.advance(dt_s);
+    joints_.reset(smooth_.x);
+    joints_.v = smooth_.v;
+    joints_.a = smooth_.a;
+  }
   posture_.advance(dt_s);
   wrench_.advance(dt_s);
   copy();
@@ -217,6 +240,8 @@ void GoalGenerator::copy() noexcept {
   goal_.q_d = joints_.x;
   goal_.v_d = joints_.v;
   goal_.a_d = joints_.a;
+  goal_.j_d = smooth_.moving() ? smooth_.jerk : VectorJ(0.0 * joints_.x);
+  goal_.s_d = smooth_.moving() ? smooth_.snap : VectorJ(0.0 * joints_.x);
   goal_.q_null = posture_.x;
 }
 

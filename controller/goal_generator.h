@@ -6,12 +6,14 @@
 #include "controller/goal.h"
 #include "controller/interpolation.h"
 #include "controller/laws/law.h"
+#include "controller/smooth_motion.h"
 #include "robots/robot.h"
 
 namespace limber::controller {
 
 /// Holds the present goal. A message is checked whole and refused or accepted whole; an accepted
-/// one starts a motion (see QuinticMotion) from the present goal, in position, velocity and
+/// one starts a motion (see QuinticMotion; joint goals from rest for laws that ask for it along
+/// SmoothMotion) from the present goal, in position, velocity and
 /// acceleration, to the new one. The motion takes the time asked for, or longer where the speed
 /// would exceed the limits below; 0 asks for the default speed. All members may be called in the
 /// cycle.
@@ -60,7 +62,8 @@ class GoalGenerator {
  private:
   const char* refuse_tip(const compliance_goal_t& message) const noexcept;
   const char* refuse_joints(const double* q) const noexcept;
-  void start(const compliance_goal_t& message) noexcept;
+  void start(const compliance_goal_t& message, Follows follows) noexcept;
+  void start_joints(const VectorJ& q, double T, bool smooth) noexcept;
   Pose end_of(const compliance_goal_t& message) const noexcept;
   double pose_time(const Pose& end, double speed, double turn) const noexcept;
   double joint_time(const VectorJ& from, const VectorJ& to, double share) const noexcept;
@@ -71,6 +74,7 @@ class GoalGenerator {
   VectorJ velocity_limit_;
   PoseMotion pose_;
   QuinticMotion<VectorJ> joints_;
+  SmoothMotion<VectorJ> smooth_;  // leads joints_ while it moves
   QuinticMotion<VectorJ> posture_;
   QuinticMotion<Vector6> wrench_;
   bool at_tip_ = true;

@@ -76,6 +76,9 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law)
     const bool possible = refuse_law(entry, sensors_) == nullptr;
     laws_.push_back(possible ? entry.make(robot) : nullptr);
   }
+  if (const char* reason = laws_[static_cast<std::size_t>(selected_)]->refuse(gains_.now())) {
+    throw ConfigError(robot.robot.name + ": " + law + ": " + reason);
+  }
 }
 
 bool TorqueCycle::due(Term term) const noexcept {
@@ -111,7 +114,8 @@ Position TorqueCycle::position() const noexcept {
 
 // At rest nothing but the weight is known to act.
 void TorqueCycle::look(StaticForm form) noexcept {
-  const bool gravity = resting_ || with_bias(entry().composition, active_.settings.bias).gravity;
+  const bool gravity =
+      form == StaticForm::kGravity || with_bias(entry().composition, active_.settings.bias).gravity;
   side_.look(position(), state_, {form, gravity, goal_, active_, resting_ ? none_ : tau_null_},
              &seen_);
   const TermsDue terms{.jacobian = due(Term::kJacobian) || cycles_ == 1,
@@ -183,6 +187,7 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
       return reason;
     }
   }
+  if (const char* reason = laws_[static_cast<std::size_t>(law)]->refuse(asked_)) return reason;
   if (wanted.refuse != nullptr) {
     if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
   }

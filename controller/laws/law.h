@@ -38,10 +38,12 @@ enum class Follows : std::uint8_t {
   kPoseGoal,
   kJointGoal,           ///< and exerts no wrench besides
   kJointGoalAndWrench,  ///< and adds Goal::F_ff
+  kSmoothJointGoal,     ///< no wrench; from rest along SmoothMotion
 };
 
 inline bool follows_joints(Follows follows) noexcept {
-  return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench;
+  return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench ||
+         follows == Follows::kSmoothJointGoal;
 }
 
 /// What a law asks of the link at rest, as a function of the link's position: what it needs to be
@@ -49,7 +51,7 @@ inline bool follows_joints(Follows follows) noexcept {
 /// gradient of a potential have one.
 enum class StaticForm : std::uint8_t {
   kNone,
-  kGravity,      ///< carries the weight
+  kGravity,  ///< carries the weight; or sees the link where the weight alone bends the springs to
   kJointSpring,  ///< and -K_q (q - q_d)
   kTipSpring,    ///< and J^T (F_ff - h A^T K_x e)
 };
@@ -140,6 +142,11 @@ struct LawOutput {
 class Law {
  public:
   virtual ~Law() = default;
+  /// nullptr, or what in these gains does not suit this arm. May be called in the cycle.
+  virtual const char* refuse(const Gains& gains) noexcept {
+    static_cast<void>(gains);
+    return nullptr;
+  }
   /// The law becomes the active one: forget the past. In the cycle.
   virtual void start(const LawInputs& inputs) noexcept { static_cast<void>(inputs); }
   /// One cycle; `output` has been reset. No allocation, lock, log or exception.

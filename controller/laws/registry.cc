@@ -17,7 +17,12 @@
   LAW(joint_impedance)       \
   LAW(opspace_impedance)     \
   LAW(accel_feedback)        \
-  LAW(admittance)
+  LAW(admittance)            \
+  LAW(tomei)                 \
+  LAW(full_state)            \
+  LAW(deflection_pd)         \
+  LAW(flatness)              \
+  LAW(variable_stiffness)
 
 namespace limber::controller {
 

@@ -1,0 +1,84 @@
+// Follows a joint motion through the springs: all that the motor has to do is known from the link's
+// motion to its fourth derivative (flat output q; De Luca 2000). Springs without dampers.
+//   tau_J   = M(q_d) a_d + C v_d + g          theta_d = q_d + tau_J / K_J
+//   tau     = B theta_d'' + tau_J - K_q (theta - theta_d) - D_q (theta' - theta_d')
+// theta_d'' contains tau_J'', which is differenced along the goal's motion. Goals for the joints
+// from rest move along a polynomial of degree nine, which has all that; other goals are followed
+// with what they have.
+#include "controller/chosen_damping.h"
+#include "controller/laws/law.h"
+#include "controller/motor_side/joint_springs.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr double kStep_s = 1e-3;
+
+class Flatness : public Law {
+ public:
+  explicit Flatness(const LoadedRobot& robot)
+      : model_(robot),
+        K_J_(JointSprings(robot.robot).at_rest()),
+        D_(MatrixJ::Zero(model_.size(), model_.size())) {}
+
+  void start(const LawInputs& in) noexcept override { design(in); }
+
+  void compute(const LawInputs& in, LawOutput* out) noexcept override {
+    if (in.damping_due) design(in);
+    const Goal& goal = in.goal;
+    const VectorJ before = link_torque(goal, -kStep_s);
+    const VectorJ now = link_torque(goal, 0.0);
+    const VectorJ after = link_torque(goal, kStep_s);
+    const VectorJ bend = now.cwiseQuotient(K_J_);
+    const VectorJ bend_rate = ((after - before) / (2.0 * kStep_s)).cwiseQuotient(K_J_);
+    const VectorJ bend_acceleration =
+        ((after - 2.0 * now + before) / (kStep_s * kStep_s)).cwiseQuotient(K_J_);
+    const VectorJ error = in.state.theta - goal.q_d - bend;
+    out->tau_stiffness = -in.gains.K_q * error;
+    out->tau_damping = -D_ * (in.state.theta_dot - goal.v_d - bend_rate);
+    out->tau_feedforward = in.terms.B.cwiseProduct(goal.a_d + bend_acceleration) + now;
+    out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);
+  }
+
+ private:
+  // Torque on the links alone, h seconds from now.
+  VectorJ link_torque(const Goal& goal, double h) noexcept {
+    const VectorJ q =
+        goal.q_d +
+        h * (goal.v_d + h / 2.0 * (goal.a_d + h / 3.0 * (goal.j_d + h / 4.0 * goal.s_d)));
+    const VectorJ v = goal.v_d + h * (goal.a_d + h / 2.0 * (goal.j_d + h / 3.0 * goal.s_d));
+    const VectorJ a = goal.a_d + h * (goal.j_d + h / 2.0 * goal.s_d);
+    return model_.inverse_dynamics(q, v, a) - model_.rotor_inertia().cwiseProduct(a);
+  }
+
+  void design(const LawInputs& in) noexcept {
+    D_ = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
+  }
+
+  ArmModel model_;
+  VectorJ K_J_;
+  MatrixJ D_;
+};
+
+const char* refuse(const Gains& gains, int /*joints*/) {
+  return gains.settings.bias == Bias::kOfLaw
+             ? nullptr
+             : "bias: flatness has its own model torque; choose of_law";
+}
+
+}  // namespace
+
+LawEntry flatness_law() {
+  return {.name = "flatness",
+          .summary = "follows a joint motion through the springs by feed-forward",
+          .needs = sensors::kMotorEncoder | sensors::kElasticJoints,
+          .follows = Follows::kSmoothJointGoal,
+          .composition = {.gravity = false},
+          .statics = StaticForm::kGravity,
+          .refuse = refuse,
+          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
+            return std::make_unique<Flatness>(robot);
+          }};
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,109 @@
+// Motor position control with constant gravity compensation (P. Tomei 1991); needs no sensor but
+// the motors' encoders.
+//   tau = g(q_d) - K_q (theta - theta_d) - D_q theta',   theta_d = q_d + K_J^-1 g(q_d)
+// The link comes to rest at q_d from anywhere if lambda_min [K_J, -K_J; -K_J, K_J + K_q] exceeds
+// the greatest |dg/dq| of the arm; gains that do not are refused. The link meets the springs and
+// K_q in series, less the weight's gradient.
+#include "controller/motor_side/tomei.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "controller/chosen_damping.h"
+#include "controller/laws/law.h"
+#include "controller/motor_side/gravity_gradient.h"
+#include "controller/motor_side/joint_springs.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr int kPostures = 500;
+constexpr unsigned kSeed = 1;
+
+// Greatest norm of dg/dq over postures within the joint limits, N m/rad.
+double steepest_weight(const Robot& robot, ArmModel* model) {
+  std::mt19937 generator(kSeed);
+  double alpha = 0.0;
+  VectorJ q(robot.size());
+  for (int i = 0; i < kPostures; ++i) {
+    for (int j = 0; j < robot.size(); ++j) {
+      const JointConfig& joint = robot.joints[static_cast<std::size_t>(j)];
+      const bool limited = std::isfinite(joint.position_min) && std::isfinite(joint.position_max);
+      q[j] = std::uniform_real_distribution<double>(
+          limited ? joint.position_min : -EIGEN_PI,
+          limited ? joint.position_max : EIGEN_PI)(generator);
+    }
+    const MatrixJ slope = gravity_gradient(model, q);
+    alpha = std::max(alpha, Eigen::SelfAdjointEigenSolver<MatrixJ>(slope, Eigen::EigenvaluesOnly)
+                                .eigenvalues()
+                                .cwiseAbs()
+                                .maxCoeff());
+  }
+  return alpha;
+}
+
+class TomeiLaw : public Law {
+ public:
+  explicit TomeiLaw(const LoadedRobot& robot)
+      : model_(robot), alpha_(steepest_weight(robot.robot, &model_)) {
+    const Eigen::Index n = model_.size();
+    law_ = {MatrixJ::Zero(n, n), MatrixJ::Zero(n, n), JointSprings(robot.robot).at_rest()};
+    refusal_ =
+        "K_q is too soft for constant gravity compensation: the smallest eigenvalue of "
+        "[K_J, -K_J; -K_J, K_J + K_q] must exceed " +
+        std::to_string(alpha_) + " N m/rad, by which this arm's weight changes at most";
+  }
+
+  const char* refuse(const Gains& gains) noexcept override {
+    const Tomei asked{gains.K_q, law_.K_D, law_.K_J};
+    return asked.lambda_min() > alpha_ ? nullptr : refusal_.c_str();
+  }
+
+  void start(const LawInputs& in) noexcept override { design(in); }
+
+  void compute(const LawInputs& in, LawOutput* out) noexcept override {
+    if (in.damping_due) design(in);
+    law_.K_P = in.gains.K_q;
+    const VectorJ g_d = model_.gravity(in.goal.q_d);
+    const VectorJ error = in.state.theta - law_.theta_d(in.goal.q_d, g_d);
+    out->tau_stiffness = -law_.K_P * error;
+    out->tau_damping = -law_.K_D * in.state.theta_dot;
+    out->tau_feedforward = g_d;
+    out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);
+  }
+
+ private:
+  void design(const LawInputs& in) noexcept {
+    law_.K_D = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
+  }
+
+  ArmModel model_;
+  double alpha_;
+  Tomei law_;
+  std::string refusal_;
+};
+
+const char* refuse_bias(const Gains& gains, int /*joints*/) {
+  return gains.settings.bias == Bias::kOfLaw
+             ? nullptr
+             : "bias: tomei has its own gravity torque; choose of_law";
+}
+
+}  // namespace
+
+LawEntry tomei_law() {
+  return {.name = "tomei",
+          .summary = "motor position control, weight of the goal's posture",
+          .needs = sensors::kMotorEncoder | sensors::kElasticJoints,
+          .follows = Follows::kJointGoal,
+          .composition = {.gravity = false},
+          .statics = StaticForm::kGravity,
+          .refuse = refuse_bias,
+          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
+            return std::make_unique<TomeiLaw>(robot);
+          }};
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,139 @@
+// Two motors a joint: the springs themselves are the compliance, the motors only place them
+// (Albu-Schaeffer, Fischer, Schreiber, Schoeppe, Hirzinger 2004; Migliore, Brown, DeWeerth 2005).
+//   sigma from K_x at the goal, or K_q itself;  c_d: sigma(c_d) = sigma, carrying tau_d
+//   e_d = q_d + x(c, tau_d),   tau_d = g(q_d) + J^T F_ff,   x: tau(c, x) = tau_d
+//   tau = tau_J - B (w^2 (e - e_d) + 2 w (e' - v_d))
+// The spring's torque tau_J, measured, is taken off the motors, so that a load on the link does not
+// move the equilibrium: the link meets sigma. Damping is what the joints have. Stiffness that the
+// springs cannot give is clipped: both have to stay taut under tau_d, and preload_max.
+#include <Eigen/Cholesky>
+
+#include "controller/laws/registry.h"
+#include "controller/motor_side/pair_inverse.h"
+#include "controller/motor_side/vsa_stiffness.h"
+#include "controller/nullspace.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr double kBandwidth_rad_per_s = 40.0;
+constexpr double kInfinite_Nm_per_rad = 1e9;
+constexpr double kLeastCompliance_rad_per_Nm = 1e-9;
+
+// The task's rows alone: m x n and m x m.
+struct Task {
+  Task(const Matrix6J& J_all, const Matrix6& K_all) noexcept
+      : J(TaskRows(K_all).count(), J_all.cols()), K(J.rows(), J.rows()) {
+    const TaskRows rows(K_all);
+    for (int i = 0, m = 0; i < 6; ++i) {
+      if (!rows.stiff[i]) continue;
+      J.row(m) = J_all.row(i);
+      for (int k = 0, l = 0; k < 6; ++k) {
+        if (rows.stiff[k]) K(m, l++) = K_all(i, k);
+      }
+      ++m;
+    }
+  }
+  TaskJacobian J;
+  TaskMatrix K;
+};
+
+class VariableStiffness : public Law {
+ public:
+  explicit VariableStiffness(const LoadedRobot& robot)
+      : model_(robot),
+        torque_sensors_((sensors_of(robot.robot) & sensors::kTorqueSensor) != 0),
+        wanted_(VectorJ::Zero(model_.size())) {
+    for (const JointConfig& joint : robot.robot.joints) {
+      pairs_.push_back({{joint.transmission.spring}, joint.transmission.preload_max_rad});
+    }
+  }
+
+  void start(const LawInputs& in) noexcept override { fit(in); }
+
+  void compute(const LawInputs& in, LawOutput* out) noexcept override {
+    if (in.stiffness_due) fit(in);
+    const VectorJ tau_d =
+        model_.gravity(in.goal.q_d) + model_.jacobian(in.goal.q_d).transpose() * in.goal.F_ff;
+    const double w = kBandwidth_rad_per_s;
+    for (Eigen::Index i = 0; i < tau_d.size(); ++i) {
+      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      const double c = in.measured.preload[i];
+      out->preload[i] = pair_preload(pair.springs, wanted_[i], tau_d[i], pair.preload_max_rad);
+      out->sigma[i] = pair.springs.stiffness(
+          out->preload[i], pair_deflection(pair.springs, out->preload[i], tau_d[i]));
+      const double e_d = in.goal.q_d[i] + pair_deflection(pair.springs, c, tau_d[i]);
+      const double e = in.measured.theta[i];
+      const double bend = e - in.measured.q[i];
+      out->tau_feedforward[i] =
+          torque_sensors_ ? in.measured.tau_measured[i] : pair.springs.torque(c, bend);
+      out->tau_stiffness[i] = -in.terms.B[i] * w * w * (e - e_d);
+      out->tau_damping[i] = -2.0 * in.terms.B[i] * w * (in.state.theta_dot[i] - in.goal.v_d[i]);
+    }
+    out->sets_preload = true;
+    out->fit_residual = residual_;
+  }
+
+ private:
+  struct Pair {
+    SpringPair springs;
+    double preload_max_rad;
+  };
+
+  void fit(const LawInputs& in) noexcept {
+    residual_ = 0.0;
+    if (in.gains.settings.stiffness_fit == StiffnessFit::kJoint) {
+      wanted_ = in.gains.K_q.diagonal();
+      return;
+    }
+    const Eigen::Index n = wanted_.size();
+    const Task task(model_.jacobian(in.goal.q_d), in.gains.K_x);
+    if (task.J.rows() == 0) {
+      wanted_.setZero();
+      return;
+    }
+    const bool diagonal = in.gains.settings.stiffness_fit == StiffnessFit::kDiagonal;
+    const JointFit found = diagonal ? nearest_joint_stiffness(task.J, task.K, MatrixJ::Zero(n, n))
+                                    : nearest_joint_compliance(task.J, task.K);
+    residual_ = found.residual;
+    wanted_ = found.value;
+    if (!diagonal) {
+      wanted_ = found.value.cwiseMax(kLeastCompliance_rad_per_Nm).cwiseInverse();
+    }
+    wanted_ = wanted_.cwiseMin(kInfinite_Nm_per_rad);
+  }
+
+  ArmModel model_;
+  bool torque_sensors_;
+  std::vector<Pair> pairs_;
+  VectorJ wanted_;
+  double residual_ = 0.0;
+};
+
+const char* refuse(const Gains& gains, int /*joints*/) {
+  if (gains.settings.bias != Bias::kOfLaw) {
+    return "bias: variable_stiffness carries the weight by its springs; choose of_law";
+  }
+  if (gains.settings.stiffness_fit != StiffnessFit::kCompliance) return nullptr;
+  const Eigen::LLT<Matrix6> cholesky(invertible_on_task(TaskRows(gains.K_x), gains.K_x));
+  return cholesky.info() == Eigen::Success
+             ? nullptr
+             : "stiffness_fit: compliance needs K_x to be positive definite where it has entries";
+}
+
+}  // namespace
+
+LawEntry variable_stiffness_law() {
+  return {.name = "variable_stiffness",
+          .summary = "two motors a joint set the springs' stiffness",
+          .needs = sensors::kMotorEncoder | sensors::kTwoMotors | sensors::kDeflection,
+          .follows = Follows::kJointGoalAndWrench,
+          .composition = {.gravity = false},
+          .statics = StaticForm::kGravity,
+          .refuse = refuse,
+          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
+            return std::make_unique<VariableStiffness>(robot);
+          }};
+}
+
+}  // namespace limber::controller
