@@ -142,7 +142,7 @@ void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noex
   if (drive == nullptr) {
     end.count_foreign();
   } else if (late) {
-    drive->count_late();
+    drive->receive_late(state(), frame);
   } else {
     drive->receive(state(), frame);
   }

@@ -9,6 +9,7 @@ void ConfigureDialogue::start() noexcept {
 }
 
 CanFrame ConfigureDialogue::next_frame() noexcept {
+  advanced_ = false;  // by an answer that came between the cycles
   if (done() || (waited_ > 0 && !repeat_)) return family_->state_request();
   repeat_ = false;
   return step_ == 0 ? family_->disable() : family_->ask(question());

@@ -64,7 +64,7 @@ void Drive::begin_cycle() noexcept {
 }
 
 void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
-  if (state == DriveState::kConfiguring && !configure_.expects_state()) {
+  if (asked(state)) {
     if (configure_.receive(frame)) {
       answered_ = true;
     } else if (!link_.is_aside(frame)) {
@@ -80,6 +80,11 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   }
   answered_ = true;
   if (state == DriveState::kConfiguring) configure_.receive_state(link_.enabled());
+}
+
+void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
+  if (asked(state) && configure_.receive(frame)) return;
+  if (!link_.is_aside(frame)) ++late_;
 }
 
 void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {

@@ -26,7 +26,8 @@ class Drive {
   void begin_cycle() noexcept;
   /// A frame of this motor's.
   void receive(DriveState state, const CanFrame& frame) noexcept;
-  void count_late() noexcept { ++late_; }
+  /// One that came after its cycle. An answer to a question is as good as ever, a state is not.
+  void receive_late(DriveState state, const CanFrame& frame) noexcept;
   void close_cycle(DriveState state, std::int64_t cycle) noexcept;
   /// The operator has seen it: the watchdogs start afresh.
   void acknowledge() noexcept { watch_.reset(); }
@@ -53,6 +54,10 @@ class Drive {
 
  private:
   CanFrame poll() noexcept;
+  /// A question of the start-up dialogue is open.
+  bool asked(DriveState state) const noexcept {
+    return state == DriveState::kConfiguring && !configure_.expects_state();
+  }
 
   JointLink link_;
   ConfigureDialogue configure_;

@@ -155,6 +155,35 @@ TEST(BusLoad, ThreeMoteusDrivesFillABusAtOneKilohertz) {
   EXPECT_NEAR(predicted_bus_load(robot, 0), 3 * (160.8e-6 + 105.6e-6) * 1000, 1e-9);
 }
 
+// FD, 11-bit identifier: 34 us and, of 4 bytes, 5 + 32 + 9 + 4 + 23 = 73 bits at 5 Mbit/s; of 24,
+// 5 + 192 + 49 + 4 + 28 = 278. A SYNC is a classic frame without data, 55 bits at 1 Mbit/s.
+TEST(BusLoad, CanopenDrivesShareOneSync) {
+  Robot robot = seven_joints(true);
+  robot.joints.resize(2);
+  for (JointConfig& joint : robot.joints) {
+    joint.drive.protocol = DriveProtocol::kCia402;
+    joint.drive.command_id = 0x203;
+    joint.drive.reply_id = 0x183;
+    joint.drive.command_bytes = 4;
+    joint.drive.reply_bytes = 24;
+  }
+  const double drive_s = 34e-6 + 73 / 5e6 + 34e-6 + 278 / 5e6;
+  EXPECT_NEAR(predicted_bus_load(robot, 0), (2 * drive_s + 55e-6) * 1000, 1e-9);
+}
+
+TEST(BusLoad, BothMotorsOfAPairCountWhereTheyAre) {
+  Robot robot = seven_joints(false);
+  robot.joints.resize(2);
+  robot.buses.push_back(robot.buses[0]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    robot.joints[i].has_antagonist = true;
+    robot.joints[i].antagonist = robot.joints[i].drive;
+    robot.joints[i].antagonist.bus = static_cast<int>(i);
+  }
+  EXPECT_NEAR(predicted_bus_load(robot, 0), 3 * 270e-6 * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 1), 1 * 270e-6 * 1000, 1e-9);
+}
+
 TEST(BusLoad, CountsOnlyTheBusItself) {
   Robot robot = seven_joints(false);
   robot.buses.push_back(robot.buses[0]);

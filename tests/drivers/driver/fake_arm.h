@@ -150,10 +150,12 @@ inline Robot test_robot(int n, int num_buses = 1) {
   return robot;
 }
 
-/// Driver and fake motors on in-memory buses, and the shortest controller there is.
-class FakeArm {
+/// A driver on in-memory buses, and the shortest controller there is. What answers it is up to the
+/// arm.
+class DrivenArm {
  public:
-  explicit FakeArm(const Robot& from, bool lockstep = false, int bridged_cycles = 2) : robot(from) {
+  explicit DrivenArm(const Robot& from, bool lockstep = false, int bridged_cycles = 2)
+      : robot(from) {
     std::vector<CanBus*> ends;
     for (std::size_t b = 0; b < robot.buses.size(); ++b) {
       memory.push_back(std::make_unique<MemoryBus>());
@@ -161,7 +163,6 @@ class FakeArm {
       motor_ends.push_back(memory.back()->attach());
       ends.push_back(driver_ends.back().get());
     }
-    for (const JointConfig& joint : robot.joints) motors.emplace_back(joint.drive);
     driver = std::make_unique<ArmDriver>(robot, ends,
                                          ArmDriverOptions{kSession, lockstep, bridged_cycles});
     driver->fill_status(&status);
@@ -169,20 +170,10 @@ class FakeArm {
     command.controller = kController;
     command.num_joints = static_cast<std::int16_t>(robot.joints.size());
   }
+  virtual ~DrivenArm() = default;
 
   /// Motors answer everything that waits.
-  void answer() {
-    CanFrame frame;
-    CanFrame reply;
-    for (std::size_t b = 0; b < motor_ends.size(); ++b) {
-      while (motor_ends[b]->receive(std::span(&frame, 1)) == 1) {
-        for (FakeMotor& motor : motors) {
-          if (motor.drive().bus == static_cast<int>(b) && motor.handle(frame, &reply))
-            motor_ends[b]->send(reply);
-        }
-      }
-    }
-  }
+  virtual void answer() = 0;
 
   /// transmit, replies, finish_cycle.
   const joint_state_t& half_cycle() {
@@ -203,7 +194,7 @@ class FakeArm {
     command.request = static_cast<std::int8_t>(request);
     return answer_state();
   }
-  /// Runs with REQUEST_ON until the drives are in a state; false after `most` cycles.
+  /// Runs with the request until the drives are in a state; false after `most` cycles.
   bool run_until(int drive_state, int request, int most = 200) {
     for (int i = 0; i < most; ++i) {
       cycle_with(request);
@@ -219,6 +210,45 @@ class FakeArm {
     driver->fill_status(&status);
     return status;
   }
+
+  static constexpr std::int64_t kSession = 42;
+  static constexpr std::int64_t kController = 7;
+
+  Robot robot;
+  std::vector<std::unique_ptr<MemoryBus>> memory;
+  std::vector<std::unique_ptr<CanBus>> driver_ends;
+  std::vector<std::unique_ptr<CanBus>> motor_ends;
+  std::unique_ptr<ArmDriver> driver;
+  const joint_state_t* state = nullptr;
+  joint_torque_t command{};
+  driver_status_t status{};
+  std::int64_t cycle = -1;
+};
+
+/// With fake motors: one for every joint, and then the second ones of joints that have two.
+class FakeArm : public DrivenArm {
+ public:
+  explicit FakeArm(const Robot& from, bool lockstep = false, int bridged_cycles = 2)
+      : DrivenArm(from, lockstep, bridged_cycles) {
+    for (const JointConfig& joint : robot.joints) motors.emplace_back(joint.drive);
+    for (const JointConfig& joint : robot.joints) {
+      if (joint.has_antagonist) motors.emplace_back(joint.antagonist);
+    }
+  }
+
+  void answer() override {
+    CanFrame frame;
+    CanFrame reply;
+    for (std::size_t b = 0; b < motor_ends.size(); ++b) {
+      while (motor_ends[b]->receive(std::span(&frame, 1)) == 1) {
+        for (FakeMotor& motor : motors) {
+          if (motor.drive().bus == static_cast<int>(b) && motor.handle(frame, &reply))
+            motor_ends[b]->send(reply);
+        }
+      }
+    }
+  }
+
   void set_angle(int joint, double q) {
     const DriveConfig& drive = robot.joints[static_cast<std::size_t>(joint)].drive;
     motors[static_cast<std::size_t>(joint)].angle = drive.sign * q + drive.offset_rad;
@@ -228,19 +258,7 @@ class FakeArm {
         robot.joints[static_cast<std::size_t>(joint)].drive.sign * v;
   }
 
-  static constexpr std::int64_t kSession = 42;
-  static constexpr std::int64_t kController = 7;
-
-  Robot robot;
-  std::vector<std::unique_ptr<MemoryBus>> memory;
-  std::vector<std::unique_ptr<CanBus>> driver_ends;
-  std::vector<std::unique_ptr<CanBus>> motor_ends;
   std::vector<FakeMotor> motors;
-  std::unique_ptr<ArmDriver> driver;
-  const joint_state_t* state = nullptr;
-  joint_torque_t command{};
-  driver_status_t status{};
-  std::int64_t cycle = -1;
 };
 
 }  // namespace limber::testing

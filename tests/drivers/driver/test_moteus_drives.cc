@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <numbers>
 
-#include "drivers/arm_driver.h"
-#include "drivers/can/memory_bus.h"
 #include "drivers/joint_link.h"
+#include "tests/drivers/driver/fake_arm.h"
 
 namespace limber {
 namespace {
@@ -145,58 +143,23 @@ Robot moteus_robot(std::uint32_t first_id = 1) {
   return robot;
 }
 
-class MoteusArm {
+class MoteusArm : public testing::DrivenArm {
  public:
-  explicit MoteusArm(const Robot& from = moteus_robot()) : robot(from) {
+  explicit MoteusArm(const Robot& from = moteus_robot()) : DrivenArm(from) {
     for (const JointConfig& joint : robot.joints) motors.emplace_back(joint.drive);
-    driver = std::make_unique<ArmDriver>(robot, std::vector<CanBus*>{driver_end.get()},
-                                         ArmDriverOptions{42, false, 2});
-    command.session = 42;
-    command.controller = 7;
-    command.num_joints = static_cast<std::int16_t>(robot.joints.size());
   }
 
-  const joint_state_t& half_cycle() {
-    driver->transmit(++cycle * 1'000'000);
+  void answer() override {
     CanFrame frame;
     CanFrame reply;
-    while (motor_end->receive(std::span(&frame, 1)) == 1) {
+    while (motor_ends[0]->receive(std::span(&frame, 1)) == 1) {
       for (FakeMoteus& motor : motors) {
-        if (motor.handle(frame, &reply)) motor_end->send(reply);
+        if (motor.handle(frame, &reply)) motor_ends[0]->send(reply);
       }
     }
-    driver->poll();
-    state = &driver->finish_cycle();
-    return *state;
-  }
-  int cycle_with(int request) {
-    half_cycle();
-    command.state_seq = state->seq;
-    command.time_ns = state->time_ns;
-    command.request = static_cast<std::int8_t>(request);
-    return driver->accept(command);
-  }
-  bool run_until(int drive_state, int request, int most = 200) {
-    for (int i = 0; i < most; ++i) {
-      cycle_with(request);
-      if (state->drive_state == drive_state) return true;
-    }
-    return false;
-  }
-  bool switch_on() {
-    return run_until(joint_state_t::DRIVE_OFF, joint_torque_t::REQUEST_KEEP) &&
-           run_until(joint_state_t::DRIVE_ON, joint_torque_t::REQUEST_ON);
   }
 
-  Robot robot;
-  MemoryBus memory;
-  std::unique_ptr<CanBus> driver_end = memory.attach();
-  std::unique_ptr<CanBus> motor_end = memory.attach();
   std::vector<FakeMoteus> motors;
-  std::unique_ptr<ArmDriver> driver;
-  const joint_state_t* state = nullptr;
-  joint_torque_t command{};
-  std::int64_t cycle = -1;
 };
 
 TEST(MoteusStartUp, StopThenTwoQuestionsThenPolling) {
@@ -328,9 +291,7 @@ TEST(MoteusState, NothingButNumbersIsPublished) {
   arm.half_cycle();
   EXPECT_EQ(arm.state->tau[0], 0.0);
   EXPECT_EQ(arm.state->age_cycles[0], 1);
-  driver_status_t status{};
-  arm.driver->fill_status(&status);
-  EXPECT_EQ(status.replies_invalid[0], 1);
+  EXPECT_EQ(arm.read_status().replies_invalid[0], 1);
 }
 
 TEST(MoteusHold, DampsFirstAndThenHoldsWhereTheJointIs) {

@@ -59,6 +59,58 @@ class TorqueGateTest : public ::testing::Test {
 
 TEST_F(TorqueGateTest, AcceptsWhatIsInOrder) { EXPECT_EQ(check(good_), kAccepted); }
 
+// Two motors of 6 N m each at joint 1, whose limit is 20 N m; one at the others.
+TEST_F(TorqueGateTest, PreloadUpToWhatEachOfTwoMotorsMayDo) {
+  limits_.preload_Nm[1] = 12.0;
+  limits_.preload_step_Nm[1] = kInf;
+  limits_.torque_step_Nm[1] = kInf;
+  struct Case {
+    double tau, preload;
+    int verdict;
+  };
+  for (const Case& c :
+       {Case{0.0, 12.0, kAccepted}, Case{0.0, -12.0, kAccepted},
+        Case{0.0, std::nextafter(12.0, 13.0), Status::VERDICT_TORQUE},
+        Case{0.0, -std::nextafter(12.0, 13.0), Status::VERDICT_TORQUE}, Case{5.0, 7.0, kAccepted},
+        Case{-5.0, 7.0, kAccepted},
+        Case{5.0, std::nextafter(12.0, 13.0) - 5.0, Status::VERDICT_TORQUE},
+        Case{-5.0, 5.0 - std::nextafter(12.0, 13.0), Status::VERDICT_TORQUE},
+        Case{0.0, kNan, Status::VERDICT_NOT_FINITE}, Case{0.0, kInf, Status::VERDICT_NOT_FINITE}}) {
+    EXPECT_EQ(check_with([&](auto& command) {
+                command.tau[1] = c.tau;
+                command.tau_preload[1] = c.preload;
+              }),
+              c.verdict)
+        << c.tau << " " << c.preload;
+  }
+}
+
+TEST_F(TorqueGateTest, OneMotorHasNoPreload) {
+  for (double preload : {1e-300, -1.0, 5.0}) {
+    EXPECT_EQ(check_with([&](auto& command) { command.tau_preload[2] = preload; }),
+              Status::VERDICT_TORQUE + 0);
+  }
+  EXPECT_EQ(check_with([&](auto& command) { command.tau_preload[2] = kNan; }),
+            Status::VERDICT_NOT_FINITE + 0);
+}
+
+TEST_F(TorqueGateTest, PreloadRateFromWhatIsPresent) {
+  limits_.preload_Nm[1] = 12.0;
+  limits_.preload_step_Nm[1] = 4.0;
+  situation_.preload_present[1] = 2.0;
+  for (const auto& [preload, verdict] : std::vector<std::pair<double, int>>{
+           {6.0, kAccepted},
+           {-2.0, kAccepted},
+           {2.0 + std::nextafter(4.0, 5.0), Status::VERDICT_RATE},
+           {2.0 - std::nextafter(4.0, 5.0), Status::VERDICT_RATE}}) {
+    const auto change = [&](auto& command) { command.tau_preload[1] = preload; };
+    situation_.followed = true;
+    EXPECT_EQ(check_with(change), verdict) << preload;
+    situation_.followed = false;
+    EXPECT_EQ(check_with(change), kAccepted) << preload;
+  }
+}
+
 TEST_F(TorqueGateTest, PowerUpToTheLimit) {
   situation_.velocity = {2.0, -1.0, 4.0};  // 0.5 * 2 + 1 * 1 + 0.25 * 4 = 3 W
   for (const auto& [power_W, verdict] :
