@@ -7,6 +7,7 @@ import numpy as np
 from limber.experiments import testbench as bench
 from limber.experiments.check import Check
 from limber.experiments.context import Context
+from limber.experiments.evaluate import case
 from limber.experiments.pictures import BLUE, MEASURED, ORANGE
 
 from . import joint, seven
@@ -38,6 +39,7 @@ def run(context: Context) -> list[Check]:
         *errors(ideal, bus),
         *afar(path, model),
         *too_soft(context),
+        sufficient(context),
         *seven.checks(context),
     ]
 
@@ -73,6 +75,17 @@ def afar(path: joint.Path, model: np.ndarray) -> list[Check]:
         Check(f"{name}, {how}", 0.0, end, "rad", 1e-3, "absolute")
         for how, end in zip(("ideal", "bus"), ends, strict=True)
     ]
+
+
+def sufficient(context: Context) -> Check:
+    """K_P at which the controller finds the smallest eigenvalue at α."""
+    gains = np.linspace(40.0, 60.0, 41)
+    state = {"theta": [0.0], "thetad": [0.0], "q_d": [0.0], "K": [joint.SPRING], "KD": [0.0]}
+    answers = context.eval([case("tomei", bench.ROBOT, KP=[K_P], **state) for K_P in gains])
+    eigenvalues = [answer["lambda_min"] for answer in answers]
+    found = float(np.interp(joint.GRAVITY, eigenvalues, gains))
+    name = "motor gain that the proof asks for, by the controller"
+    return Check(name, joint.SUFFICIENT, found, "N m/rad", 1e-3)
 
 
 def too_soft(context: Context) -> list[Check]:

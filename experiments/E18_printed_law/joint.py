@@ -12,7 +12,6 @@ from limber.experiments.context import Context
 from limber.experiments.plants import held
 
 SPRING, GRAVITY = 60.0, 20.0  # N m/rad; N m that the link weighs when it lies
-K_VM = 4.0  # N m s/rad
 PUSH_NM, PUSH_S, JUDGED_S = 1.0, 2.5, (0.5, 1.5)
 START = 2.0  # rad from hanging
 SWING_S = 6.0
@@ -29,8 +28,13 @@ def fall_time(K_pm: float, height: float) -> float:
     return float(ellipk(np.sin(height / 2) ** 2) / omega)
 
 
+def damper(K_pm: float) -> float:
+    """K_vm, N m s/rad, in proportion to the joint's own: with less the law feeds a swing."""
+    return K_pm / SPRING * bench.D_J
+
+
 def _law(K_pm: float) -> np.ndarray:
-    return np.array([K_pm, K_VM, -K_pm, -K_VM])  # on (q, q̇, θ, θ̇)
+    return np.array([K_pm, damper(K_pm), -K_pm, -damper(K_pm)])  # on (q, q̇, θ, θ̇)
 
 
 def acceleration(t: np.ndarray, q: np.ndarray) -> float:
@@ -99,7 +103,7 @@ def _bench(gravity: float) -> dict[str, Any]:
 
 
 def _gains(K_pm: float) -> dict[str, Any]:
-    return {"law": "deflection_pd", **bench.given(K_pm, K_VM)}
+    return {"law": "deflection_pd", **bench.given(K_pm, damper(K_pm))}
 
 
 def pushed_bus(context: Context, K_pm: float) -> float:
