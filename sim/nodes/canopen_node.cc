@@ -189,6 +189,7 @@ void CanopenNode::tell_heartbeat() noexcept {
 }
 
 void CanopenNode::hear_heartbeat(const CanFrame& frame) noexcept {
+  if (frame.id < canopen::kHeartbeatCode) return;
   const auto watched = static_cast<std::uint32_t>(dictionary_->value(canopen::kConsumerHeartbeat));
   const auto master = static_cast<std::uint8_t>(watched >> 16U);
   NmtState state;

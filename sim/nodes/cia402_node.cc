@@ -17,7 +17,9 @@ constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 constexpr double kNoMode = 0.0;
 constexpr double kMilli = 1e-3;
 constexpr double kStanding_rad_per_s = 0.01;
-constexpr int kBrakeInFault = 2;  // 605Eh
+// 605Eh
+constexpr int kLetGoInFault = 0;
+constexpr int kBrakeInFault = 2;
 
 }  // namespace
 
@@ -99,6 +101,8 @@ int Cia402Node::option(const cia402::Object& object) noexcept {
 
 Refusal Cia402Node::refuses(const DictionaryEntry& entry, double value) noexcept {
   if (entry.id == cia402::kMode.id && value != kNoMode && value != cia402::kCyclicSynchronousTorque)
+    return SdoAbort::kValueRange;
+  if (entry.id == cia402::kFaultOption.id && value != kLetGoInFault && value != kBrakeInFault)
     return SdoAbort::kValueRange;
   if (entry.id == cia402::kSpringStiffness_Nm_per_rad.id && value == 0.0)
     return SdoAbort::kValueRange;

@@ -5,8 +5,8 @@
 //
 // Source: Ott, Albu-Schaeffer, Kugi, Hirzinger, "On the passivity-based impedance control of
 // flexible joint robots", IEEE TRO 24 (2008). tau is sampled every 1 / rate and held; tau' is the
-// difference of two samples through one pole at half a sample, 1 / (1 + 1/2 + 1/4 ..): the torque
-// sensor is all it needs. A command takes effect at once.
+// difference of two samples, averaged with weight 1/2: the torque sensor is all it needs. A command
+// takes effect at once.
 #pragma once
 
 #include <array>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limber/scenario_event_t.hpp>
 #include <numbers>
+#include <random>
 #include <string>
 
 #include "drivers/protocols/mit.h"
@@ -291,6 +292,13 @@ TEST(Cia402Node, WithoutATorqueSensorThereIsNoLoop) {
             code(SdoAbort::kReadOnly));
 }
 
+TEST(Cia402Node, AFaultBrakesOrLetsGo) {
+  Cia402Bench bench;
+  EXPECT_EQ(bench.refusal(cia402::kFaultOption, 0), 0U);
+  EXPECT_EQ(bench.refusal(cia402::kFaultOption, 1), code(SdoAbort::kValueRange));
+  EXPECT_EQ(bench.refusal(cia402::kFaultOption, 2), 0U);
+}
+
 // --- lost connections ---
 
 TEST(Cia402Node, AMissingRpdoIsAFault) {
@@ -455,6 +463,36 @@ TEST(Cia402Node, DroppedCommandsStarveTheWatchdog) {
   }
   bench.wait(1);
   EXPECT_EQ(bench.node->state(), State::kFaultReactionActive);
+}
+
+TEST(Cia402Node, WhateverComesTheTorqueIsFiniteAndWithinThePeak) {
+  Cia402Bench bench(with_sensors(cia402_joint(), 4.0), true);
+  bench.enable();
+  std::minstd_rand random(402);
+  const std::uint32_t ids[] = {0x000, 0x080, 0x203, 0x203, 0x303, 0x603, 0x603, 0x603, 0x77F};
+  const std::uint16_t indices[] = {0x1400, 0x1600, 0x1800, 0x1A00, 0x1016, 0x2010, 0x6040,
+                                   0x6060, 0x6071, 0x6072, 0x60B2, 0x6403, 0x605A, 0x6007};
+  CanFrame frame, reply;
+  int answers = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    frame.id = ids[random() % std::size(ids)];
+    frame.length = static_cast<std::uint8_t>(frame.id == 0x603 ? 8 : random() % 9);
+    for (std::size_t k = 0; k < 8; ++k) frame.data[k] = static_cast<std::uint8_t>(random() >> 8U);
+    if (frame.id == 0x603) {
+      const std::uint16_t index = indices[random() % std::size(indices)];
+      frame.data[1] = static_cast<std::uint8_t>(index);
+      frame.data[2] = static_cast<std::uint8_t>(index >> 8U);
+      frame.data[3] = static_cast<std::uint8_t>(frame.data[3] % 7);
+    }
+    // Seldom stopped or reset: then little would happen.
+    if (frame.id == 0x000 && random() % 8 != 0) frame.data[0] = 1;
+    bench.joint.joint_torque = static_cast<double>(random() % 2000) - 1000.0;
+    answers += bench.node->receive(frame, bench.joint, bench.now, &reply) ? 1 : 0;
+    while (bench.node->take(&reply)) ASSERT_TRUE(is_possible(reply));
+    if (i % 16 == 0) bench.advance(250'000);
+    ASSERT_TRUE(std::abs(bench.torque()) <= 84.0);
+  }
+  EXPECT_GT(answers, 20'000);
 }
 
 TEST(Cia402Node, NeverAllocates) {
