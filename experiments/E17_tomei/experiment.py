@@ -39,7 +39,7 @@ def run(context: Context) -> list[Check]:
         *errors(ideal, bus),
         *afar(path, model),
         *too_soft(context),
-        sufficient(context),
+        *sufficient(context),
         *seven.checks(context),
     ]
 
@@ -77,15 +77,21 @@ def afar(path: joint.Path, model: np.ndarray) -> list[Check]:
     ]
 
 
-def sufficient(context: Context) -> Check:
-    """K_P at which the controller finds the smallest eigenvalue at α."""
+def sufficient(context: Context) -> list[Check]:
+    """K_P at which the controller finds the smallest eigenvalue at α; it takes no less."""
     gains = np.linspace(40.0, 60.0, 41)
     state = {"theta": [0.0], "thetad": [0.0], "q_d": [0.0], "K": [joint.SPRING], "KD": [0.0]}
     answers = context.eval([case("tomei", bench.ROBOT, KP=[K_P], **state) for K_P in gains])
     eigenvalues = [answer["lambda_min"] for answer in answers]
     found = float(np.interp(joint.GRAVITY, eigenvalues, gains))
     name = "motor gain that the proof asks for, by the controller"
-    return Check(name, joint.SUFFICIENT, found, "N m/rad", 1e-3)
+    bound = joint.SUFFICIENT
+    made = [Check(name, bound, found, "N m/rad", 1e-3)]
+    for share, refused in ((0.99, 1), (1.01, 0)):
+        name = f"refused of one request, K_P = {share * bound:g} N m/rad, bus"
+        seen = joint.refused_bus(context, share * bound)
+        made.append(Check(name, refused, seen, "", 0.0, "absolute"))
+    return made
 
 
 def too_soft(context: Context) -> list[Check]:

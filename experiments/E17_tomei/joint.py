@@ -161,3 +161,11 @@ def critical_bus(context: Context, tried: list[float]) -> float:
         seen = bench.truth(log, 3.0, 6.0)
         rates.append(float(np.polyfit(seen["t"], np.log(abs(seen["q"] - UPRIGHT)), 1)[0]))
     return bench.zero_between(tried, rates)
+
+
+def refused_bus(context: Context, K_P: float) -> int:
+    """Gains that the controller refuses when it knows the weight: one request, or none."""
+    log = bench.on_bus(
+        context, f"refused_{K_P:g}", gains(K_P), [], 1.5, changes=changes(SPRING, GRAVITY)
+    )
+    return int(log.read("CONTROLLER_STATUS")["requests_refused"].max())
