@@ -77,8 +77,8 @@ double Motor::fastest_rate(const DriveLaw& law, const MotorPoint& at, double lin
   if (rigid()) return 0.0;
   const double reach = std::abs(stretch(at)) + h * std::abs(stretch_rate(at));
   const double mobility = 1.0 / inertia_ + 1.0 / link_inertia;
-  const double k = (transmission_.greatest_stiffness(reach) + law.kp) * mobility;
-  const double d = 0.5 * (transmission_.greatest_damping() + law.kd) * mobility;
+  const double k = transmission_.greatest_stiffness(reach) * mobility + law.kp / inertia_;
+  const double d = 0.5 * (transmission_.greatest_damping() * mobility + law.kd / inertia_);
   return d * d > k ? d + std::sqrt(d * d - k) : std::sqrt(k);
 }
 

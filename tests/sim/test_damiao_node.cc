@@ -76,7 +76,7 @@ class Node : public ::testing::Test {
   }
   void advance(std::int64_t ns) {
     now_ += ns;
-    node_.update(now_);
+    node_.update(joint_, now_);
   }
   void enable_with_watchdog() {
     write(9, 400);  // 20 ms
@@ -93,7 +93,7 @@ TEST_F(Node, AnswersWithStateInItsFields) {
   // p: 0.75 rad is 1955.7 encoder steps, floored 1955 steps = 0.749735; (0.749735 + 12.5) 65535 /
   // 25 = 34732.8 -> 0x87AC. v: (-0.5 + 30) 4095 / 60 = 2013.4 -> 0x7DD. t: (1.8 + 10) 4095 / 20 =
   // 2416.05 -> 0x970. 30 degC twice.
-  joint_ = {0.75, -0.5, 1.8};
+  joint_ = {0.75, -0.5, 0.75, -0.5, 1.8};
   EXPECT_EQ(send(Special::kEnable), "0387AC7DD9701E1E");  // state before: disabled
   EXPECT_EQ(reply_.id, 0x13u);
   EXPECT_EQ(send(frame(3, "7FFF7FF000000800")), "1387AC7DD9701E1E");
@@ -189,7 +189,7 @@ TEST_F(Node, RegistersTellWhatTheRobotFileSays) {
   EXPECT_EQ(mit::bits_float(read(21)), 12.5f);
   EXPECT_EQ(mit::bits_float(read(22)), 30.0f);
   EXPECT_NEAR(mit::bits_float(read(12)), 1.8e-5f, 1e-10f);
-  joint_.q = 1.0;
+  joint_.theta = 1.0;
   EXPECT_NEAR(mit::bits_float(read(81)), 1.0f, 4e-4f);
   EXPECT_NEAR(mit::bits_float(read(80)), 10.0f, 4e-3f);
   EXPECT_EQ(read(200), 0u);
@@ -283,7 +283,7 @@ TEST(DamiaoNode, WatchdogReactionOffLeavesTheJointFree) {
   CanFrame reply;
   node.receive(mit::encode_register_write(3, mit::Register::kTimeout, 20, false), {}, 0, &reply);
   node.receive(mit::encode_special(Special::kEnable, 3, false), {}, 0, &reply);
-  node.update(2 * kMs);
+  node.update({}, 2 * kMs);
   EXPECT_EQ(node.state(), DriveError::kCommunicationLost);
   EXPECT_EQ(node.law().passive_damping, 0.0);
 }
@@ -297,7 +297,7 @@ TEST(DamiaoNode, SignAndOffsetStayInTheDrive) {
   CanFrame reply;
   node.receive(mit::encode_special(Special::kEnable, 3, false), {}, 0, &reply);
   // Joint at 0.5, 1.0 rad/s, 2 N m: the drive sees -0.5 + 0.25, -1.0 rad/s, -2 N m.
-  const JointReading reading{0.5, 1.0, 2.0};
+  const JointReading reading{0.5, 1.0, 0.5, 1.0, 2.0};
   ASSERT_TRUE(mit::encode_command({-0.35, 1.0, 100.0, 2.0, -1.0}, joint.drive.range, 3, false,
                                   mit::Quantiser::kRound, &frame));
   ASSERT_TRUE(node.receive(frame, reading, 0, &reply));
@@ -317,7 +317,7 @@ TEST(DamiaoNode, SignAndOffsetStayInTheDrive) {
 TEST_F(Node, PositionIsFlooredToEncoderSteps) {
   const double step = 2.0 * M_PI / 16384;
   for (const double q : {0.1, -0.1, 2.7, -3.0}) {
-    joint_.q = q;
+    joint_.theta = q;
     send(Special::kDisable);
     mit::Reply state;
     ASSERT_TRUE(mit::decode_reply(reply_, joint3().drive.range, &state));
@@ -328,7 +328,7 @@ TEST_F(Node, PositionIsFlooredToEncoderSteps) {
 }
 
 TEST_F(Node, SetZeroWorksAtRestOnly) {
-  joint_.q = 0.7;
+  joint_.theta = 0.7;
   send(Special::kSetZero);
   send(Special::kEnable);
   mit::Reply state;
@@ -336,7 +336,7 @@ TEST_F(Node, SetZeroWorksAtRestOnly) {
   EXPECT_NEAR(state.position_rad, 0.0, 4e-4);
   send(mit::Command{0.1, 0.0, 10.0, 0.0, 0.0});
   EXPECT_NEAR(node_.law().q_des, 0.8, 1e-3);
-  joint_.q = 0.9;
+  joint_.theta = 0.9;
   send(Special::kSetZero);  // enabled: answered, not obeyed
   send(Special::kEnable);
   ASSERT_TRUE(mit::decode_reply(reply_, joint3().drive.range, &state));
@@ -354,11 +354,11 @@ TEST_F(Node, SilentNodeObeysWithoutAnswering) {
 }
 
 TEST_F(Node, FrozenEncoderFreezesTheDrivesOwnLoopToo) {
-  joint_ = {0.5, 0.2, 0.0};
+  joint_ = {0.5, 0.2, 0.5, 0.2, 0.0};
   send(Special::kEnable);
   send(mit::Command{0.6, 0.0, 20.0, 1.0, 0.0});
   node_.inject(scenario_event_t::FAULT_FROZEN_ENCODER, joint_, now_ + 5 * kMs);
-  joint_ = {0.9, 3.0, 0.0};
+  joint_ = {0.9, 3.0, 0.9, 3.0, 0.0};
   send(mit::Command{0.6, 0.0, 20.0, 1.0, 0.0});
   mit::Reply state;
   ASSERT_TRUE(mit::decode_reply(reply_, joint3().drive.range, &state));

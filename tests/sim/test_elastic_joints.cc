@@ -1,10 +1,9 @@
-// Joints with springs against the closed forms of two masses, and both integrators at steps longer
-// than anybody should take.
+// Joints with springs against the closed forms of two masses and of antagonistic pairs, and their
+// energy book.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 
 #include "common/config_error.h"
 #include "sim/arm_plant.h"
@@ -111,6 +110,113 @@ TEST_P(BothIntegrators, AStiffSpringIsARigidJoint) {
   make(robot);
   for (int k = 0; k < 400; ++k) step(kStep);
   EXPECT_NEAR(plant_->q()[0], rigid, 2e-5);
+}
+
+// Quadratic springs: sigma = 2 k2 c and tau = sigma (e - q), exactly, while both are taut.
+TEST_P(BothIntegrators, AntagonisticPairSwingsAtItsPreloadsStiffness) {
+  const double k2 = 400.0;
+  for (const double c : {0.15, 0.45}) {
+    LoadedRobot robot = testing::one_joint(kLink, kRotor, 0.0);
+    testing::make_antagonistic(&robot.robot.joints[0], k2, c);
+    make(robot);
+    start_at(robot.robot, VectorJ::Zero(1), false, plant_.get());
+    EXPECT_NEAR(forces_->joint_stiffness(x(), 0), 2.0 * k2 * c, 1e-9);
+    // Drives that hold their motors as good as still.
+    for (int motor : {0, 1}) forces_->drives[motor] = {1e7, 4e3, c, 0.0, 0.0, 1e9, 0.0};
+    ArmState state = x();
+    state.q[0] = 0.02;
+    plant_->set_state(state);
+    EXPECT_NEAR(forces_->spring_torque(x(), 0), -2.0 * k2 * c * 0.02, 1e-9);
+    const double omega = std::sqrt(2.0 * k2 * c / kLink);
+    double worst = 0.0;
+    const double h = 1e-5;
+    for (int k = 1; k <= 50000; ++k) {
+      step(h);
+      worst = std::max(worst, std::abs(x().q[0] - 0.02 * std::cos(omega * k * h)));
+    }
+    EXPECT_LT(worst, 0.02 * 2e-3) << c;
+  }
+}
+
+// Equal torques wind up the preload alone: c'' = tau / B - f(c) / B from rest; energy says how far.
+TEST_P(BothIntegrators, EqualTorquesWindUpThePreloadAlone) {
+  const double k2 = 400.0;
+  const double tau = 2.0;
+  LoadedRobot robot = testing::one_joint(kLink, kRotor, 0.0);
+  testing::make_antagonistic(&robot.robot.joints[0], k2, 0.0);
+  make(robot);
+  for (int motor : {0, 1}) set_torque(motor, tau);
+  double most = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    step(kStep);
+    most = std::max(most, x().theta[0]);
+    ASSERT_NEAR(x().q[0], 0.0, 1e-12);
+    ASSERT_NEAR(x().theta[0], x().theta[1], 1e-12);
+  }
+  EXPECT_NEAR(most, std::sqrt(6.0 * tau / k2), 1e-3 * most);  // tau c = k2 c^3 / 6
+}
+
+TEST_P(BothIntegrators, MotorsAtTheStartCarryTheWeight) {
+  LoadedRobot robot = testing::planar_arm(testing::desktop());
+  testing::make_elastic(&robot.robot.joints[0], 300.0, 0.5);
+  testing::make_antagonistic(&robot.robot.joints[1], 400.0, 0.2);
+  make(robot);
+  VectorJ q(2);
+  q << 0.3, -0.5;
+  start_at(robot.robot, q, false, plant_.get());
+  const VectorJ g = plant_->gravity_torque();
+  const auto s = testing::desktop();
+  EXPECT_NEAR(g[1], s.m2 * s.l2 * 9.81 * std::cos(0.3 - 0.5), 1e-12);
+  EXPECT_NEAR(x().theta[0], 0.3 + g[0] / 300.0, 1e-9);
+  EXPECT_NEAR(0.5 * (x().theta[1] + x().theta[2]), 0.2, 1e-12);
+  // sigma (e - q) = g with sigma = 2 k2 c
+  EXPECT_NEAR(0.5 * (x().theta[1] - x().theta[2]), -0.5 + g[1] / 160.0, 1e-9);
+  // Motors that give what their springs take stay, and so does the arm.
+  for (int motor : {0, 1, 2}) {
+    set_torque(motor, forces_->motor(motor).spring_torque(forces_->point(x(), motor)));
+  }
+  for (int k = 0; k < 40; ++k) step(kStep);
+  EXPECT_LT((x().q - q).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_P(BothIntegrators, EnergyBookIsClosed) {
+  for (const bool losses : {false, true}) {
+    LoadedRobot robot = testing::planar_arm(testing::desktop());
+    testing::make_elastic(&robot.robot.joints[0], 300.0, losses ? 0.2 : 0.0);
+    testing::make_antagonistic(&robot.robot.joints[1], 400.0, 0.2);
+    for (JointConfig& joint : robot.robot.joints) {
+      joint.friction = {0.2, 0.3, 0.05, 0.02, 1e-3};
+      joint.link_friction = {0.1, 0.1, 0.05, 0.01, 1e-3};
+    }
+    make(robot, losses);
+    start_at(robot.robot, VectorJ::Zero(2), false, plant_.get());
+    const double before = energy();
+    double greatest = 0.0;
+    double worst = 0.0;
+    for (int k = 0; k < 8000; ++k) {
+      const double t = k * kStep;
+      set_torque(0, 3.0 * std::sin(5.0 * t));
+      set_torque(1, 1.0 + 0.5 * std::sin(8.0 * t));
+      set_torque(2, 1.0);
+      step(kStep);
+      const Work& work = plant_->work();
+      const double held = energy() + forces_->bristle_energy() - before;
+      worst = std::max(worst, std::abs(held - work.motor - work.friction - work.external));
+      greatest = std::max({greatest, plant_->kinetic_energy(), std::abs(work.motor)});
+    }
+    EXPECT_GT(greatest, 1.0);
+    EXPECT_LT(worst, (exact() ? 1e-3 : 5e-2) * greatest) << losses;
+    if (losses) {
+      EXPECT_LT(plant_->work().friction, -0.1);
+    }
+  }
+}
+
+TEST(Integrators, AMotorBehindASpringNeedsInertia) {
+  LoadedRobot robot = testing::one_joint(kLink, 0.0, 0.0);
+  EXPECT_NO_THROW(make_arm_plant(Integrator::kReference, build_arm_model(robot)));
+  testing::make_elastic(&robot.robot.joints[0], 100.0, 1.0);
+  EXPECT_THROW(make_arm_plant(Integrator::kReference, build_arm_model(robot)), ConfigError);
 }
 
 }  // namespace

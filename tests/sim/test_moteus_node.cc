@@ -77,7 +77,7 @@ class MoteusNodeTest : public ::testing::Test {
   }
   void advance(std::int64_t ns) {
     now_ += ns;
-    node_.update(now_);
+    node_.update(joint_, now_);
   }
   void come_up(double torque = 0.0) {
     command(kNan, 0.0, 0.0, torque);
@@ -93,7 +93,7 @@ class MoteusNodeTest : public ::testing::Test {
 };
 
 TEST_F(MoteusNodeTest, StopIsAnsweredWithTheState) {
-  joint_ = {0.1 * kTurn, 0.0, 0.85};
+  joint_ = {0.1 * kTurn, 0.0, 0.1 * kTurn, 0.0, 0.85};
   // 0.1 turns is 0x3DCCCCCD, but the encoder floors by less than a float tells; 0.85 N m, 48 V in
   // half volts, 30 degC, no fault.
   EXPECT_EQ(send("01000011001F01130D505050"),
@@ -127,7 +127,8 @@ TEST_F(MoteusNodeTest, TorqueOnlyInInt16) {
 }
 
 TEST_F(MoteusNodeTest, IntegerAnswers) {
-  joint_ = {0.1 * kTurn + 1e-9, -0.025 * kTurn - 1e-9, 0.8501};
+  joint_ = {0.1 * kTurn + 1e-9, -0.025 * kTurn - 1e-9, 0.1 * kTurn + 1e-9, -0.025 * kTurn - 1e-9,
+            0.8501};
   EXPECT_EQ(send("140400130D"),
             "240400"
             "0000E8039CFF5500"
@@ -221,7 +222,7 @@ TEST_F(MoteusNodeTest, EveryRegisterInEveryFormat) {
                           Register::kFirmware,
                           Register::kRegisterMap,
                           Register::kId};
-  joint_ = {0.5, 0.25, 1.5};
+  joint_ = {0.5, 0.25, 0.5, 0.25, 1.5};
   for (Register reg : all) {
     for (int type = 0; type < 4; ++type) {
       moteus::FrameWriter request(kToServo4);
@@ -327,7 +328,7 @@ TEST_F(MoteusNodeTest, SignAndOffset) {
   joint.drive.sign = -1.0;
   joint.drive.offset_rad = 0.25 * kTurn;
   node_ = MoteusNode(joint);
-  joint_ = {0.05 * kTurn, 0.5 * kTurn, 1.5};
+  joint_ = {0.05 * kTurn, 0.5 * kTurn, 0.05 * kTurn, 0.5 * kTurn, 1.5};
   EXPECT_NEAR(read(Register::kPosition), 0.2, 1.1e-5);
   EXPECT_NEAR(read(Register::kVelocity), -0.5, 1.1e-5);
   EXPECT_NEAR(read(Register::kTorque), -1.5, 1.1e-3);
@@ -344,7 +345,7 @@ TEST_F(MoteusNodeTest, EncoderFloorsToItsBits) {
     node_ = MoteusNode(joint);
     const double count = std::ldexp(1.0, -bits);
     for (double turns : {0.3, -0.3, 0.123456}) {
-      joint_.q = turns * kTurn;
+      joint_.theta = turns * kTurn;
       moteus::State state;
       send(moteus::encode_state_request(kToServo4));
       ASSERT_TRUE(moteus::decode_state(reply_, &state));
@@ -356,7 +357,7 @@ TEST_F(MoteusNodeTest, EncoderFloorsToItsBits) {
 }
 
 TEST_F(MoteusNodeTest, SetOutputMovesTheZero) {
-  joint_.q = 0.3 * kTurn;
+  joint_.theta = 0.3 * kTurn;
   send(std::string("0EB00202") + "00000040");  // no such thing as two values at the end: refused
   EXPECT_NEAR(read(Register::kPosition), 0.3, 1.1e-5);
   send("0DB10200000040");  // exactly 2 turns
@@ -393,11 +394,11 @@ TEST_F(MoteusNodeTest, OtherFaults) {
   EXPECT_EQ(send("1100"), "21000A");
 
   node_.inject(scenario_event_t::FAULT_FROZEN_ENCODER, joint_, now_ + 5 * kMs);
-  joint_ = {0.1 * kTurn, 1.0, 0.0};
+  joint_ = {0.1 * kTurn, 1.0, 0.1 * kTurn, 1.0, 0.0};
   EXPECT_EQ(read(Register::kPosition), 0.0);
   EXPECT_EQ(read(Register::kVelocity), 0.0);
   command(0.01, 1.0, 1.0, 0.0);
-  EXPECT_NEAR(torque_at(joint_.q, joint_.v), 0.4, 1e-6);
+  EXPECT_NEAR(torque_at(joint_.theta, joint_.theta_dot), 0.4, 1e-6);
   advance(6 * kMs);
   EXPECT_NEAR(read(Register::kPosition), 0.1, 1.1e-5);
 
