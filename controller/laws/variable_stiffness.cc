@@ -1,22 +1,29 @@
 // Two motors a joint: the springs themselves are the compliance, the motors only place them
 // (Albu-Schaeffer, Fischer, Schreiber, Schoeppe, Hirzinger 2004; Migliore, Brown, DeWeerth 2005).
-//   sigma from K_x at the goal, or K_q itself;  c_d: sigma(c_d) = sigma, carrying tau_d
+//   sigma: diagonal nearest to J^T K_x J + K_G(-F_ff) at the goal, compliances nearest to K_x^-1,
+//   or K_q itself;  c_d: sigma(c_d) = sigma, carrying tau_d
 //   e_d = q_d + x(c, tau_d),   tau_d = g(q_d) + J^T F_ff,   x: tau(c, x) = tau_d
-//   tau = tau_J - B (w^2 (e - e_d) + 2 w (e' - v_d))
+//   tau = tau_J + T tau_J' - B (w^2 (e - e_d) + 2 w (e' - v_d))
 // The spring's torque tau_J, measured, is taken off the motors, so that a load on the link does not
-// move the equilibrium: the link meets sigma. Damping is what the joints have. Stiffness that the
-// springs cannot give is clipped: both have to stay taut under tau_d, and preload_max.
+// move the equilibrium: the link meets sigma. A torque that comes late by t_d would feed its
+// oscillation with the damping -sigma^2 t_d / (B w^2); T is three periods, more than the bus takes,
+// so that the motors damp a little instead. Besides, damping is what the joints have. Stiffness
+// that the springs cannot give is clipped: both have to stay taut under tau_d, and preload_max.
 #include <Eigen/Cholesky>
 
 #include "controller/laws/registry.h"
 #include "controller/motor_side/pair_inverse.h"
 #include "controller/motor_side/vsa_stiffness.h"
 #include "controller/nullspace.h"
+#include "controller/observers/filtered_difference.h"
+#include "controller/stiffness_mapping.h"
 
 namespace limber::controller {
 namespace {
 
-constexpr double kBandwidth_rad_per_s = 40.0;
+constexpr double kBandwidth_rad_per_s = 50.0;
+constexpr double kLead_periods = 3.0;
+constexpr double kTorqueRateCorner_rad_per_s = 600.0;
 constexpr double kInfinite_Nm_per_rad = 1e9;
 constexpr double kLeastCompliance_rad_per_Nm = 1e-9;
 
@@ -43,13 +50,19 @@ class VariableStiffness : public Law {
   explicit VariableStiffness(const LoadedRobot& robot)
       : model_(robot),
         torque_sensors_((sensors_of(robot.robot) & sensors::kTorqueSensor) != 0),
+        link_encoders_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
+        tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / robot.robot.rate_hz),
         wanted_(VectorJ::Zero(model_.size())) {
     for (const JointConfig& joint : robot.robot.joints) {
-      pairs_.push_back({{joint.transmission.spring}, joint.transmission.preload_max_rad});
+      const TransmissionConfig& t = joint.transmission;
+      pairs_.push_back({{t.spring}, t.damping_Nms_per_rad, t.preload_max_rad});
     }
   }
 
-  void start(const LawInputs& in) noexcept override { fit(in); }
+  void start(const LawInputs& in) noexcept override {
+    tau_rate_.reset();
+    fit(in);
+  }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.stiffness_due) fit(in);
@@ -63,13 +76,10 @@ class VariableStiffness : public Law {
       out->sigma[i] = pair.springs.stiffness(
           out->preload[i], pair_deflection(pair.springs, out->preload[i], tau_d[i]));
       const double e_d = in.goal.q_d[i] + pair_deflection(pair.springs, c, tau_d[i]);
-      const double e = in.measured.theta[i];
-      const double bend = e - in.measured.q[i];
-      out->tau_feedforward[i] =
-          torque_sensors_ ? in.measured.tau_measured[i] : pair.springs.torque(c, bend);
-      out->tau_stiffness[i] = -in.terms.B[i] * w * w * (e - e_d);
+      out->tau_stiffness[i] = -in.terms.B[i] * w * w * (in.measured.theta[i] - e_d);
       out->tau_damping[i] = -2.0 * in.terms.B[i] * w * (in.state.theta_dot[i] - in.goal.v_d[i]);
     }
+    out->tau_feedforward = spring_torque_ahead(in);
     out->sets_preload = true;
     out->fit_residual = residual_;
   }
@@ -77,8 +87,24 @@ class VariableStiffness : public Law {
  private:
   struct Pair {
     SpringPair springs;
+    double damping_Nms_per_rad;
     double preload_max_rad;
   };
+
+  VectorJ spring_torque_ahead(const LawInputs& in) noexcept {
+    const ArmState& s = in.measured;
+    const double T = kLead_periods * s.period_s;
+    VectorJ tau = s.tau_measured;
+    if (!link_encoders_) return tau + T * tau_rate_.update(tau);
+    for (Eigen::Index i = 0; i < tau.size(); ++i) {
+      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      const double bend = s.theta[i] - s.q[i];
+      if (!torque_sensors_) tau[i] = pair.springs.torque(s.preload[i], bend);
+      const double sigma = pair.springs.stiffness(s.preload[i], bend);
+      tau[i] += (pair.damping_Nms_per_rad + T * sigma) * (s.theta_dot[i] - s.v[i]);
+    }
+    return tau;
+  }
 
   void fit(const LawInputs& in) noexcept {
     residual_ = 0.0;
@@ -86,14 +112,15 @@ class VariableStiffness : public Law {
       wanted_ = in.gains.K_q.diagonal();
       return;
     }
-    const Eigen::Index n = wanted_.size();
-    const Task task(model_.jacobian(in.goal.q_d), in.gains.K_x);
+    const Matrix6J J = model_.jacobian(in.goal.q_d);
+    const Task task(J, in.gains.K_x);
     if (task.J.rows() == 0) {
       wanted_.setZero();
       return;
     }
     const bool diagonal = in.gains.settings.stiffness_fit == StiffnessFit::kDiagonal;
-    const JointFit found = diagonal ? nearest_joint_stiffness(task.J, task.K, MatrixJ::Zero(n, n))
+    const MatrixJ K_G = geometric_term(J, -in.goal.F_ff);
+    const JointFit found = diagonal ? nearest_joint_stiffness(task.J, task.K, K_G)
                                     : nearest_joint_compliance(task.J, task.K);
     residual_ = found.residual;
     wanted_ = found.value;
@@ -105,6 +132,8 @@ class VariableStiffness : public Law {
 
   ArmModel model_;
   bool torque_sensors_;
+  bool link_encoders_;
+  FilteredDifference<VectorJ> tau_rate_;
   std::vector<Pair> pairs_;
   VectorJ wanted_;
   double residual_ = 0.0;
