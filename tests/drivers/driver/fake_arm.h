@@ -170,6 +170,7 @@ class DrivenArm {
     command.controller = kController;
     command.num_joints = static_cast<std::int16_t>(robot.joints.size());
   }
+  DrivenArm(DrivenArm&&) = default;
   virtual ~DrivenArm() = default;
 
   /// Motors answer everything that waits.
