@@ -1,6 +1,8 @@
 """Numbers hidden in a simulated joint are found again; logs that cannot tell are refused."""
 
+import shutil
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,7 +20,6 @@ HIDDEN = Truth(
     friction=Friction(5.0, 7.5, 0.08, 8.0),
     link_friction=Friction(0.3, 0.3, 0.1, 0.4),
 )
-FREE = Truth()
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +88,17 @@ def test_weight(tmp_path):
     assert found["centre of link, x"][0] == pytest.approx(0.0, abs=2e-3)
 
 
+@pytest.fixture(scope="module")
+def poor_run(tmp_path_factory):
+    """A run along a path, made once."""
+
+    @cache
+    def make(path, rigid: bool):
+        return run(tmp_path_factory.mktemp("poor"), replace(Truth(), rigid=rigid), BELIEVED, path())
+
+    return make
+
+
 def still() -> np.ndarray:
     return np.zeros((30_000, 2))
 
@@ -113,10 +125,8 @@ def nearly_still() -> np.ndarray:
         (gravity, nearly_still, "changes its torque by only"),
     ],
 )
-def test_a_log_that_cannot_tell_is_refused(module, path, reason, tmp_path):
-    sensors = module is stiffness
-    truth = FREE if sensors else replace(FREE, rigid=True, motor_bits=18)
-    folder = run(tmp_path, truth, BELIEVED, path())
+def test_a_log_that_cannot_tell_is_refused(module, path, reason, poor_run):
+    folder = poor_run(path, rigid=module is not stiffness)
     with pytest.raises(InputError, match=reason):
         found_in(folder, module)
 
@@ -174,8 +184,8 @@ def test_gravity_command_proposes_a_urdf(flexible, limber, tmp_path):
     assert (tmp_path / "gravity.png").is_file()
 
 
-def test_commands_refuse_in_one_line(tmp_path, limber):
-    folder = run(tmp_path, FREE, BELIEVED, still())
+def test_commands_refuse_in_one_line(tmp_path, limber, poor_run):
+    folder = shutil.copytree(poor_run(still, rigid=True), tmp_path / "run")
     done = limber("identify", "friction", str(folder))
     assert done.returncode == 2
     assert "does not move" in done.stderr and "Traceback" not in done.stderr

@@ -110,7 +110,7 @@ def tour(points: list[float], seconds: float, rest: float) -> np.ndarray:
 
 
 def there_and_back() -> np.ndarray:
-    points = [0.0, 1.2, -0.5, 0.9, -1.2, 0.3]
+    points = [0.0, 1.2, -1.2, 0.3]
     points = [*points, *points[-2::-1]]
     creep = [points[-1], points[-1] + 0.15, points[-1] - 0.15, points[-1]]
     return np.vstack([tour(points, 2.5, 0.3), tour(points, 1.0, 0.1), tour(creep, 5.0, 0.1)])

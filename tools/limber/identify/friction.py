@@ -75,15 +75,17 @@ def _values(joint: JointBelief, side: MotorSide, sensor: bool) -> list[Value]:
     ]
     if side.stribeck_speed is not None:
         found.append((STATIC_KEY, "N m", *ratio(side.fit, (COULOMB, STRIBECK), LOAD)))
-        speed_std = float(side.fit.std[STRIBECK_SPEED])
-        found.append((STRIBECK_KEY, "rad/s", side.stribeck_speed, speed_std))
-    behind = 0.0 if sensor else 1.0
+    elif (joint.believed(SECTION, joint.key(STATIC_KEY)) or np.inf) < found[0][2]:
+        found.append((STATIC_KEY, *found[0][1:]))  # it cannot be less than Coulomb's
     values = []
     for rotary, unit, value, std in found:
         key = joint.key(rotary)
-        beyond = behind * (joint.believed(LINK_SECTION, key) or 0.0)
-        proposed = value if rotary == STRIBECK_KEY else max(value - beyond, 0.0)
-        values.append(_value(joint, SECTION, key, unit, value, std, proposed))
+        beyond = 0.0 if sensor else joint.believed(LINK_SECTION, key) or 0.0
+        values.append(_value(joint, SECTION, key, unit, value, std, max(value - beyond, 0.0)))
+    if side.stribeck_speed is not None:
+        key, speed = joint.key(STRIBECK_KEY), side.stribeck_speed
+        std = float(side.fit.std[STRIBECK_SPEED])
+        values.append(_value(joint, SECTION, key, "rad/s", speed, std, speed))
     return values
 
 

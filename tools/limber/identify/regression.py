@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-WORST_CONDITION = 100.0
+WORST_CONDITION = 1000.0
 
 
 class PoorLogError(Exception):

@@ -35,7 +35,12 @@ def identify(arm: Arm, motion: Motion) -> Findings:
         found.panels.append(_panel(joint.name, side))
     for motor, indices in _by_motor(arm, sides).items():
         found.values += _values(arm, motor, {i: sides[i] for i in indices}, found)
-    if sides and not all(motion.torque_sensor[i] for i in sides):
+    if sides:
+        found.notes.append(
+            "A drive that keeps a torque constant of its own turns N m into current by that one: "
+            "correct it there as well."
+        )
+    if not all(motion.torque_sensor[i] for i in sides):
         found.notes.append(
             "Joints without a torque sensor are measured against the weights in the URDF: check "
             "those first (identify gravity)."
