@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/config_error.h"
+#include "tests/controller/one_joint.h"
 #include "tests/controller/rig.h"
 
 namespace limber {
@@ -13,22 +14,8 @@ using limber::testing::Rig;
 using Gains = compliance_gains_t;
 using Status = controller_status_t;
 
-// One joint about a vertical axis that carries a rod: motor 0.2, spring 1000, link 0.5 kg m^2.
-LoadedRobot one_joint(bool sensors) {
-  KDL::Chain chain;
-  chain.addSegment(KDL::Segment(
-      KDL::Joint("j", KDL::Joint::RotZ), KDL::Frame(KDL::Vector(0, -0.5, 0)),
-      KDL::RigidBodyInertia(2.0, KDL::Vector::Zero(), KDL::RotationalInertia::Zero())));
-  LoadedRobot robot = limber::testing::with_drives(chain, Eigen::Vector3d(0, -9.81, 0));
-  JointConfig& joint = robot.robot.joints[0];
-  joint.drive.rotor_inertia_kgm2 = 0.2;
-  joint.transmission.kind = TransmissionKind::kElastic;
-  joint.transmission.spring.stiffness_Nm_per_rad = 1000.0;
-  joint.transmission.damping_Nms_per_rad = 2.0;
-  joint.link_encoder.present = joint.torque_sensor.present = sensors;
-  robot.robot.gains.K_q = {500.0};
-  return robot;
-}
+// Link 0.5, motor 0.2 kg m^2, spring 1000 N m/rad.
+LoadedRobot one_joint(bool sensors) { return limber::testing::one_joint({.sensors = sensors}); }
 
 double deflection_by(Rig* rig, double force) {
   const double before = rig->plant.q[0];

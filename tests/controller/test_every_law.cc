@@ -78,6 +78,26 @@ void randomise(LawBench* bench, std::mt19937& generator) {
   bench->estimates.A_BT = random_six(3.0, generator);
 }
 
+// With the springs and motors that the law needs.
+LoadedRobot suited(LoadedRobot arm, const std::string& law) {
+  const unsigned needs = laws()[static_cast<std::size_t>(find_law(law))].needs;
+  for (JointConfig& joint : arm.robot.joints) {
+    if ((needs & sensors::kElasticJoints) != 0) {
+      joint.transmission.kind = TransmissionKind::kElastic;
+      joint.transmission.spring.stiffness_Nm_per_rad = 600.0;
+    } else if ((needs & sensors::kTwoMotors) != 0) {
+      joint.transmission.kind = TransmissionKind::kAntagonistic;
+      joint.transmission.spring = {.law = SpringLaw::kQuadratic, .k2_Nm_per_rad2 = 400.0};
+      joint.transmission.preload_rad = 0.3;
+      joint.transmission.preload_max_rad = 0.6;
+      joint.has_antagonist = true;
+      joint.drive.peak_torque_Nm = 80.0;
+      joint.antagonist = joint.drive;
+    }
+  }
+  return arm;
+}
+
 class EveryLaw : public ::testing::TestWithParam<const char*> {
  protected:
   // Calls `check` with a bench for arms of 1 to 16 joints, gains and settings the law takes.
@@ -88,7 +108,8 @@ class EveryLaw : public ::testing::TestWithParam<const char*> {
     for (int i = 0; i < times; ++i) {
       const int n = 1 + i % 16;
       SCOPED_TRACE(std::string(GetParam()) + ", case " + std::to_string(i));
-      LawBench bench(random_arm(n, static_cast<unsigned>(i), i % 3 == 0), GetParam());
+      LawBench bench(suited(random_arm(n, static_cast<unsigned>(i), i % 3 == 0), GetParam()),
+                     GetParam());
       randomise(&bench, generator);
       const auto refuse = bench.entry.refuse;
       if (refuse != nullptr && refuse(bench.gains, n) != nullptr) continue;
@@ -139,8 +160,7 @@ TEST_P(EveryLaw, TakesEveryOrientation) {
 
 // Through the stretched arm, where the tip cannot move one way.
 TEST_P(EveryLaw, IsFiniteAtSingularPoses) {
-  const LoadedRobot robot = limber::testing::seven_joint_arm();
-  LawBench bench(robot, GetParam());
+  LawBench bench(suited(limber::testing::seven_joint_arm(), GetParam()), GetParam());
   bench.gains.settings.contact = ContactSource::kJointTorque;
   for (const bool shaped : {false, true}) {
     if (shaped) bench.gains.M_x.diagonal() << 2.0, 2.0, 2.0, 0.1, 0.1, 0.1;

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "controller/laws/registry.h"
 #include "tests/controller/rig.h"
@@ -27,12 +28,25 @@ const controller::LawEntry& entry(const std::string& law) {
 
 class Switching : public ::testing::Test {
  protected:
-  explicit Switching(const std::string& law = "joint_pd")
-      : rig(limber::testing::seven_joint_arm(), law) {
+  explicit Switching(const LoadedRobot& robot = limber::testing::seven_joint_arm())
+      : rig(robot, "joint_pd") {
     rig.to_active();
   }
 
+  // Of the laws this arm can run.
+  std::vector<std::string> names() const {
+    std::vector<std::string> able;
+    for (const controller::LawEntry& law : controller::laws()) {
+      if (refuse_law(law, controller::sensors_of(rig.robot.robot)) == nullptr) {
+        able.emplace_back(law.name);
+      }
+    }
+    return able;
+  }
+
   void push(double size) { rig.plant.F_ext << 3.0 * size, -2.0, 1.5 * size, 0.1, 0.0, 0.05; }
+
+  void walk_all_pairs();
 
   // The first torque after a change, and all that follow.
   void expect_smooth(const std::string& what, double seconds) {
@@ -50,6 +64,7 @@ class Switching : public ::testing::Test {
   Gains gains_of(const std::string& law) const {
     Gains gains = rig.gains();
     gains.law = law;
+    if (law == "deflection_pd") gains.bias = Gains::BIAS_GRAVITY;  // it carries nothing
     if (law == "admittance") gains.contact = Gains::CONTACT_JOINT_TORQUE;
     return gains;
   }
@@ -82,11 +97,23 @@ class Switching : public ::testing::Test {
 };
 
 // A walk that takes every ordered pair once: there and back for each pair of laws.
-TEST_F(Switching, LawsNeverJump) {
-  const auto names = law_names();
+class ElasticSwitching : public Switching {
+ protected:
+  ElasticSwitching() : Switching(limber::testing::elastic_arm(true)) {}
+};
+class AntagonisticSwitching : public Switching {
+ protected:
+  AntagonisticSwitching() : Switching(limber::testing::antagonistic_arm()) {}
+};
+
+TEST_F(Switching, LawsNeverJump) { walk_all_pairs(); }
+TEST_F(ElasticSwitching, LawsNeverJump) { walk_all_pairs(); }
+TEST_F(AntagonisticSwitching, LawsNeverJump) { walk_all_pairs(); }
+
+void Switching::walk_all_pairs() {
   bool at_tip = true;
-  for (const std::string& from : names) {
-    for (const std::string& to : names) {
+  for (const std::string& from : names()) {
+    for (const std::string& to : names()) {
       if (to <= from) continue;
       switch_to(from);
       rig.run(0.55);
@@ -107,7 +134,7 @@ TEST_F(Switching, LawsNeverJump) {
 
 // From joints to tip and back under every law for the joints, in the middle of a motion.
 TEST_F(Switching, KindsOfGoalsNeverJump) {
-  for (const std::string& law : law_names()) {
+  for (const std::string& law : names()) {
     if (!follows_joints(entry(law).follows)) continue;
     switch_to(law);
     push(1.0);
@@ -177,7 +204,7 @@ const Change kChanges[] = {
 
 // There and back, while the arm is pushed away from its goal.
 TEST_F(Switching, SettingsNeverJump) {
-  for (const std::string& law : law_names()) {
+  for (const std::string& law : names()) {
     if (entry(law).follows == Follows::kNothing) continue;  // and knows no gains
     switch_to(law);
     push(1.0);
