@@ -17,12 +17,12 @@ FAST = False
 
 def run(context: Context) -> list[Check]:
     clamped = passive.checks(context)
-    through = port.checks(context)
+    through, points = port.checks(context)
     followed = tracking.found(context)
     tips = tip.found(context)
     whole = baxter.checks(context)
     with context.picture(TITLE, 2, 2, size=(13.0, 10.0)) as axes:
-        port.draw(through, axes[0, 0])
+        port.draw(points, axes[0, 0])
         tracking.draw(followed, axes[0, 1])
         tip.draw(tips, axes[1, 0])
         passive.draw(clamped, axes[1, 1])

@@ -104,39 +104,41 @@ def stiffness_bus(context: Context, period_s: float, torque: float) -> tuple[flo
     return omega, tau / q
 
 
-def checks(context: Context) -> list[Check]:
-    made = []
+Point = tuple[str, float, float]  # ideal or bus, rad/s, measured
+
+
+def checks(context: Context) -> tuple[list[Check], list[Point]]:
+    """And the stiffnesses that were measured, for the picture."""
+    made, points = [], []
     for factor in (2, 4):
         omega = factor * OMEGA_N
-        name = f"motor torque that reaches the link at {factor} times its frequency"
-        made.append(Check(f"{name}, ideal", low_pass(omega), low_pass_ideal(omega), "", 0.01))
-        omega, share = low_pass_bus(context, omega)
-        made.append(Check(f"{name}, bus", low_pass(omega), share, "", 0.01))
-    for period, torque, word in ((SLOW_S, 5.0, "5"), (FAST_S, 50.0, "600")):
-        omega = float(word)
-        name = f"torque for the link's angle at {word} rad/s under a torque loop"
-        made.append(
-            Check(f"{name}, ideal", stiffness(omega), stiffness_ideal(omega), "N m/rad", 0.01)
-        )
-        omega, seen = stiffness_bus(context, period, torque)
-        formula = stiffness(omega, D_LOOP, 1 / RATE_HZ)
-        name = f"{name}, bus, with the motor's damping and the loop's hold"
-        made.append(Check(name, formula, seen, "N m/rad", 0.01))
-    return made
+        ways = [("ideal", omega, low_pass_ideal(omega)), ("bus", *low_pass_bus(context, omega))]
+        for where, at, share in ways:
+            name = f"motor torque that reaches the link at {at / OMEGA_N:.2f} times its frequency"
+            made.append(Check(f"{name}, {where}", float(low_pass(at)), share, "", 0.01))
+    for period, torque, omega in ((SLOW_S, 5.0, 5.0), (FAST_S, 50.0, 600.0)):
+        at, seen = stiffness_bus(context, period, torque)
+        points += [("ideal", omega, stiffness_ideal(omega)), ("bus", at, seen)]
+        formula = float(stiffness(at, D_LOOP, 1 / RATE_HZ))
+        for (where, at, got), asked, more in zip(
+            points[-2:],
+            (float(stiffness(omega)), formula),
+            ("", ", with the motor's damping and the loop's hold"),
+            strict=True,
+        ):
+            name = f"torque for the link's angle at {at:.3g} rad/s, torque loop, {where}{more}"
+            made.append(Check(name, asked, got, "N m/rad", 0.01))
+    return made, points
 
 
-def draw(made: list[Check], ax: Any) -> None:
+def draw(points: list[Point], ax: Any) -> None:
     omega = np.geomspace(2, 2000, 400)
     ax.loglog(omega, stiffness(omega), color=BLUE, label="torque loop, gain 4")
     ax.loglog(omega, B / (1 + K_T) * omega**2, ":", color=GREEN, label="B ω²/5: the loop's")
     ax.axhline(K_S, ls="--", color=ORANGE, label="the spring's, whatever the loop does")
-    named = [c for c in made if c.name.startswith("torque for")]
-    for (marker, size, word), first in zip(
-        (("o", 5.5, "ideal"), ("s", 9, "bus")), (0, 1), strict=True
-    ):
-        style = {**MEASURED, "marker": marker, "ms": size}
-        found = [c.measured for c in named[first::2]]
-        ax.loglog((5.0, 600.0), found, **style, color=BLUE, label=word)
+    for where, marker, size in (("ideal", "o", 5.5), ("bus", "s", 9)):
+        found = np.array([point[1:] for point in points if point[0] == where])
+        ax.loglog(*found.T, **{**MEASURED, "marker": marker, "ms": size}, color=BLUE, label=where)
     ax.set_ylim(0.05, 3e4)
     ax.set_title("What a hand feels that moves the link to and fro")
     ax.set_xlabel("frequency (rad/s)")

@@ -116,7 +116,7 @@ def draw(seen: Found, ax: Any) -> None:
         for K, style in ((presented(elbow, held), {"ec": BLUE, "lw": 1.6}),
                          (ways["bus"], {"ec": ORANGE, "lw": 2.4, "ls": ":"})):  # fmt: skip
             ax.add_patch(Polygon(arm.tip(q) + ellipse(K), fill=False, zorder=2, **style))
-    ax.plot([], [], color=BLUE, label="J⁻ᵀ K J⁻¹")
+    ax.plot([], [], color=BLUE, label="J⁻ᵀ K J⁻¹, motors in K")
     ax.plot([], [], ":", color=ORANGE, lw=2.4, label="felt on the arm")
     ax.set_aspect("equal")
     ax.margins(0.12)

@@ -43,6 +43,7 @@ def draw_ring(rung: dict[str, ring.Rung], ax: Any) -> None:
         label = "predicted: exp(-d t/2M)" if sign == 1 else None
         ax.plot(run.t, 1e3 * sign * amplitude, color=ORANGE, label=label)
     ax.set_title(f"Let go: damping ratio {run.mode.zeta:.4f}, decay {sigma:.3f}/s")
+    ax.set_ylim(-60, 75)
     ax.set_xlabel("time (s)")
     ax.set_ylabel("angle of the link (mrad)")
     ax.legend(loc="upper right")

@@ -21,7 +21,7 @@ ROBOT = "antagonist2r"
 ASKED = 600.0  # N/m, the same along x and y
 FORCE = 0.5  # N, of the pushes
 DAMPING = np.array([6.0, 3.0])  # N m s/rad of the link, so that an arm that is pushed rests
-PROBED = Probing(first_at=3.0, each_s=2.5, axes=2, force=2.0)
+PROBED = Probing(first_at=3.0, each_s=2.0, axes=2, force=2.0)
 ELBOWS = np.array([0.4, 0.9, 1.5, 2.0, np.arccos(-0.8), 2.7])
 
 

@@ -22,7 +22,7 @@ CLAMPED = bench.motor(
     rotor_inertia_kgm2=1.0, gear_ratio=1000.0, rotor_torque_constant_Nm_per_A=1e-3
 )
 START_RAD, RING_S, EVERY = 0.05, 6.0, 20
-START_S, PUSH_S = 2.0, 1.0
+START_S, PUSH_S, HELD_S = 2.0, 1.5, 0.1
 
 
 @dataclass(frozen=True)
@@ -59,11 +59,14 @@ def bus(context: Context) -> Rung:
         link_friction={"coulomb_Nm": 0.0, "viscous_Nms_per_rad": D},
     )
     let_go = START_S + PUSH_S
+    held = let_go - HELD_S
+    pull = START_RAD * SIGMA
     log = bench.on_bus(
         context,
         "ring",
         {"law": "gravity_compensation"},
-        [bench.push(START_RAD * SIGMA, START_S, PUSH_S)],
+        # up slowly, so that the joint does not ring yet; the second push ends at once
+        [bench.push(pull, START_S, 3 * PUSH_S, PUSH_S - HELD_S), bench.push(pull, held, HELD_S)],
         let_go + RING_S,
         changes=changes,
         reality=CLAMPED,
