@@ -24,7 +24,8 @@ CanopenNode::CanopenNode(CanopenDictionary* dictionary, CanopenApplication* appl
       application_(application),
       node_(node),
       errors_(dictionary),
-      pdos_(dictionary, node, fd),
+      records_(dictionary, node, fd),
+      pdos_(dictionary, fd),
       sdo_(dictionary, node) {
   add_objects(name);
   dictionary_->close(this);
@@ -54,6 +55,7 @@ void CanopenNode::add_objects(const std::string& name) {
 void CanopenNode::boot(std::uint16_t last_reset) noexcept {
   dictionary_->reset(kFirstCommunication, last_reset);
   sdo_.reset();
+  pdos_.load(&records_);
   pdos_.restart();
   watching_ = false;
   outbox_.push(canopen::encode_heartbeat(NmtState::kBootUp, node_));
@@ -144,8 +146,8 @@ void CanopenNode::on_rpdo(const CanFrame& frame) noexcept {
 
 Refusal CanopenNode::refuses(const DictionaryEntry& entry, double value) noexcept {
   if (deaf_) return SdoAbort::kCannotStore;
-  if (CanopenPdos::is_record(entry.id.index))
-    return pdos_.refuses(entry, value, state_ == NmtState::kPreOperational);
+  if (CanopenPdoRecords::is_record(entry.id.index))
+    return records_.refuses(entry, value, state_ == NmtState::kPreOperational);
   return application_->refuses(entry, value);
 }
 
@@ -153,6 +155,7 @@ void CanopenNode::on_written(canopen::ObjectId id) noexcept {
   if (id == canopen::kErrorCount.id) errors_.forget_history();
   if (id == canopen::kConsumerHeartbeat.id) watching_ = false;
   if (id == canopen::kHeartbeatPeriod_ms.id) told_ns_ = now_ns_;
+  if (CanopenPdoRecords::is_record(id.index)) return pdos_.load(&records_);
   application_->on_written(id);
 }
 

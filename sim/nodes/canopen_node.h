@@ -9,6 +9,7 @@
 #include "drivers/protocols/canopen.h"
 #include "sim/nodes/canopen_dictionary.h"
 #include "sim/nodes/canopen_errors.h"
+#include "sim/nodes/canopen_pdo_records.h"
 #include "sim/nodes/canopen_pdos.h"
 #include "sim/nodes/canopen_sdo_server.h"
 #include "sim/nodes/frame_queue.h"
@@ -73,6 +74,7 @@ class CanopenNode final : public DictionaryGuard {
   CanopenApplication* application_;
   std::uint8_t node_;
   CanopenErrors errors_;
+  CanopenPdoRecords records_;
   CanopenPdos pdos_;
   CanopenSdoServer sdo_;
   FrameQueue outbox_;
