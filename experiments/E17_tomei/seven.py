@@ -10,7 +10,7 @@ from limber.experiments.inertia import gravity_gradient
 ROBOT = "ideal7"
 SPRING = 1e3 * np.array([8.0, 8.0, 6.0, 6.0, 3.0, 3.0, 2.0])  # N m/rad
 SHARE = 3.0  # K_P over the steepest gravity
-POSES = 40
+POSES = 16
 
 
 def steepest_gravity(context: Context) -> float:
