@@ -7,6 +7,7 @@
 
 #include "common/config_error.h"
 #include "drivers/can/bus_load.h"
+#include "drivers/motor_view.h"
 
 namespace limber {
 namespace {
@@ -73,7 +74,8 @@ GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
     limits.torque_step_Nm[i] =
         joint.torque_rate_limit_Nm_per_s / robot.rate_hz * (1.0 + kRoundingSlack);
     if (!joint.has_antagonist) continue;
-    limits.preload_Nm[i] = 2.0 * std::min(limits.torque_Nm[i], joint.antagonist.range.torque_Nm);
+    limits.preload_Nm[i] =
+        2.0 * std::min(pulling_limit(joint.drive), pulling_limit(joint.antagonist));
     limits.preload_step_Nm[i] = 2.0 * limits.torque_step_Nm[i];
   }
   return limits;

@@ -7,6 +7,8 @@ namespace limber {
 
 JointConfig motor_view(const JointConfig& joint, int motor) {
   JointConfig view = joint;
+  if (joint.has_antagonist)
+    view.torque_limit_Nm = pulling_limit(motor == 0 ? joint.drive : joint.antagonist);
   if (motor == 0) return view;
   view.name += " (antagonist)";
   view.drive = joint.antagonist;
@@ -14,6 +16,10 @@ JointConfig motor_view(const JointConfig& joint, int motor) {
   view.torque_sensor.present = false;
   view.torque_loop = {};
   return view;
+}
+
+double pulling_limit(const DriveConfig& drive) noexcept {
+  return std::min(drive.peak_torque_Nm, drive.range.torque_Nm);
 }
 
 double winding_limit(const JointConfig& joint) noexcept {

@@ -5,10 +5,14 @@
 
 namespace limber {
 
-/// What a drive is told of its joint: the joint itself for the first motor (0); for the second one
-/// (1) of an antagonistic joint the same with that motor's drive, which has neither link encoder
-/// nor torque sensor. Its angle counts positively where it winds up its spring. Set-up only.
+/// What a drive is told of its joint: the joint itself if it has one motor. Of two, each may do
+/// what its drive can, as they hold their preload against each other besides; the second one (1)
+/// has neither link encoder nor torque sensor, and counts positively where it winds up its spring.
+/// Set-up only.
 JointConfig motor_view(const JointConfig& joint, int motor);
+
+/// Most that one of two motors may make, N m.
+double pulling_limit(const DriveConfig& drive) noexcept;
 
 /// Furthest from zero that a motor of an antagonistic joint gets: the link's end, and wound up. rad
 double winding_limit(const JointConfig& joint) noexcept;

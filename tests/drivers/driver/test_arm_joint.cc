@@ -19,13 +19,15 @@ constexpr double kTorqueCount = 20.0 / 4095.0;  // range +-10 N m
 constexpr std::size_t kFirst = 1, kSecond = 2;  // motors of joint 1
 
 /// A joint with one motor (id 1), one with two (ids 2 and 5). Motor 2 counts backwards with its
-/// zero at 0.3 rad, motor 5 forwards with its zero at -0.2 rad; they may wind up 0.5 rad.
+/// zero at 0.3 rad, motor 5 forwards with its zero at -0.2 rad; they may wind up 0.5 rad, and make
+/// 9.5 N m each, where the joint may have 8.
 Robot robot_with_a_pair() {
   Robot robot = test_robot(2);
   JointConfig& joint = robot.joints[1];
   joint.has_antagonist = true;
   joint.transmission.kind = TransmissionKind::kAntagonistic;
   joint.transmission.preload_max_rad = 0.5;
+  joint.drive.peak_torque_Nm = 9.5;
   joint.antagonist = joint.drive;
   joint.antagonist.command_id = 5;
   joint.antagonist.reply_id = 0x15;
@@ -113,6 +115,24 @@ TEST(TwoMotors, PreloadStepsFromWhatIsPresent) {
   EXPECT_EQ(arm.cycle_with(joint_torque_t::REQUEST_ON), int{driver_status_t::VERDICT_ACCEPTED});
   arm.command.tau_preload[1] = 2.0;
   EXPECT_EQ(arm.cycle_with(joint_torque_t::REQUEST_ON), int{driver_status_t::VERDICT_ACCEPTED});
+}
+
+TEST(TwoMotors, EachMayDoWhatItsDriveCan) {
+  FakeArm arm(robot_with_a_pair());
+  ASSERT_TRUE(arm.switch_on());
+  const auto verdict = [&](double tau, double preload) {
+    arm.command.tau[1] = tau;
+    arm.command.tau_preload[1] = preload;
+    return arm.cycle_with(joint_torque_t::REQUEST_ON);
+  };
+  for (int i = 1; i <= 19; ++i)
+    ASSERT_EQ(verdict(0.0, i), int{driver_status_t::VERDICT_ACCEPTED}) << i;
+  EXPECT_EQ(verdict(0.0, 19.01), int{driver_status_t::VERDICT_TORQUE});
+  EXPECT_EQ(verdict(0.01, 19.0), int{driver_status_t::VERDICT_TORQUE});
+  EXPECT_EQ(verdict(0.4, 18.6), int{driver_status_t::VERDICT_ACCEPTED});
+  arm.half_cycle();
+  EXPECT_NEAR(asked(arm, kFirst), 9.5, 2.0 * kTorqueCount);
+  EXPECT_NEAR(asked(arm, kSecond), 9.1, 2.0 * kTorqueCount);
 }
 
 TEST(TwoMotors, HoldKeepsBothMotorsAndTheirPreload) {
