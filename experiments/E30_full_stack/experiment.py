@@ -9,7 +9,7 @@ from limber.experiments.context import Context
 from limber.experiments.pictures import BLUE, ORANGE
 from limber.robot import load_robot, read_yaml
 
-from . import bus, ideal
+from . import bus, classes, ideal
 from .arm import K_X, KAPPA, ROBOT, Pose, share
 
 TITLE = "Torque loops bring seven elastic joints nearly the stiffness that is asked of them"
@@ -36,7 +36,7 @@ def run(context: Context) -> list[Check]:
             "bus": bus.loop(context, rho, LOADED, UP_S),
         }
     draw(context, loops)
-    return [*checks, *friction(loops)]
+    return [*checks, *friction(loops), *classes.checks(context)]
 
 
 def home() -> np.ndarray:
