@@ -23,7 +23,7 @@ class Value:
 
 @dataclass(frozen=True)
 class Panel:
-    """Samples as dots, laws as lines: name -> (x, y)."""
+    """Samples as dots, laws as lines: name -> (x, y). `others`: y of a second kind of dots."""
 
     title: str
     x_label: str
@@ -31,6 +31,7 @@ class Panel:
     x: np.ndarray
     y: np.ndarray
     lines: dict[str, tuple[np.ndarray, np.ndarray]]
+    others: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass

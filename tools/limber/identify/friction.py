@@ -126,13 +126,9 @@ def _link_side(
 
 
 def _panel(joint: JointBelief, side: MotorSide) -> Panel:
-    x, kappa = side.fit.x, side.kappa
-    torque = kappa * (side.motor - x[OFFSET]) - side.load
+    torque = side.kappa * (side.motor - side.fit.x[OFFSET]) - side.load
     speed = np.linspace(side.speed.min(), side.speed.max(), 400)
-    law = np.sign(speed) * x[COULOMB] + speed * x[VISCOUS]
-    if side.stribeck_speed is not None:
-        law += x[STRIBECK] * np.sign(speed) * np.exp(-((speed / side.stribeck_speed) ** 2))
-    lines = {"measured": (speed, kappa * law)}
+    lines = {"measured": (speed, side.friction(speed))}
     coulomb = joint.believed(SECTION, joint.key(COULOMB_KEY))
     viscous = joint.believed(SECTION, joint.key(VISCOUS_KEY))
     if coulomb is not None and viscous is not None:

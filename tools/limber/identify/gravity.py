@@ -31,13 +31,14 @@ ROUNDS = 4
 class Weights:
     """Change of [mass, moment] of every body, kg and kg m; `seen`: how many combinations of them.
 
-    By joint, N m: constant offset of its torque, and what is unexplained before and after, rms.
+    By joint: `own`, Coulomb and viscous friction with a constant offset of its torque, and what is
+    unexplained before and after, N m rms.
     """
 
     change: np.ndarray
     covariance: np.ndarray
     seen: int
-    offset: np.ndarray
+    own: np.ndarray  # joints x 3
     offset_std: np.ndarray
     before: np.ndarray
     after: np.ndarray
@@ -70,9 +71,11 @@ def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
     )
     g = Y @ arm.dynamics.parameters()
     changed = g + Y @ weights.change
-    for i in used:
-        measured = (excess + g)[:, i][_slow(motion, i)]
-        found.panels.append(_panel(arm, motion, measured, g, changed, i))
+    for k, i in enumerate(used):
+        rows = _slow(motion, i)
+        measured = (excess + g)[rows, i] - _own(motion, i) @ weights.own[k]
+        panel = _panel(arm.joints[i].name, measured, g[rows, i], changed[rows, i])
+        found.panels.append(panel)
     return found, weights
 
 
@@ -89,9 +92,8 @@ def estimate(
         A = np.zeros((np.count_nonzero(rows), unknowns))
         A[:, :size] = Y[rows, i]
         own = slice(size + 3 * k, size + 3 * k + 3)
-        speed = motion.v[rows, i]
-        A[:, own] = np.stack([np.sign(speed), speed, np.ones_like(speed)], axis=1)
-        samples_of_block = len(speed) / len(np.unique(motion.block[rows]))
+        A[:, own] = _own(motion, i)
+        samples_of_block = len(A) / len(np.unique(motion.block[rows]))
         problems.append((A, excess[rows, i], samples_of_block))
     sigma = [max(float(np.std(r)), FLOOR_NM) for _, r, _ in problems]
     before = [_unexplained(A[:, size:], r) for A, r, _ in problems]
@@ -110,7 +112,7 @@ def estimate(
         x[changes],
         covariance[changes, changes],
         int(np.count_nonzero(np.linalg.eigvalsh(whitened) < MEASURED**2)),
-        x[offsets],
+        x[size:].reshape(-1, 3),
         np.sqrt(np.diag(covariance))[offsets],
         np.array(before),
         np.array(sigma),
@@ -132,6 +134,12 @@ def _refusal(arm: Arm, motion: Motion, Y: np.ndarray, i: int) -> str:
 def _slow(motion: Motion, i: int) -> np.ndarray:
     """Samples in which joint i moves and no joint speeds up much."""
     return motion.moving[:, i] & (np.abs(motion.a).max(axis=1) < GENTLE)
+
+
+def _own(motion: Motion, i: int) -> np.ndarray:
+    """Coulomb and viscous friction and offset of joint i, per unit, in its slow samples."""
+    speed = motion.v[_slow(motion, i), i]
+    return np.stack([np.sign(speed), speed, np.ones_like(speed)], axis=1)
 
 
 def _excess(arm: Arm, motion: Motion) -> np.ndarray:
@@ -182,29 +190,21 @@ def _values(arm: Arm, weights: Weights) -> list[Value]:
 
 def _offsets(arm: Arm, weights: Weights, used: list[int]) -> list[Value]:
     """Of torque sensors their bias, of motors what their torque is off by."""
-    offsets = zip(used, weights.offset, weights.offset_std, strict=True)
+    offsets = zip(used, weights.own[:, 2], weights.offset_std, strict=True)
     return [
         Value(arm.joints[i].name, "torque at no load", "N m", float(x), float(std), 0.0)
         for i, x, std in offsets
     ]
 
 
-def _panel(
-    arm: Arm,
-    motion: Motion,
-    measured: np.ndarray,
-    before: np.ndarray,
-    after: np.ndarray,
-    i: int,
-) -> Panel:
-    rows = _slow(motion, i)
-    order = np.argsort(after[rows, i])
-    now, then = after[rows, i][order], before[rows, i][order]
+def _panel(name: str, measured: np.ndarray, before: np.ndarray, after: np.ndarray) -> Panel:
+    ends = np.array([after.min(), after.max()])
     return Panel(
-        arm.joints[i].name,
+        name,
         "gravity torque with the change (N m)",
-        "torque (N m)",
-        after[rows, i],
+        "torque less friction\nand offset (N m)",
+        after,
         measured,
-        {"with the change": (now, now), "as the URDF says": (now, then)},
+        {"with the change": (ends, ends)},
+        {"as the URDF says": before},
     )

@@ -39,6 +39,14 @@ class MotorSide:
     def kappa(self) -> float:
         return float(1.0 / self.fit.x[LOAD])
 
+    def friction(self, speed: np.ndarray) -> np.ndarray:
+        """In steady sliding, true N m."""
+        x, sign = self.fit.x, np.sign(speed)
+        believed = x[COULOMB] * sign + x[VISCOUS] * speed
+        if self.stribeck_speed is not None:
+            believed += x[STRIBECK] * sign * np.exp(-((speed / self.stribeck_speed) ** 2))
+        return self.kappa * believed
+
     @property
     def kappa_std(self) -> float:
         return float(self.fit.std[LOAD] * self.kappa**2)

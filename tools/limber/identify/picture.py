@@ -32,6 +32,8 @@ def save(panels: list[Panel], title: str, path: Path) -> Path:
 
 def _draw(ax: plt.Axes, panel: Panel) -> None:
     ax.plot(panel.x, panel.y, ".", color="0.6", markersize=2.5, label="samples")
+    for name, y in panel.others.items():
+        ax.plot(panel.x, y, ".", color=COLORS[1], markersize=2.0, label=name)
     for (name, (x, y)), color, style in zip(panel.lines.items(), COLORS, ("-", "--"), strict=False):
         ax.plot(x, y, style, color=color, label=name, linewidth=1.5)
     ax.set_title(panel.title, fontsize=9)

@@ -11,7 +11,7 @@ import numpy as np
 from limber.identify.arm import Arm
 from limber.identify.findings import Findings, Panel, Value
 from limber.identify.motion import Motion
-from limber.identify.motor_side import COULOMB, OFFSET, VISCOUS, MotorSide, balance, loads
+from limber.identify.motor_side import OFFSET, MotorSide, balance, loads
 from limber.identify.regression import PoorLogError
 
 WORST_STD = 0.05  # of kappa
@@ -86,8 +86,7 @@ def _values(arm: Arm, motor: str, sides: dict[int, MotorSide], found: Findings) 
 
 
 def _panel(name: str, side: MotorSide) -> Panel:
-    without_friction = side.motor - side.fit.x[COULOMB] * np.sign(side.speed)
-    without_friction = without_friction - side.fit.x[VISCOUS] * side.speed
+    without_friction = side.motor - side.friction(side.speed) / side.kappa
     ends = np.array([side.load.min(), side.load.max()])
     offset = side.fit.x[OFFSET]
     return Panel(
