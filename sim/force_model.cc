@@ -141,13 +141,13 @@ void ForceModel::motor_accelerations(const VectorJ& qdd, VectorM* out) const noe
   }
 }
 
-Work ForceModel::held_power(const ArmState& x) const noexcept {
+Work ForceModel::step_power(const ArmState& x, const VectorM& theta_ddot) const noexcept {
   Work power;
   power.external = stop_torque_.dot(x.v);
   power.friction = link_friction_.dot(x.v);
   for (int k = 0; k < motor_count_; ++k) {
     const Motor& motor = motors_[k];
-    power.motor += drive_[k] * x.theta_dot[k];
+    power.motor += (drive_[k] - couplings_[k].servo * theta_ddot[k]) * x.theta_dot[k];
     power.friction += motor.friction_torque() * x.theta_dot[k] - motor.damper_power(point(x, k));
     power.external += motor.stand_torque() * x.theta_dot[k];
   }

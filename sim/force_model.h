@@ -60,9 +60,9 @@ class ForceModel {
   void couple(const ArmState& x, double h, VectorJ* tau, VectorJ* inertia) noexcept;
   /// Then, with the links' accelerations, those of the motors.
   void motor_accelerations(const VectorJ& qdd, VectorM* out) const noexcept;
-  /// Power of the torques held over such a step along the velocities at its end x, but for wall and
+  /// Power of the torques of such a step along the velocities at its end x, but for wall and
   /// pushes.
-  Work held_power(const ArmState& x) const noexcept;
+  Work step_power(const ArmState& x, const VectorM& theta_ddot) const noexcept;
 
   /// Sets the wrenches of `arm` as they are in the step in progress; returns their power.
   double apply_environment(ArticulatedBody* arm) const noexcept {

@@ -155,7 +155,7 @@ void OdePlant::integrate(ForceModel* forces, double h) noexcept {
   carry_rotors();
   // Forces of the step act along the motion of the step, which is at its end velocity.
   arm_.set_state(x_.q, x_.v);
-  const Work power = forces->held_power(x_);
+  const Work power = forces->step_power(x_, theta_ddot_);
   work_.motor += h * power.motor;
   work_.friction += h * power.friction;
   work_.external +=

@@ -43,8 +43,11 @@ Coupling Motor::coupled(const MotorPoint& at, double inertia, double drive,
   out.side = side_;
   out.drive = drive;
   out.rigid = rigid();
-  out.inertia = out.rigid ? inertia : inertia_ + inertia;
+  out.inertia = inertia;
   if (out.rigid) return out;
+  const bool follows_law = actuator_.ideal() && std::abs(torque(at)) < law_.limit;
+  if (follows_law) out.servo = 0.25 * h * h * law_.kp + 0.5 * h * law_.kd;
+  out.inertia += inertia_ + out.servo;
   out.transmitted = transmitted(at);
   out.gain = 0.25 * h * h * transmission_.stiffness(stretch(at)) +
              0.5 * h * transmission_.damping(stretch(at));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/config_error.h"
 #include "sim/arm_plant.h"
@@ -210,6 +211,83 @@ TEST_P(BothIntegrators, EnergyBookIsClosed) {
       EXPECT_LT(plant_->work().friction, -0.1);
     }
   }
+}
+
+/// A drive that holds its motor at zero, as good as still.
+constexpr DriveLaw kHeld = {1e6, 2e3, 0.0, 0.0, 0.0, 1e9, 0.0};
+
+// A push at the tip of the second rod, across it: the springs alone give way.
+TEST_P(BothIntegrators, PushBendsTheSprings) {
+  LoadedRobot robot = testing::planar_arm(testing::desktop());
+  for (double& g : robot.robot.gravity) g = 0.0;
+  testing::make_elastic(&robot.robot.joints[0], 400.0, 5.0);
+  testing::make_elastic(&robot.robot.joints[1], 200.0, 2.0);
+  for (JointConfig& joint : robot.robot.joints) joint.drive.rotor_inertia_kgm2 = 1.0;
+  make(robot);
+  Push push;
+  push.link = plant_->arm().tip();
+  push.wrench[1] = 2.0;
+  push.duration_ns = 1'000'000;
+  ASSERT_TRUE(forces_->environment.pushes.add(push, 0));
+  for (int motor : {0, 1}) forces_->drives[motor] = kHeld;
+  for (int k = 0; k < 8000; ++k) step(kStep);
+  const VectorJ tau = plant_->external_torque(forces_->environment, 0);
+  EXPECT_NEAR(tau[0], 2.0 * 0.65, 0.01);
+  EXPECT_NEAR(x().q[0], tau[0] * (1.0 / 400.0 + 1e-6), 1e-6);
+  EXPECT_NEAR(x().q[1], tau[1] * (1.0 / 200.0 + 1e-6), 1e-6);
+}
+
+// The stop, 700 N m/rad, carries the link's weight of 1 N m; the motor hangs on its spring.
+TEST_P(BothIntegrators, EndStopHoldsTheLink) {
+  LoadedRobot robot = testing::one_joint(kLink, kRotor, 1.0);
+  testing::make_elastic(&robot.robot.joints[0], 100.0, 2.0);
+  robot.robot.joints[0].position_min = -0.5;
+  make(robot);
+  VectorJ q(1);
+  q << -0.45;
+  plant_->set_state(q, VectorJ::Zero(1));
+  for (int k = 0; k < 20000; ++k) step(kStep);
+  const double weight = std::cos(x().q[0]);
+  EXPECT_NEAR(x().q[0], -0.5 - weight / 700.0, 1e-5);
+  EXPECT_NEAR(stretch(), 0.0, 1e-5);
+}
+
+// Hanging in the backlash's lower end: half its width, then the spring.
+TEST_P(BothIntegrators, BacklashLetsTheLinkSag) {
+  LoadedRobot robot = testing::one_joint(kLink, kRotor, 1.0);
+  testing::make_elastic(&robot.robot.joints[0], 500.0, 10.0);
+  robot.robot.joints[0].transmission.backlash_rad = 0.02;
+  make(robot);
+  forces_->drives[0] = kHeld;
+  for (int k = 0; k < 20000; ++k) step(kStep);
+  EXPECT_NEAR(x().q[0], -0.01 - std::cos(0.01) * (1.0 / 500.0 + 1e-6), 1e-6);
+}
+
+TEST_P(BothIntegrators, RattlingInTheBacklashMakesNoEnergy) {
+  LoadedRobot robot = two_masses(5000.0, 0.0);
+  robot.robot.joints[0].transmission.backlash_rad = 0.01;
+  make(robot);
+  ArmState state = x();
+  state.theta_dot[0] = 1.0;
+  plant_->set_state(state);
+  const double start = energy();
+  for (int k = 0; k < 8000; ++k) {
+    step(kStep);
+    ASSERT_LT(energy(), (exact() ? 1.01 : 1.1) * start) << k;
+    ASSERT_GT(energy(), (exact() ? 0.99 : 0.9) * start) << k;
+  }
+}
+
+TEST_P(BothIntegrators, MotorTorqueThatIsNoNumberStopsTheArmAndIsCounted) {
+  make(two_masses(5000.0, 2.0));
+  displace_motor(0.01);
+  for (int k = 0; k < 40; ++k) step(kStep);
+  const double theta = x().theta[0];
+  set_torque(0, std::numeric_limits<double>::quiet_NaN());
+  for (int k = 0; k < 40; ++k) step(kStep);
+  EXPECT_EQ(plant_->diverged(), 40);
+  EXPECT_EQ(x().theta[0], theta);
+  EXPECT_EQ(x().theta_dot[0], 0.0);
 }
 
 TEST(Integrators, AMotorBehindASpringNeedsInertia) {

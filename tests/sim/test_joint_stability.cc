@@ -77,12 +77,12 @@ LoadedRobot stiff_wrist(double stiffness, double damping) {
 TEST_P(JointStability, StiffSpringsOnLightLinksAreStableAtFourTimesTheStep) {
   for (const double damping : {0.0, 6.0, 100.0}) {
     for (const double h : {kStep, 2.0 * kStep, 4.0 * kStep}) {
-      const double grown = growth(stiff_wrist(15000.0, damping), GetParam(), h, 1.0);
+      const double grown = growth(stiff_wrist(15000.0, damping), GetParam(), h, 0.5);
       EXPECT_LT(grown, damping > 0.0 ? 0.999 : kSteady) << damping << " " << h;
     }
   }
   // As far off as a step sixteen times as long.
-  const double grown = growth(stiff_wrist(256.0 * 15000.0, 16.0 * 6.0), GetParam(), kStep, 0.5);
+  const double grown = growth(stiff_wrist(256.0 * 15000.0, 16.0 * 6.0), GetParam(), kStep, 0.1);
   EXPECT_LT(grown, 0.999);
 }
 
