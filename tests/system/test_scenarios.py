@@ -45,6 +45,9 @@ def numbers(folder) -> dict[str, dict]:
         "desktop2r_push",
         "planar2r_push",
         "ideal7_push",
+        "iiwa14_push",
+        "panda_push",
+        "baxter_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):
