@@ -43,7 +43,7 @@ def _jumped(context: Context, name: str, joint: dict[str, Any], end_s: float, st
     )
 
 
-def _mode(log: Log, start_s: float, end_s: float) -> Mode:
+def mode(log: Log, start_s: float, end_s: float) -> Mode:
     seen = bench.truth(log, start_s, end_s)
     deflection, rate = seen["theta"] - seen["q"], seen["theta_dot"] - seen["v"]
     return modes_seen([np.column_stack([deflection, rate])], bench.CYCLE_S, 1)[0]
@@ -51,7 +51,7 @@ def _mode(log: Log, start_s: float, end_s: float) -> Mode:
 
 def rung(context: Context, rho: float) -> Mode:
     log = _jumped(context, f"ring_{rho:g}", _loop(rho), 2.1, STEP_S)
-    return _mode(log, 1.81, 1.95)
+    return mode(log, 1.81, 1.95)
 
 
 def most_ratio(context: Context, rate: float, samples: int, expected: float) -> float:
@@ -65,26 +65,41 @@ def most_ratio(context: Context, rate: float, samples: int, expected: float) -> 
         joint = {**_loop(rho, rate, samples), "transmission": {"damping_Nms_per_rad": 0.0}}
         name = f"limit_{rate * 1e-3:g}kHz_{samples}_{rho:.2f}"
         step_s = min(1 / rate, COARSE_S)
-        mode = _mode(_jumped(context, name, joint, 2.4, step_s), 1.81, 2.4)
-        growths.append(-mode.zeta * mode.omega)
+        seen = mode(_jumped(context, name, joint, 2.4, step_s), 1.81, 2.4)
+        growths.append(-seen.zeta * seen.omega)
     return bench.zero_between(tried, growths)
 
 
-def shared(context: Context, rho: float, kappa: float, push: float) -> float:
-    """Torque on the link over what was asked of the motor, at rest under a push."""
+def pushed(
+    context: Context,
+    name: str,
+    law: dict[str, Any],
+    changes: dict[str, Any],
+    kappa: float,
+    push: float,
+) -> Log:
+    """The free joint with another torque constant than the drive believes in."""
     true = kappa * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
-    log = bench.on_bus(
+    return bench.on_bus(
         context,
-        f"share_{rho:g}",
-        LAW,
+        name,
+        law,
         [bench.push(push, 2.0, 4.0, 0.5)],
         5.4,
-        changes=bench.joint(**_loop(rho)),
+        changes=changes,
         reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
         step_s=STEP_S,
     )
+
+
+def share_of(log: Log) -> float:
+    """Torque on the link over what the law asked of the motor, at rest under the push."""
     asked = -K * (bench.mean(log, 4.5, 5.4, "theta") - bench.mean(log, 1.7, 1.99, "theta"))
     return bench.mean(log, 4.5, 5.4, "tau") / asked
+
+
+def shared(context: Context, rho: float, kappa: float, push: float) -> float:
+    return share_of(pushed(context, f"share_{rho:g}", LAW, bench.joint(**_loop(rho)), kappa, push))
 
 
 def biased(context: Context, rho: float, bias: float) -> float:

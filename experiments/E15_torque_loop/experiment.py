@@ -4,7 +4,7 @@ from limber.experiments import testbench as bench
 from limber.experiments.check import Check
 from limber.experiments.context import Context
 
-from . import bus, drawing, ideal, law_forms
+from . import bus, controller_loop, drawing, ideal, law_forms
 
 TITLE = "A torque loop divides motor inertia and friction; its rate limits by how much"
 CLAIM = "Sensing the torque makes the arm get the torque it asks for, if the torque loop runs even"
@@ -37,6 +37,7 @@ def run(context: Context) -> list[Check]:
     return [
         *(check for found in effects for check in effect_checks(found)),
         *(check for limit in limits for check in limit.checks()),
+        *controller_loop.checks(context, KAPPA, PUSH_NM),
         *(check for rho in (1.0, 4.0) for check in ring(context, rho)),
         *law_forms.checks(context),
     ]

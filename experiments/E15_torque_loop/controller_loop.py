@@ -1,0 +1,87 @@
+"""The same torque feedback in the controller instead of the drive: 1 kHz, and a cycle late."""
+
+from typing import Any
+
+from limber.experiments import testbench as bench
+from limber.experiments.check import Check
+from limber.experiments.context import Context
+from limber.experiments.plants import growth
+from limber.experiments.search import limit
+
+from . import bus, ideal
+
+K_HELD = 10.0  # N m/rad: little beside the spring, yet enough to set it swinging from 2 rad away
+SOFT = 300.0  # N m/rad: a spring that allows a gain of 3
+GAIN = 3.0
+JUMP = [
+    {"at_s": 1.7, "goal": {"joints_rad": [2.0], "duration_s": 0.1}},
+    {"at_s": 1.77, "fault": {"joint": bench.JOINT, "kind": "drop_commands", "for_s": 0.015}},
+]
+
+
+def checks(context: Context, kappa: float, push: float) -> list[Check]:
+    bound = ideal.most_ratio(1 / bench.CYCLE_S, 1) - 1
+    name = "largest torque gain in the controller, link held"
+    share = ideal.gained(1 + GAIN, kappa)
+    gained = f"share of the torque, gain {GAIN:g} in the controller"
+    return [
+        Check(f"{name}, ideal", bound, most_gain(), "", 0.05),
+        Check(f"{name}, bus", bound, most_gain_bus(context, bound), "", 0.05),
+        Check(f"{gained}, ideal", share, shared(kappa, push), "", 0.01),
+        Check(f"{gained}, bus", share, shared_bus(context, kappa, push), "", 0.01),
+    ]
+
+
+def most_gain() -> float:
+    def settles(gain: float) -> bool:
+        sensed = gain * bench.K_J + (1 + gain) * K_HELD
+        return growth(bench.looped(bench.held_link(), [sensed, 0.0], bench.CYCLE_S, 1)) < 1.0
+
+    return limit(settles, 0.01, 10.0)
+
+
+def _law(K: float, D: float, gain: float) -> dict[str, Any]:
+    return {"law": "full_state", **bench.given(K, D), "torque_gain": float(gain)}
+
+
+def most_gain_bus(context: Context, expected: float) -> float:
+    tried = [0.85 * expected, 1.15 * expected]
+    growths = []
+    for gain in tried:
+        log = bench.on_bus(
+            context,
+            f"controller_limit_{gain:.3f}",
+            _law(K_HELD, 0.0, gain),
+            JUMP,
+            2.5,
+            changes={
+                "urdf": "held.urdf",
+                **bench.joint(transmission={"damping_Nms_per_rad": 0.0}),
+            },
+            reality=bench.joint(transmission={"damping_Nms_per_rad": bench.D_J}),
+        )
+        mode = bus.mode(log, 1.9, 2.5)
+        growths.append(-mode.zeta * mode.omega)
+    return bench.zero_between(tried, growths)
+
+
+def shared(kappa: float, push: float) -> float:
+    """Torque that arrives over the law's own, u = -K θ, at rest under a push."""
+    spring = [-(SOFT * GAIN), 0.0, SOFT * GAIN, 0.0]  # what the sensed torque is fed back by
+    law = [0.0, 0.0, (1 + GAIN) * ideal.K, (1 + GAIN) * ideal.D]
+    gains = [kappa * (a + b) for a, b in zip(spring, law, strict=True)]
+    theta = bench.at_rest(bench.elastic(SOFT), gains, push)[2]
+    return push / (ideal.K * float(theta))
+
+
+def shared_bus(context: Context, kappa: float, push: float) -> float:
+    spring = {"law": "linear", "stiffness_Nm_per_rad": SOFT}
+    log = bus.pushed(
+        context,
+        "controller_share",
+        _law(ideal.K, ideal.D, GAIN),
+        bench.joint(transmission={"spring": spring}),
+        kappa,
+        push,
+    )
+    return bus.share_of(log)
