@@ -29,8 +29,13 @@ def checks(context: Context) -> list[Check]:
     for K_d in joint.ASKED:
         name = f"the controller's own solution, {K_d:g} N m/rad asked for: torque left over"
         made.append(Check(name, 0.0, _left_over(context, robot, K_d), "N m", 1e-8, "absolute"))
-    name = f"{TOO_STIFF:g} N m/rad asked for: the controller finds no solution"
-    return [*made, Check(name, 1.0, float(_refuses(context, robot)), "", 0.0, "absolute")]
+    name = f"{TOO_STIFF:g} N m/rad asked for"
+    solved, taken = _solvable(context, robot), 1 - joint.refused_bus(context, TOO_STIFF)
+    return [
+        *made,
+        Check(f"{name}: solutions, by the controller", 0.0, float(solved), "", 0.0, "absolute"),
+        Check(f"{name}: requests it takes, bus", 0.0, float(taken), "", 0.0, "absolute"),
+    ]
 
 
 def _asked(robot: str, K_d: float) -> dict[str, Any]:
@@ -52,9 +57,11 @@ def _left_over(context: Context, robot: str, K_d: float) -> float:
     return max(abs(spring - u), abs(u - joint.wanted(q, K_d)))
 
 
-def _refuses(context: Context, robot: str) -> bool:
+def _solvable(context: Context, robot: str) -> bool:
     try:
         context.eval([_asked(robot, TOO_STIFF)])
     except RunError as error:
-        return "stiffer than the joint springs" in str(error)
-    return False
+        if "stiffer than the joint springs" not in str(error):
+            raise
+        return False
+    return True

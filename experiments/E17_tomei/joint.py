@@ -168,4 +168,4 @@ def refused_bus(context: Context, K_P: float) -> int:
     log = bench.on_bus(
         context, f"refused_{K_P:g}", gains(K_P), [], 1.5, changes=changes(SPRING, GRAVITY)
     )
-    return int(log.read("CONTROLLER_STATUS")["requests_refused"].max())
+    return bench.refused(log)

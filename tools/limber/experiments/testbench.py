@@ -179,6 +179,11 @@ RIGID = {
 }
 
 
+def refused(log: Log) -> int:
+    """Requests that the controller refused."""
+    return int(log.read("CONTROLLER_STATUS")["requests_refused"].max())
+
+
 def joint(**content: Any) -> dict[str, Any]:
     """A change of the bench's one joint."""
     return {"joints": {JOINT: content}}
