@@ -1,7 +1,5 @@
 #include "tests/controller/elastic_plant.h"
 
-#include <Eigen/Cholesky>
-
 namespace limber::testing {
 
 ElasticPlant::ElasticPlant(const LoadedRobot& robot)
@@ -38,15 +36,16 @@ void ElasticPlant::rest_at(const VectorJ& q_at) {
 
 void ElasticPlant::advance(double dt, const VectorJ& tau, const VectorJ& tau_preload) {
   constexpr int kSteps = 10;
-  for (int i = 0; i < kSteps; ++i) step(dt / kSteps, tau, tau_preload);
+  model_.evaluate(q, v, &terms_);
+  const Eigen::LLT<MatrixJ> M(terms_.M);
+  for (int i = 0; i < kSteps; ++i) step(dt / kSteps, M, tau, tau_preload);
 }
 
-void ElasticPlant::step(double h, const VectorJ& tau, const VectorJ& tau_preload) {
-  model_.evaluate(q, v, &terms_);
+void ElasticPlant::step(double h, const Eigen::LLT<MatrixJ>& M, const VectorJ& tau,
+                        const VectorJ& tau_preload) {
   VectorJ tau_t = D_.cwiseProduct(theta_dot - v);
   for (Eigen::Index i = 0; i < q.size(); ++i) tau_t[i] += joint_torque(i);
-  const VectorJ a =
-      terms_.M.llt().solve(VectorJ(tau_t - terms_.Cv - terms_.g + terms_.J.transpose() * F_ext));
+  const VectorJ a = M.solve(VectorJ(tau_t - terms_.Cv - terms_.g + terms_.J.transpose() * F_ext));
   // f(c + x) + f(c - x) of quadratic springs.
   const VectorJ x = theta - q;
   const VectorJ pull = k2_.cwiseProduct(c.cwiseAbs2() + x.cwiseAbs2());

@@ -1,6 +1,8 @@
 // An arm whose motors move it through springs.
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "controller/arm_terms.h"
 #include "robots/load_robot.h"
 
@@ -8,7 +10,8 @@ namespace limber::testing {
 
 /// M q'' + C v + g = tau_t + J^T F_ext,  B theta'' + tau_t = tau,  tau_t = spring + D (theta' - v);
 /// pairs of motors: equilibrium theta and preload c, each with the inertia of both motors. Linear
-/// springs for elastic joints, taut quadratic ones for pairs. Symplectic Euler in small steps.
+/// springs for elastic joints, taut quadratic ones for pairs. Symplectic Euler in small steps,
+/// the arm's terms once a call.
 class ElasticPlant {
  public:
   explicit ElasticPlant(const LoadedRobot& robot);
@@ -25,7 +28,7 @@ class ElasticPlant {
   Vector6 F_ext = Vector6::Zero();
 
  private:
-  void step(double h, const VectorJ& tau, const VectorJ& tau_preload);
+  void step(double h, const Eigen::LLT<MatrixJ>& M, const VectorJ& tau, const VectorJ& tau_preload);
 
   controller::ArmModel model_;
   controller::ArmTerms terms_;
