@@ -33,16 +33,21 @@ void ConfigureDialogue::receive_state(bool enabled) noexcept {
   if (step_ == 0 && !enabled) advance();
 }
 
+bool ConfigureDialogue::may_be_unanswered() const noexcept {
+  if (done()) return false;
+  return step_ == 0 ? !family_->disable_is_answered() : !family_->question(question()).answered;
+}
+
 void ConfigureDialogue::close_cycle() noexcept {
   const bool over = advanced_ || done() || failed_;
   advanced_ = false;
   if (over) return;
   const bool disabling = step_ == 0;
-  if (!disabling && !family_->question(question()).answered) return go_to(step_ + 1);
+  if (!disabling && may_be_unanswered()) return go_to(step_ + 1);
   if (++waited_ < (disabling ? 1 : family_->patience_cycles())) return;
   waited_ = 0;
   if (++attempts_ < kAttempts) return;
-  if (disabling && !family_->disable_is_answered()) return go_to(1);
+  if (may_be_unanswered()) return go_to(1);
   failed_ = true;
 }
 

@@ -26,6 +26,8 @@ class ConfigureDialogue {
   CanFrame next_frame() noexcept;
   /// True if a state reply, not an answer to a question, is expected.
   bool expects_state() const noexcept { return step_ == 0 || done(); }
+  /// True if this cycle's frame may rightly stay without any answer.
+  bool may_be_unanswered() const noexcept;
   /// An answer; false if it is none to the question asked.
   bool receive(const CanFrame& frame) noexcept;
   /// A state reply.

@@ -88,8 +88,9 @@ void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
 }
 
 void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
-  if (!answered_) ++missing_;
-  if (state == DriveState::kConfiguring) {
+  const bool configuring = state == DriveState::kConfiguring;
+  if (!answered_ && !(configuring && configure_.may_be_unanswered())) ++missing_;
+  if (configuring) {
     configure_.close_cycle();
     return;
   }

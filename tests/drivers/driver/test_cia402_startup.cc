@@ -80,6 +80,7 @@ TEST(Cia402StartUp, FrameByFrame) {
   arm.half_cycle();
   EXPECT_EQ(arm.sent, std::vector<std::string>({"080#"})) << "OFF: asked for their state";
   EXPECT_TRUE(arm.motors[0].operational);
+  EXPECT_EQ(arm.read_status().replies_lost[1], 0);
 }
 
 TEST(Cia402StartUp, ADriveWithoutSensorsIsAskedForNone) {
