@@ -44,11 +44,10 @@ double PreloadServo::servo(const Motors& pair, const ArmState& state, double wan
   const double step = pair.preload_max_rad / kRampTime_s * dt_s;
   const double before = c_d_[i];
   c_d_[i] = std::clamp(goal, before - step, before + step);
-  const double speed = dt_s > 0.0 ? (c_d_[i] - before) / dt_s : 0.0;
   const double K = pair.B * kBandwidth_rad_per_s * kBandwidth_rad_per_s;
   const double D = 2.0 * pair.B * kBandwidth_rad_per_s;
   return pair.springs.preload_torque(c_d_[i], x) - K * (state.preload[i] - c_d_[i]) -
-         D * (state.preload_dot[i] - speed);
+         D * state.preload_dot[i];
 }
 
 std::int32_t PreloadServo::control(const ArmState& state, const VectorJ& wanted, const VectorJ& x,

@@ -12,10 +12,11 @@
 namespace limber::controller {
 
 /// For c = (theta_1 + theta_2) / 2, on which tau_1 + tau_2 acts with the inertia B = B_1 + B_2:
-///   tau_preload = f(c_d + x) + f(c_d - x) - K_c (c - c_d) - D_c (c' - c_d')
+///   tau_preload = f(c_d + x) + f(c_d - x) - K_c (c - c_d) - D_c c'
 ///   K_c = B w^2,  D_c = 2 B w
 /// x: deflection of the equilibrium from the link. The springs' force is fed forward where c shall
-/// be, so that their own stiffness helps the servo. c_d starts where the preload is and moves at a
+/// be, so that their own stiffness helps the servo; damping is against standstill, which keeps the
+/// torque continuous where a ramp begins. c_d starts where the preload is and moves at a
 /// steady rate to what is wanted. The joint's torque comes first: |tau| + |tau_preload| stays
 /// within twice what the weaker motor can give; and the gate's step is kept. Zero for joints with
 /// one motor. After construction all members may be called in the cycle.
