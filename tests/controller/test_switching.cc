@@ -101,14 +101,9 @@ class ElasticSwitching : public Switching {
  protected:
   ElasticSwitching() : Switching(limber::testing::elastic_arm(true)) {}
 };
-class AntagonisticSwitching : public Switching {
- protected:
-  AntagonisticSwitching() : Switching(limber::testing::antagonistic_arm()) {}
-};
 
 TEST_F(Switching, LawsNeverJump) { walk_all_pairs(); }
 TEST_F(ElasticSwitching, LawsNeverJump) { walk_all_pairs(); }
-TEST_F(AntagonisticSwitching, LawsNeverJump) { walk_all_pairs(); }
 
 void Switching::walk_all_pairs() {
   bool at_tip = true;
