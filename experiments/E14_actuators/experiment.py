@@ -89,7 +89,7 @@ def rotor(context: Context) -> list[Check]:
     return [
         Check(f"{name}, ideal", np.sqrt(K / INERTIA), exact.omega, "rad/s", 0.01),
         Check(f"{name}, bus", np.sqrt(K / INERTIA), seen.omega, "rad/s", 0.01),
-        Check("its damping ratio, bus with its delay", late.zeta, seen.zeta, "", 0.03),
+        Check("damping ratio with the rotor, bus with its delay", late.zeta, seen.zeta, "", 0.03),
     ]
 
 
