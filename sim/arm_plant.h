@@ -7,7 +7,7 @@
 //
 // At the default step of 0.25 ms ode is within 1e-5 rad of the reference while a 7-joint arm tracks
 // a sine (3.4e-5 rad at 1 ms), a fortieth of a count of a 14-bit encoder. Joint springs do not make
-// it worse: at 1 rad/s 2.5e-4 rad with or without, and 1e-10 rad for the reference.
+// it worse: at 1 rad/s 2e-4 rad with or without, and 1e-10 rad for the reference.
 #pragma once
 
 #include <cstdint>
