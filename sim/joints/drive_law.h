@@ -1,5 +1,5 @@
-// The torque law a motor follows between two frames on the bus, in its joint's coordinates; q, v are
-// the motor's own.
+// The torque law a motor follows between two frames on the bus, in its joint's coordinates; q, v
+// are the motor's own.
 #pragma once
 
 #include <algorithm>

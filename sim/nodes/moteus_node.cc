@@ -32,7 +32,8 @@ MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_turns_, 0.0, torque};
   const double counts = std::ldexp(1.0, drive_.encoder_bits);
   const double turns = (drive_.sign * joint.theta + drive_.offset_rad) / kTurn;
-  return {std::floor(turns * counts) / counts + zero_turns_, drive_.sign * joint.theta_dot / kTurn, torque};
+  return {std::floor(turns * counts) / counts + zero_turns_, drive_.sign * joint.theta_dot / kTurn,
+          torque};
 }
 
 // --- frames --------------------------------------------------------------------------------------
