@@ -6,6 +6,7 @@ import pytest
 from limber.dynamics import ArmDynamics
 from limber.experiments.evaluate import case, evaluate
 from limber.robot import load_robot
+from limber.urdf import Chain
 
 
 def dynamics_of(name: str) -> ArmDynamics:
@@ -62,8 +63,6 @@ URDF = """<robot name="r">
 
 def test_sliding_joint_and_a_branch_by_hand(tmp_path):
     """A carriage that slides upwards with a pendulum on it; the tool hangs on as load."""
-    from limber.urdf import Chain
-
     path = tmp_path / "r.urdf"
     path.write_text(URDF)
     arm = ArmDynamics(path, Chain(path, "base", "arm"), np.array([0, 0, -10.0]))
@@ -75,3 +74,28 @@ def test_sliding_joint_and_a_branch_by_hand(tmp_path):
     slide = (2.0 + mass) * (2.0 + 10.0) - moment * (c * 3.0 - s * 1.3**2)
     turn = inertia * 3.0 - moment * c * (2.0 + 10.0)
     np.testing.assert_allclose(arm.torque(q, v, a)[0], [slide, turn], rtol=1e-12)
+
+
+TELESCOPE = """<robot name="r">
+  <link name="base"/>
+  <link name="boom"><inertial><mass value="3"/>
+    <inertia ixx="1" iyy="1" izz="0.5"/></inertial></link>
+  <link name="rod"><inertial><mass value="2"/>
+    <inertia ixx="1" iyy="1" izz="0.25"/></inertial></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="boom"/>
+    <axis xyz="0 0 1"/></joint>
+  <joint name="reach" type="prismatic"><parent link="boom"/><child link="rod"/>
+    <origin xyz="0.5 0 0"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+</robot>"""
+
+
+def test_turning_telescope_by_hand(tmp_path):
+    """Polar coordinates: m (r'' - r w²) along the rod, (I + m r²) w' + 2 m r r' w about z."""
+    path = tmp_path / "r.urdf"
+    path.write_text(TELESCOPE)
+    arm = ArmDynamics(path, Chain(path, "base", "rod"), np.array([0, 0, -9.81]))
+    r, w, rate = 0.8, 1.5, -0.6
+    tau = arm.torque(np.array([[2.0, 0.3]]), np.array([[w, rate]]), np.array([[0.7, 0.9]]))[0]
+    turn = (0.75 + 2.0 * r**2) * 0.7 + 2.0 * 2.0 * r * rate * w
+    np.testing.assert_allclose(tau, [turn, 2.0 * (0.9 - r * w**2)], rtol=1e-12)

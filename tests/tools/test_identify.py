@@ -73,6 +73,19 @@ def test_friction_of_the_link_is_told_apart_by_a_torque_sensor(flexible, rigid):
     assert not any(name.startswith("link") for name in found_in(rigid, friction))
 
 
+@pytest.mark.parametrize(("kind", "taken_off"), [("rigid", 1.5), ("flexible", 0.0)])
+def test_friction_of_the_link_is_not_proposed_for_the_motor(kind, taken_off, request, tmp_path):
+    """Without a torque sensor only the sum of both shows."""
+    folder = shutil.copytree(request.getfixturevalue(kind), tmp_path / "run")
+    text = (folder / "robot.yaml").read_text()
+    link = "    link_friction: {coulomb_Nm: 1.5, viscous_Nms_per_rad: 0}\n"
+    (folder / "robot.yaml").write_text(text.replace("gains:", link + "gains:"))
+    arm = load_arm(str(folder))
+    values = friction.identify(arm, read_motion([folder], arm)).values
+    coulomb = next(value for value in values if value.name == "friction: coulomb_Nm")
+    assert coulomb.value - coulomb.proposed == pytest.approx(taken_off)
+
+
 def test_stiffness(flexible):
     found = found_in(flexible, stiffness)
     assert agrees(found["stiffness_Nm_per_rad"], 3000.0, 0.001)

@@ -40,7 +40,7 @@ class Truth:
     kappa: float = 1.0
     rotor: float = 0.5  # behind the gear
     stiffness: float = 3000.0
-    damping: float = 4.0
+    damping: float = 40.0
     friction: Friction = Friction()
     link_friction: Friction = Friction()
     rigid: bool = False

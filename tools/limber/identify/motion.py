@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import butter, sosfiltfilt
 
 from limber import messages
@@ -135,12 +136,7 @@ def _motor_torque(state: np.ndarray, arm: Arm) -> np.ndarray:
 
 
 def _moving(speed: np.ndarray, rate: float) -> np.ndarray:
-    """Not slow for SETTLE_S before or after: a window's least speed is above SLOWEST."""
-    reach = int(np.ceil(SETTLE_S * rate))
-    fast = np.pad(np.abs(speed) > SLOWEST, ((reach, reach), (0, 0)))
-    same = np.pad(np.sign(speed), ((reach, reach), (0, 0)))
-    moving = np.ones_like(speed, bool)
-    for shift in range(2 * reach + 1):
-        rows = slice(shift, shift + len(speed))
-        moving &= fast[rows] & (same[rows] == np.sign(speed))
-    return moving
+    """Faster than SLOWEST the same way all the time from SETTLE_S before to SETTLE_S after."""
+    size = 2 * int(np.ceil(SETTLE_S * rate)) + 1
+    forward = minimum_filter1d(speed, size, axis=0) > SLOWEST
+    return forward | (maximum_filter1d(speed, size, axis=0) < -SLOWEST)
