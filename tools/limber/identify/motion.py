@@ -22,6 +22,7 @@ SAMPLES_HZ = 50.0
 STAND_S = 1.0  # from the drives being on until the arm rests on them alone
 EDGE_S = 0.3  # at the end: there the filter has no future
 LEAST_S = 2.0
+OLDEST = 3  # cycles that a lost reply may be bridged
 BLOCK_S = 0.5  # what is further apart than this counts as independent
 SLOWEST = 0.02  # rad/s or m/s: below it friction is on its way from stick to slip
 SETTLE_S = 0.1  # from rest until the filter has forgotten it
@@ -74,10 +75,9 @@ def _stretches(log: Log) -> list[np.ndarray]:
         raise InputError(f"{log.path} holds no JOINT_STATE")
     flags = messages.message_class("joint_state_t")
     n = int(state["num_joints"].max())
-    wanted = flags.JOINT_FRESH | flags.JOINT_ENABLED
-    good = (state["drive_state"] == flags.DRIVE_ON) & np.all(
-        state["joint_flags"][:, :n] & wanted == wanted, axis=1
-    )
+    enabled = state["joint_flags"][:, :n] & flags.JOINT_ENABLED != 0
+    heard = state["age_cycles"][:, :n] <= OLDEST
+    good = (state["drive_state"] == flags.DRIVE_ON) & np.all(enabled & heard, axis=1)
     broken = (np.diff(state["seq"]) != 1) | (np.diff(good.astype(int)) != 0)
     parts = np.split(np.arange(len(state)), np.flatnonzero(broken) + 1)
     least = LEAST_S * 1e9 / max(int(state["period_ns"][0]), 1)

@@ -48,6 +48,8 @@ def identify(arm: Arm, motion: Motion) -> Findings:
 
 def _refuse(joint: JointBelief, link_encoder: bool) -> None:
     kind = joint.transmission.get("kind")
+    if kind == "antagonistic":
+        raise PoorLogError("two motors pull at this joint, each through a spring of its own")
     if kind != "elastic":
         raise PoorLogError(f"its transmission is {kind}: there is no spring to measure")
     law = joint.transmission["spring"]["law"]
