@@ -1,4 +1,4 @@
-"""The same gains on a perfect joint, a real motor, a flexible joint and a series elastic one."""
+"""The same Cartesian gains on a perfect, a real, a flexible and a series elastic joint."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from . import runs
 from .joints import JOINTS, ZETA, Joint, K
 from .runs import Seen
 
-TITLE = "The same gains on five joints: what was asked, and what a hand gets"
+TITLE = "The same Cartesian gains on five joints: what was asked, and what a hand gets"
 CLAIM = "Motors do not just provide the torque a control law calculates"
 SECTION = "3.1"
 PLANT = "test bench, one joint; ideal: its equations; bus: a CiA 402 drive with exact sensors"
@@ -35,7 +35,7 @@ def run(context: Context) -> list[Check]:
         bars(found, [joint.stiffness for joint in JOINTS], "stiffness", K, 1, axes[0, 1])
         axes[0, 1].set_xlabel("stiffness felt (N m/rad); bars: formula; dotted: asked")
         bars(found, [joint.lag for joint in JOINTS], "lag", 0.0, 1e3, axes[1, 0])
-        axes[1, 0].set_xlabel("behind a slow path, by friction (mrad); bars: formula")
+        axes[1, 0].set_xlabel("behind a moving goal, by friction (mrad); bars: formula")
         bars(found, [joint.sag for joint in JOINTS], "sag", 0.0, 1e3, axes[1, 1])
         axes[1, 1].set_xlabel("sag under 10 N m that the law compensates (mrad); bars: formula")
     return [check for joint in JOINTS for check in checks(joint, *found[joint.name])]
@@ -48,7 +48,7 @@ def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Check]:
         made += [
             Check(f"{name}stiffness, asked {K:g}", joint.stiffness, seen.stiffness, "N m/rad",
                   0.02),
-            Check(f"{name}behind a slow path", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.1,
+            Check(f"{name}behind a moving goal", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.1,
                   "absolute"),
             Check(f"{name}sag under its weight", joint.sag * 1e3, seen.sag * 1e3, "mrad", 0.1,
                   "absolute"),

@@ -9,7 +9,8 @@ from limber.experiments import testbench as bench
 from limber.experiments.elastic import Drives, ElasticArm, State, one_joint
 from limber.experiments.testbench import B, M
 
-K = 500.0  # N m/rad asked, of each joint
+LEVER_M = 0.5  # from the joint to the tip
+K = 500.0  # N m/rad asked of each joint: 2000 N/m at the tip
 ZETA = 0.3  # asked
 D = 2 * ZETA * np.sqrt(K * (M + B))
 KAPPA, COULOMB_NM = 0.9, 2.0  # of a real motor
@@ -52,7 +53,7 @@ class Joint:
 
     @property
     def lag(self) -> float:
-        """On a slow path, rad: friction, divided by the torque loop, over the law's stiffness."""
+        """On a path, rad: friction, divided by the torque loop, over the law's stiffness."""
         left = self.coulomb / (self.kappa * self.rho)
         return left * (1 / K - (self.yields if self.static else 0.0))
 

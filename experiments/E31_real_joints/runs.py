@@ -1,4 +1,4 @@
-"""Each joint is pushed and let go, led along a slow path, and loaded with its weight.
+"""Each joint is pushed and let go, led round and round, and loaded with its weight.
 
 Each on its equations with exact sensors (ideal) and behind a CiA 402 drive (bus).
 """
@@ -11,12 +11,14 @@ import numpy as np
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
 from limber.experiments.elastic import run
+from limber.experiments.truth import motion, seconds, status
+from limber.logs import Log
 
-from .joints import WEIGHT_NM, D, Joint, K
+from .joints import LEVER_M, WEIGHT_NM, D, Joint, K
 
 PUSH_NM, RAMP_S, HOLD_S, FREE_S = 20.0, 1.0, 0.5, 1.5
 STEPS = 100  # of the ramp
-MOVE_RAD, MOVE_S = 1.0, 3.0
+TURN_S, TURNING_S = 3.2, 0.6  # of a circle; the goal's speed rises over the first
 REST_S = 4.0
 START_S = 2.0
 
@@ -46,15 +48,21 @@ def pushes() -> list[dict[str, Any]]:
     return [*up, bench.push(PUSH_NM, START_S + RAMP_S, HOLD_S)]
 
 
+def circle(t: float) -> tuple[float, float]:
+    """Angle and speed of a goal that goes round and round."""
+    speed = 2 * np.pi / TURN_S
+    if t < TURN_S:
+        turn = np.pi * t / TURN_S
+        return speed * (t - np.sin(turn) * TURN_S / np.pi) / 2, speed * (1 - np.cos(turn)) / 2
+    return speed * (t - TURN_S / 2), speed
+
+
 def ideal(joint: Joint) -> Seen:
     def still(t: float, x: Any) -> np.ndarray:
         return joint.law(x, 0.0, 0.0, 0.0)
 
     def led(t: float, x: Any) -> np.ndarray:
-        s = min(t / MOVE_S, 1.0)
-        q_d = MOVE_RAD * (10 * s**3 - 15 * s**4 + 6 * s**5)
-        v_d = MOVE_RAD * (30 * s**2 - 60 * s**3 + 30 * s**4) / MOVE_S
-        return joint.law(x, q_d, v_d, 0.0)
+        return joint.law(x, *circle(t), 0.0)
 
     def level(t: float, x: Any) -> np.ndarray:
         return joint.law(x, 0.0, 0.0, WEIGHT_NM)
@@ -62,27 +70,38 @@ def ideal(joint: Joint) -> Seen:
     arm = joint.plant()
     end = RAMP_S + HOLD_S + FREE_S
     push = run(arm, still, end, lambda t: np.array([float(pushed(t))]), joint.drives())
-    path = run(arm, led, MOVE_S, drives=joint.drives())
+    path = run(arm, led, TURN_S + TURNING_S, drives=joint.drives())
     rest = run(arm, level, REST_S, lambda t: np.array([-WEIGHT_NM]), joint.drives(False))
-    s = path.t / MOVE_S
-    wanted = MOVE_RAD * (10 * s**3 - 15 * s**4 + 6 * s**5)
-    middle = np.abs(s - 0.5) < 0.125
-    behind = float((wanted - path.x.q[:, 0])[middle].mean())
+    late = path.t > TURN_S + 0.1
+    wanted = np.array([circle(t)[0] for t in path.t[late]])
+    behind = float((wanted - path.x.q[late, 0]).mean())
     return _seen(push.t, push.x.q[:, 0], behind, -float(rest.x.q[-1, 0]))
 
 
 def bus(context: Context, joint: Joint) -> Seen:
+    """With the gains at the tip: K/l² there is K at the joint."""
     name = joint.name.replace(",", "").replace(" ", "_")
-    gains = bench.spring_damper(K, float(D), position="static" if joint.static else "motor")
+    gains = {
+        "law": "cartesian_impedance",
+        "position": "static" if joint.static else "motor",
+        "K_x_translation_N_per_m": [K / LEVER_M**2, K / LEVER_M**2, 0.0],
+        "K_x_rotation_Nm_per_rad": 0.0,
+        "damping": "given",
+        "D_x": np.diag([float(D) / LEVER_M**2] * 2 + [0.0] * 4).tolist(),
+        "spring_force_N": 1000.0,
+    }
     real = {"changes": joint.changes(), "reality": joint.reality()}
     end = START_S + RAMP_S + HOLD_S + FREE_S
     log = bench.on_bus(context, f"{name}_push", gains, pushes(), end, **real)
     before = bench.mean(log, START_S - 0.2, START_S)
     push = bench.truth(log, START_S, end)
-    goal = {"at_s": START_S, "goal": {"joints_rad": [MOVE_RAD], "duration_s": MOVE_S}}
-    log = bench.on_bus(context, f"{name}_path", gains, [goal], START_S + MOVE_S, **real)
-    middle = START_S + MOVE_S / 2
-    behind = bench.lag(log, middle - 0.5, middle + 0.5)
+    turn = {"circle_centre_m": [0.0, LEVER_M, 0.0], "circle_axis": [0.0, 0.0, 1.0],
+            "duration_s": TURN_S}  # fmt: skip
+    end = START_S + TURN_S + TURNING_S
+    log = bench.on_bus(
+        context, f"{name}_path", gains, [{"at_s": START_S, "goal": turn}], end, **real
+    )
+    behind = _behind(log, end - 0.5, end)
     level = {
         "changes": {
             **joint.changes(),
@@ -91,9 +110,17 @@ def bus(context: Context, joint: Joint) -> Seen:
         "reality": joint.reality(friction=False),
         "start_q": [np.pi / 2],
     }
-    log = bench.on_bus(context, f"{name}_level", gains, [], START_S + REST_S, **level)
-    sag = bench.lag(log, START_S + REST_S - 0.2, START_S + REST_S)
-    return _seen(push["t"] - START_S, push["q"] - before, behind, sag)
+    end = START_S + REST_S
+    log = bench.on_bus(context, f"{name}_level", gains, [], end, **level)
+    return _seen(push["t"] - START_S, push["q"] - before, behind, _behind(log, end - 0.2, end))
+
+
+def _behind(log: Log, start_s: float, end_s: float) -> float:
+    """Angle from the tip to its goal, on average."""
+    told, rows = status(log, start_s, end_s), motion(log, start_s, end_s)
+    at = np.searchsorted(seconds(rows), seconds(told) - 1e-6)
+    (x, y), (x_d, y_d) = rows["p_BT"][at, :2].T, told["p_BD"][:, :2].T
+    return float(np.arctan2(x * y_d - y * x_d, x * x_d + y * y_d).mean())
 
 
 def _seen(t: np.ndarray, q: np.ndarray, lag: float, sag: float) -> Seen:
