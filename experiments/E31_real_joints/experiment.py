@@ -47,8 +47,8 @@ def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Check]:
         name = f"{joint.name}, {where}: "
         made += [
             Check(f"{name}stiffness, asked {K:g}", joint.stiffness, seen.stiffness, "N m/rad",
-                  0.02),
-            Check(f"{name}behind a moving goal", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.1,
+                  0.01),
+            Check(f"{name}behind a moving goal", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.02,
                   "absolute"),
             Check(f"{name}sag under its weight", joint.sag * 1e3, seen.sag * 1e3, "mrad", 0.1,
                   "absolute"),
