@@ -195,6 +195,26 @@ TEST(VariableStiffness, LinkMeetsTheSpringsAsked) {
   EXPECT_NEAR(link_stiffness(&rig, 8.0), 160.0, 0.01 * 160.0);
 }
 
+// K l^2 + K_G with K_G = -p.F: the world pulls the tip outwards with F = 10 N at p = 0.5 m, which
+// holds the link by itself with 5 N m/rad.
+TEST(VariableStiffness, LeavesToTheLoadWhatTheLoadGives) {
+  Rig rig(one_pair({.D_J = 3.0, .weight = 0.0, .B = 0.04, .K_q = 120.0}), "variable_stiffness");
+  place(&rig, 0.0);
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.stiffness_fit = Gains::FIT_DIAGONAL;
+  for (auto& row : gains.K_x) std::fill(std::begin(row), std::end(row), 0.0);
+  gains.K_x[0][0] = 640.0;
+  run_law(&rig, gains);
+  compliance_goal_t goal = rig.goal();
+  goal.kind = compliance_goal_t::GOAL_WRENCH;
+  goal.F_ff[1] = 10.0;
+  ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
+  rig.plant.F_ext[1] = -10.0;
+  rig.run(6.0);
+  EXPECT_NEAR(rig.controller.status().sigma[0], 640.0 * kLever * kLever - 10.0 * kLever, 0.5);
+}
+
 TEST(VariableStiffness, StaysStiffEnoughForTheWeight) {
   Rig rig(one_pair({.D_J = 3.0, .weight = 18.0, .B = 0.04, .K_q = 60.0}), "variable_stiffness");
   place(&rig, 1.5);
