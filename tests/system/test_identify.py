@@ -127,6 +127,18 @@ def test_seven_flexible_joints(tmp_path):
     assert agrees(found["joint_4", "link_friction: coulomb_Nm"], 0.4, 0.03)
 
 
+def test_springs_of_two_motors(tmp_path):
+    """Their torque is known from the weight of the links only."""
+    robot = ROOT / "robots" / "antagonist2r"
+    spring = {"transmission": {"spring": {"k2_Nm_per_rad2": 330}}}
+    tour = {"reality": {"joints": {"shoulder": spring}}}
+    log = record(tmp_path, robot, tour, spread=0.6, poses=2)
+    arm = load_arm(str(robot))
+    found = numbers(stiffness, arm, read_motion([log], arm))
+    assert agrees(found["shoulder", "k2_Nm_per_rad2"], 330.0, 0.005)
+    assert agrees(found["elbow", "k2_Nm_per_rad2"], 400.0, 0.005)
+
+
 def test_heavier_links_of_a_series_elastic_arm(tmp_path):
     """The URDF that is proposed pulls at the joints as the arm that was hidden does."""
     robot = Path(shutil.copytree(ROOT / "robots" / "baxter", tmp_path / "baxter"))

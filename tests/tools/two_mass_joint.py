@@ -17,6 +17,7 @@ from limber import messages
 
 STEP_S = 1.0 / 5000.0
 RATE_HZ = 1000
+LOST_EVERY = 700
 GRAVITY = 9.81
 MASS, LEVER = 6.0, 0.25  # kg, m; the pendulum hangs along -y at q = 0
 INERTIA = 0.9  # about the axis
@@ -185,6 +186,11 @@ def write_run(folder: Path, sensed: dict[str, np.ndarray], sensors: bool) -> Pat
     for key in ("theta", "q", "theta_dot", "v", "tau"):
         state[key][:, 0] = sensed[key]
     state["tau_applied"][:, 0] = sensed["u"]
+    lost = np.arange(LOST_EVERY, count, LOST_EVERY)  # replies: the driver repeats the last one
+    state[lost] = state[lost - 1]
+    state["seq"][lost], state["time_ns"][lost] = lost, time_ns[lost]
+    state["joint_flags"][lost, 0] &= ~flags.JOINT_FRESH
+    state["age_cycles"][lost, 0] = 1
     return write_log(folder / "run.lcmlog", {"JOINT_STATE": state})
 
 

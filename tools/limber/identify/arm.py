@@ -16,6 +16,7 @@ UNITS = {
     "_rad": "_m",
     "_Nms_per_rad": "_Ns_per_m",
     "_Nm_per_rad": "_N_per_m",
+    "_Nm_per_rad2": "_N_per_m2",
 }
 
 

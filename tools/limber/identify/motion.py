@@ -42,6 +42,7 @@ class Motion:
     theta: np.ndarray
     theta_dot: np.ndarray
     theta_ddot: np.ndarray
+    preload: np.ndarray  # of two motors; theta is their equilibrium
     motor: np.ndarray
     tau: np.ndarray
     moving: np.ndarray  # bool: the motor turns, and has for a while
@@ -116,6 +117,7 @@ def _smooth(state: np.ndarray, arm: Arm, first_block: int) -> Motion:
         theta=theta,
         theta_dot=theta_dot,
         theta_ddot=theta_ddot,
+        preload=smooth(state["preload"][:, :n])[keep],
         motor=smooth(_motor_torque(state, arm))[keep],
         tau=smooth(state["tau"][:, :n])[keep],
         moving=_moving(theta_dot, rate / every),

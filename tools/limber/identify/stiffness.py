@@ -4,7 +4,8 @@
 
 tau is what the joint's torque sensor reads or, without one, what the model of a free arm needs. The
 deflection is fitted to the torque and not the other way round, because a sensor whose counts are
-coarse against the deflection then biases nothing.
+coarse against the deflection then biases nothing. For two motors with quadratic springs, preload c
+and equilibrium e, likewise 2 c (e - q) = tau / k2 + offset, both tendons taut.
 """
 
 import numpy as np
@@ -15,60 +16,62 @@ from limber.identify.motion import Motion
 from limber.identify.regression import Fit, PoorLogError, fit
 
 WORST_STD = 0.1  # of the stiffness
+LAWS = {"elastic": "linear", "antagonistic": "quadratic"}
+KEYS = {"elastic": "stiffness_Nm_per_rad", "antagonistic": "k2_Nm_per_rad2"}
 
 
 def identify(arm: Arm, motion: Motion) -> Findings:
     found = Findings("joint stiffness")
     model = arm.dynamics.torque(motion.q, motion.v, motion.a)
     for i, joint in enumerate(arm.joints):
+        sensed = bool(motion.torque_sensor[i])
+        tau = motion.tau[:, i] if sensed else model[:, i]
         try:
-            _refuse(joint, bool(motion.link_encoder[i]))
-            sensed = bool(motion.torque_sensor[i])
-            tau = motion.tau[:, i] if sensed else model[:, i]
-            fitted = _fit(motion, tau, i, sensed)
+            key = _key(joint, bool(motion.link_encoder[i]))
+            bend = _bend(joint, motion, i)
+            fitted = _fit(motion, tau, bend, i, sensed)
         except PoorLogError as reason:
             found.refused[joint.name] = str(reason)
             continue
-        key = joint.key("stiffness_Nm_per_rad")
-        stiffness = float(1.0 / fitted.x[0])
-        path = ("joints", joint.name, "transmission", "spring", key)
-        believed = joint.believed("transmission", "spring", key)
-        std = float(fitted.std[0] * stiffness**2)
-        unit = "N/m" if joint.prismatic else "N m/rad"
-        found.values.append(Value(joint.name, key, unit, stiffness, std, believed, path, stiffness))
-        deflection = motion.theta[:, i] - motion.q[:, i]
-        found.panels.append(_panel(joint, tau, deflection, fitted, believed))
-        if not sensed:
-            found.notes.append(
-                f"{joint.name} has no torque sensor: its torque is the model's, so weights in the "
-                "URDF and link friction are in the result."
-            )
+        value = _value(joint, key, fitted)
+        found.values.append(value)
+        found.panels.append(_panel(joint, tau, bend, fitted, value.believed))
+    if found.values and not motion.torque_sensor.all():
+        found.notes.append(
+            "Joints without a torque sensor are measured against the weights in the URDF: check "
+            "those first (identify gravity)."
+        )
     return found
 
 
-def _refuse(joint: JointBelief, link_encoder: bool) -> None:
-    kind = joint.transmission.get("kind")
-    if kind == "antagonistic":
-        raise PoorLogError("two motors pull at this joint, each through a spring of its own")
-    if kind != "elastic":
-        raise PoorLogError(f"its transmission is {kind}: there is no spring to measure")
+def _key(joint: JointBelief, link_encoder: bool) -> str:
+    """Of the spring's number in robot.yaml."""
+    kind = joint.transmission["kind"]
+    if kind == "rigid":
+        raise PoorLogError("its transmission is rigid: there is no spring to measure")
     law = joint.transmission["spring"]["law"]
-    if law != "linear":
-        raise PoorLogError(f"its spring law is {law}; only linear springs are fitted")
+    if law != LAWS[kind]:
+        raise PoorLogError(f"its spring law is {law}; only {LAWS[kind]} ones are fitted here")
     if not link_encoder:
         raise PoorLogError("it has no link encoder: theta - q is not measured")
+    return joint.key(KEYS[kind])
 
 
-def _fit(motion: Motion, tau: np.ndarray, i: int, sensed: bool) -> Fit:
-    deflection, block = motion.theta[:, i] - motion.q[:, i], motion.block
-    columns = [tau, np.ones_like(tau)]
+def _bend(joint: JointBelief, motion: Motion, i: int) -> np.ndarray:
+    """What the torque is proportional to."""
+    deflection = motion.theta[:, i] - motion.q[:, i]
+    return 2.0 * motion.preload[:, i] * deflection if joint.two_motors else deflection
+
+
+def _fit(motion: Motion, tau: np.ndarray, bend: np.ndarray, i: int, sensed: bool) -> Fit:
+    columns, block = [tau, np.ones_like(tau)], motion.block
     if not sensed:  # friction of the link takes part of the torque, by direction
         rows = motion.moving[:, i]
         columns = [column[rows] for column in [*columns, np.sign(motion.v[:, i])]]
-        deflection, block = deflection[rows], block[rows]
+        bend, block = bend[rows], block[rows]
         if not rows.any():
             raise PoorLogError("it does not move")
-    fitted = fit(np.stack(columns, axis=1), deflection, block)
+    fitted = fit(np.stack(columns, axis=1), bend, block)
     if not fitted.std[0] < WORST_STD * fitted.x[0]:
         raise PoorLogError(
             f"its torque changes by only {np.ptp(tau):.2g} N m, which bends the spring too little "
@@ -77,14 +80,26 @@ def _fit(motion: Motion, tau: np.ndarray, i: int, sensed: bool) -> Fit:
     return fitted
 
 
+def _value(joint: JointBelief, key: str, fitted: Fit) -> Value:
+    stiffness = float(1.0 / fitted.x[0])
+    path = ("joints", joint.name, "transmission", "spring", key)
+    believed = joint.believed("transmission", "spring", key)
+    std = float(fitted.std[0] * stiffness**2)
+    unit = "N/m" if joint.prismatic else "N m/rad"
+    unit += "²" if joint.two_motors else ""
+    return Value(joint.name, key, unit, stiffness, std, believed, path, stiffness)
+
+
 def _panel(
-    joint: JointBelief, tau: np.ndarray, deflection: np.ndarray, fitted: Fit, believed: float | None
+    joint: JointBelief, tau: np.ndarray, bend: np.ndarray, fitted: Fit, believed: float | None
 ) -> Panel:
     ends = np.array([tau.min(), tau.max()])
     offset = fitted.x[1]
     lines = {f"measured: {1.0 / fitted.x[0]:.4g}": (ends, 1e3 * (ends * fitted.x[0] + offset))}
     if believed:
         lines[f"as believed: {believed:.4g}"] = (ends, 1e3 * (ends / believed + offset))
-    unit = "mm" if joint.prismatic else "mrad"
-    y_label = f"motor ahead of link ({unit})"
-    return Panel(joint.name, "joint torque (N m)", y_label, tau, 1e3 * deflection, lines)
+    unit = "m" if joint.prismatic else "rad"
+    y_label = f"motor ahead of link (m{unit})"
+    if joint.two_motors:
+        y_label = f"2 c (e - q) (1e-3 {unit}²)"
+    return Panel(joint.name, "joint torque (N m)", y_label, tau, 1e3 * bend, lines)
