@@ -21,7 +21,7 @@ FAST = False
 
 def run(context: Context) -> list[Check]:
     alone = pair.checks(context)
-    rung = ring.found(context)
+    rung, placed = ring.found(context), ring.found_under_law(context)
     shares = fit.residuals(context)
     tips, springs = fit.found(context)
     robot = load_robot(seven.ROBOT)
@@ -31,7 +31,8 @@ def run(context: Context) -> list[Check]:
         fit.draw_tips(tips, left)
         fit.draw_residual(shares, middle)
         draw_ring(rung, right)
-    return [*alone, *ring.checks(rung), *fit.checks(tips, springs, shares), *wrist, *arm]
+    released = [*ring.checks(rung), *ring.checks_under_law(placed)]
+    return [*alone, *released, *fit.checks(tips, springs, shares), *wrist, *arm]
 
 
 def draw_ring(rung: dict[str, ring.Rung], ax: Any) -> None:
