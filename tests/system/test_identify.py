@@ -22,13 +22,18 @@ from stack import BIN, ROOT
 
 CONSTANT = "rotor_torque_constant_Nm_per_A"
 STANDARD_ERRORS = 4.0
+SLOW_PART_S = 25.0  # of a tour of three poses
 
 
-def record(folder: Path, robot: Path, tour: dict, spread: float, poses: int) -> Path:
-    """The log of a tour, with `tour` added to the scenario."""
+def record(
+    folder: Path, robot: Path, tour: dict, spread: float, poses: int, seconds: float = np.inf
+) -> Path:
+    """The log of a tour, or of its first seconds, with `tour` added to the scenario."""
     arm = load_arm(str(robot))
     scenario = yaml.safe_load(excitation.scenario_text(arm, str(robot), spread, poses, seed=3))
     scenario["timeline"] += tour.pop("timeline", [])
+    scenario["timeline"] = [entry for entry in scenario["timeline"] if entry["at_s"] < seconds]
+    scenario["duration_s"] = min(scenario["duration_s"], seconds)
     path, log = folder / "tour.yaml", folder / "run.lcmlog"
     path.write_text(yaml.safe_dump(scenario | tour, sort_keys=False), encoding="utf-8")
     command = [str(BIN / "limber-lab"), str(path), "--log", str(log)]
@@ -150,7 +155,7 @@ def test_heavier_links_of_a_series_elastic_arm(tmp_path):
         changes[body.heaviest] = (link.mass * (1.0 + 0.05 * i), link.com + 0.01)
     (robot / "heavier.urdf").write_text(with_inertials(arm.robot.urdf, changes))
     tour = {"reality": {"urdf": "heavier.urdf"}}
-    log = record(tmp_path, robot, tour, spread=0.8, poses=3)
+    log = record(tmp_path, robot, tour, spread=0.8, poses=4, seconds=32.0)
     _, weights = gravity.identify(arm, read_motion([log], arm))
     proposed = {}
     for i in range(arm.dynamics.size):
@@ -176,7 +181,7 @@ def test_payload(tmp_path):
     carried = {"mass_kg": 0.8, "position_m": [0.02, -0.03, 0.07]}
     tour = {"timeline": [{"at_s": 0.0, "payload": carried}]}
     robot = ROOT / "robots" / "openarm"
-    log = record(tmp_path, robot, tour, spread=0.8, poses=3)
+    log = record(tmp_path, robot, tour, spread=0.8, poses=3, seconds=SLOW_PART_S)
     arm = load_arm(str(robot))
     found = static_poses([log], arm.dynamics)
     said = payload.identify(arm.robot.chain, found.q, found.tau, arm.robot.gravity)
