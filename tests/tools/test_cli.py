@@ -51,7 +51,7 @@ WRONG = [
     (["log", "echo", "{dir}/run.lcmlog", "JOINT_STATE", "--at", "1e9"], "no message from"),
     (["log", "convert", "{dir}/run.lcmlog", "--out", "{dir}/x.xlsx"], ".npz"),
     (["log", "play", "{dir}/run.lcmlog"], "No such command 'play'"),
-    (["plot", "{dir}/run.lcmlog", "--what", "jiont"], "joint, cartesian, torque, timing"),
+    (["plot", "{dir}/run.lcmlog", "--what", "jiont"], "joint, cartesian, torque, spring, timing"),
     (["plot", "{dir}/run.lcmlog", "--what", "torque"], "CONTROLLER_STATUS"),
     (["watch", "--robot", "unheard_of"], "planar2r"),
     (["identify", "friction"], "'runs'"),
