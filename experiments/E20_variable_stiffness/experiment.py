@@ -9,7 +9,7 @@ from limber.experiments.context import Context
 from limber.experiments.pictures import BLUE, ORANGE
 from limber.robot import load_robot
 
-from . import fit, pair, ring, seven
+from . import fit, fit_picture, pair, ring, seven
 
 TITLE = "Two motors a joint set the diagonal of Eq. 4's stiffness, and nothing of its damping"
 CLAIM = "Preload of nonlinear springs sets the joint stiffness that Eq. 4 asks for, with two motors"
@@ -28,8 +28,8 @@ def run(context: Context) -> list[Check]:
     wrist = seven.asked_of_class(context, context.rng.uniform(-1.2, 1.2, len(robot.joints)))
     arm = seven.on_arm(context)
     with context.picture(TITLE, columns=3, size=(17.5, 5.0)) as (left, middle, right):
-        fit.draw_tips(tips, left)
-        fit.draw_residual(shares, middle)
+        fit_picture.draw_tips(tips, left)
+        fit_picture.draw_residual(shares, middle)
         draw_ring(rung, right)
     released = [*ring.checks(rung), *ring.checks_under_law(placed)]
     return [*alone, *released, *fit.checks(tips, springs, shares), *wrist, *arm]

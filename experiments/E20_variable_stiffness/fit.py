@@ -10,7 +10,6 @@ from limber.experiments import planar2r as arm
 from limber.experiments.check import Check
 from limber.experiments.context import Context
 from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
 from limber.experiments.probing import Probing
 from limber.experiments.truth import joints, motion
 from limber.experiments.variants import variant
@@ -171,35 +170,3 @@ def checks(tips: Tips, springs: dict[str, np.ndarray], shares: np.ndarray) -> li
                 name = f"{wanted.name}, {where}: tip along its {word} axis"
                 made.append(Check(name, float(asked), float(got), "N/m", 0.02))
     return made
-
-
-def ellipse(K: np.ndarray) -> np.ndarray:
-    angle = np.linspace(0, 2 * np.pi, 120)
-    values, axes = np.linalg.eigh((K + K.T) / 2)
-    return axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))
-
-
-def draw_tips(tips: Tips, ax: Any) -> None:
-    for wanted, color in zip(CASES, (BLUE, ORANGE, GREEN), strict=True):
-        ax.plot(*ellipse(wanted.presented()), color=color, label=f"presented, {wanted.name}")
-        ax.plot(*ellipse(tips[wanted.name]["bus"])[:, ::6], **MEASURED, color=color)
-    ax.plot([], [], **MEASURED, color="0.3", label="felt on the arm")
-    ax.plot(*ellipse(ASKED * np.eye(2)), "--", color="0.2", lw=1.2, label="asked")
-    ax.set_aspect("equal")
-    ax.margins(0.05)
-    ax.set_title("Tip stiffness of two joints with variable springs")
-    ax.set_xlabel("along x (N/m)")
-    ax.set_ylabel("along y (N/m)")
-    ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-
-
-def draw_residual(shares: np.ndarray, ax: Any) -> None:
-    elbows = np.linspace(0.2, 3.0, 200)
-    line = [residual(np.array([0.5, elbow])) for elbow in elbows]
-    ax.plot(np.degrees(elbows), 100 * np.array(line), color=BLUE, label="formula")
-    ax.plot(np.degrees(ELBOWS), 100 * shares, **MEASURED, color=BLUE, label="the controller's")
-    ax.set_ylim(bottom=-2)
-    ax.set_title("What a diagonal joint stiffness misses")
-    ax.set_xlabel("angle of the elbow (°)")
-    ax.set_ylabel("share of the wish missed (%)")
-    ax.legend()

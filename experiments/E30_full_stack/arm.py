@@ -81,13 +81,3 @@ class Pose:
         link = np.eye(7) - (1 - gamma) * self.stiffness / K_J[:, None]  # q by q̄
         q_bar = np.linalg.solve(gamma * self.stiffness + self.G @ link, self.J.T @ wrench)
         return self.J @ link @ q_bar
-
-    def slip(self, direction: np.ndarray) -> float:
-        """Distance the friction holds the tip back along a direction if every joint slips.
-
-        J (Jᵀ K J + ...)⁻¹ F_c sign(θ̇)/(κρ), θ̇ that of a push without friction.
-        """
-        inverse = np.linalg.inv(self.stiffness + self.G / share(self.rho))
-        moves = inverse @ self.J.T @ direction
-        held = inverse @ (COULOMB_NM * np.sign(moves)) / (KAPPA * self.rho)
-        return float(direction @ self.J @ held)
