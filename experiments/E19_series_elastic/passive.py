@@ -8,7 +8,7 @@ from limber.experiments import testbench as bench
 from limber.experiments.check import Check
 from limber.experiments.context import Context
 from limber.experiments.elastic import State, one_joint, run
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.pictures import BLUE, MEASURED
 from limber.experiments.ringdown import Mode, modes_seen
 
 from .soft import CLAMPED, FAST_KGM2, FREE, K_S, START_S, sensed, sprung
@@ -81,10 +81,9 @@ def checks(context: Context) -> list[Check]:
 def draw(made: list[Check], ax: Any) -> None:
     K = np.geomspace(50, 2e4, 60)
     ax.loglog(K, np.sqrt(K * bench.M), color=BLUE, label="√(K M)")
-    for marker, color, where in (("o", BLUE, "ideal"), ("s", ORANGE, "bus")):
+    for where, style in (("ideal", bench.IDEAL), ("bus", MEASURED)):
         hits = [c.measured for c in made if c.name.startswith("impact") and f", {where}:" in c.name]
-        style = {**MEASURED, "marker": marker, "ms": 5.5 if where == "ideal" else 9}
-        ax.loglog(STIFFNESS, hits, **style, color=color, label=where)
+        ax.loglog(STIFFNESS, hits, **style, color=BLUE, label=where)
     ax.set_title("Hit on a joint whose motor stands still")
     ax.set_xlabel("stiffness of the spring (N m/rad)")
     ax.set_ylabel("greatest torque for 1 rad/s (N m)")

@@ -10,7 +10,7 @@ from limber.experiments.context import Context
 from limber.experiments.elastic import ElasticArm, one_joint
 from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
 from limber.experiments.ringdown import DELAY_S
-from limber.experiments.testbench import B, M
+from limber.experiments.testbench import IDEAL, B, M
 from limber.experiments.truth import motion, status
 
 from .soft import FAST_KGM2, FREE, K_S, START_S, sensed, sprung, viscous
@@ -136,9 +136,9 @@ def draw(points: list[Point], ax: Any) -> None:
     ax.loglog(omega, stiffness(omega), color=BLUE, label="torque loop, gain 4")
     ax.loglog(omega, B / (1 + K_T) * omega**2, ":", color=GREEN, label="B ω²/5: the loop's")
     ax.axhline(K_S, ls="--", color=ORANGE, label="the spring's, whatever the loop does")
-    for where, marker, size in (("ideal", "o", 5.5), ("bus", "s", 9)):
+    for where, style in (("ideal", IDEAL), ("bus", MEASURED)):
         found = np.array([point[1:] for point in points if point[0] == where])
-        ax.loglog(*found.T, **{**MEASURED, "marker": marker, "ms": size}, color=BLUE, label=where)
+        ax.loglog(*found.T, **style, color=BLUE, label=where)
     ax.set_ylim(0.05, 3e4)
     ax.set_title("What a hand feels that moves the link to and fro")
     ax.set_xlabel("frequency (rad/s)")
