@@ -6,7 +6,7 @@ import yaml
 
 from limber.bodies import read_inertials
 from limber.errors import InputError
-from limber.identify.arm import load_arm
+from limber.identify.arm import JointBelief, load_arm
 from limber.identify.excitation import poses, scenario_text
 from limber.identify.urdf_edit import canonical, with_inertials
 from limber.identify.yaml_edit import fragment, set_number
@@ -96,3 +96,20 @@ def test_there_and_back():
     slow, fast = goals[:8], goals[8:16]
     assert slow == fast and slow[:3] == slow[4:7][::-1] and slow[-1] == list(arm.home)
     assert content["duration_s"] > max(e["at_s"] for e in content["timeline"])
+
+
+@pytest.mark.parametrize(
+    ("rotary", "linear"),
+    [
+        ("coulomb_Nm", "coulomb_N"),
+        ("viscous_Nms_per_rad", "viscous_Ns_per_m"),
+        ("stribeck_rad_per_s", "stribeck_m_per_s"),
+        ("stiffness_Nm_per_rad", "stiffness_N_per_m"),
+        ("k2_Nm_per_rad2", "k2_N_per_m2"),
+        ("home_rad", "home_m"),
+    ],
+)
+def test_keys_of_sliding_joints(rotary, linear):
+    """As robots/joint_chain_yaml.cc names them."""
+    assert JointBelief("j", "m", False, {}, {}).key(rotary) == rotary
+    assert JointBelief("j", "m", True, {}, {}).key(rotary) == linear
