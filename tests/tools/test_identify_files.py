@@ -7,7 +7,7 @@ import yaml
 from limber.bodies import read_inertials
 from limber.errors import InputError
 from limber.identify.arm import JointBelief, load_arm
-from limber.identify.excitation import poses, scenario_text
+from limber.identify.excitation import poses, reach, scenario_text
 from limber.identify.urdf_edit import canonical, with_inertials
 from limber.identify.yaml_edit import fragment, set_number
 from limber.robot import load_robot
@@ -87,6 +87,18 @@ def test_the_motion_stays_within_limits_and_uses_its_range():
         assert len(np.unique(tour[:, i])) == 5
     inner = np.array([j.high - j.low for j in arm.robot.joints]) > 1.4
     assert np.all(np.ptp(tour, axis=0)[inner] > 0.6)
+
+
+def test_reach_of_the_tip():
+    """Both rods stretched out and turned from -x over +y to +x."""
+    arm = load_arm("planar2r")
+    tour = np.array([[np.pi, 0.0], [0.0, 0.0]])
+    arm.__dict__["home"] = tour[0]
+    low, high = reach(arm, tour)
+    length = high[0]
+    assert length == pytest.approx(np.linalg.norm(arm.robot.chain.forward(tour[1])[:3, 3]))
+    np.testing.assert_allclose(low, [-length, 0.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(high, [length, length, 0.0], rtol=0.01)
 
 
 def test_there_and_back():

@@ -5,6 +5,7 @@ directions: slowly with a rest at each pose, then fast; at the end a creep to bo
 where breakaway friction shows. Only joint goals, so the same file moves a real arm.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ START_S = 1.5
 SLOW_S, FAST_S, CREEP_S, REST_S = 3.0, 1.2, 5.0, 0.8
 CREEP = 0.15  # rad or m
 MARGIN = 0.05  # rad or m, from the ends of the joints
+WAYPOINTS = 20  # between two poses
 
 
 def poses(arm: Arm, spread: float, count: int, seed: int) -> np.ndarray:
@@ -59,6 +61,15 @@ def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
     return entries, at
 
 
+def reach(arm: Arm, tour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the box, base axes, that the tip stays in between the poses, m."""
+    stops = np.array([arm.home, *tour, arm.home])
+    share = np.linspace(0.0, 1.0, WAYPOINTS)[:, None]
+    ways = [start + share * (end - start) for start, end in pairwise(stops)]
+    points = np.array([arm.robot.chain.forward(q)[:3, 3] for q in np.vstack(ways)])
+    return points.min(axis=0), points.max(axis=0)
+
+
 def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) -> str:
     tour = poses(arm, spread, count, seed)
     entries, end = timeline(arm, tour)
@@ -67,7 +78,7 @@ def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) ->
         "name": f"identify_{arm.robot.name}",
         "description": "a tour of poses, slow and fast, there and back, for limber identify",
         "robot": robot,
-        "mode": "lockstep",
+        "mode": "realtime",
         "duration_s": round(end + 0.5, 3),
         "seed": seed,
     }
@@ -78,5 +89,10 @@ def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) ->
     return "".join(lines)
 
 
-def write(arm: Arm, robot: str, spread: float, count: int, seed: int, out: Path) -> None:
+def write(arm: Arm, robot: str, spread: float, count: int, seed: int, out: Path) -> str:
+    """Returns what there is to say of it."""
     out.write_text(scenario_text(arm, robot, spread, count, seed), encoding="utf-8")
+    low, high = reach(arm, poses(arm, spread, count, seed))
+    sides = zip("xyz", low, high, strict=True)
+    box = ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in sides)
+    return f"wrote {out}: {count} poses within {spread:g} of home; the tip stays within {box} m"

@@ -55,10 +55,9 @@ def run_gravity(runs: list[Path], robot: str | None, out: Path | None, console: 
 
 def plan(robot: str, spread: float, count: int, seed: int, out: Path, console: Console) -> None:
     arm = load_arm(robot)
-    excitation.write(arm, robot, spread, count, seed, out)
-    console.print(f"wrote {out}: {count} poses within {spread:g} of home", highlight=False)
+    console.print(excitation.write(arm, robot, spread, count, seed, out), highlight=False)
     console.print(
-        "Look at it first (limber check), give the arm room, then record it: limber lab, limber "
+        "Nothing looks out for obstacles: give the arm room. Then record it: limber lab, limber "
         "run, or on the real arm limber run --no-sim. One log serves all of limber identify.",
         highlight=False,
     )
