@@ -102,7 +102,9 @@ void Cia402Startup::plan_settings(const JointConfig& joint, double period_s) {
 }
 
 void Cia402Startup::plan_torque_loop(const JointConfig& joint) {
-  compare(cia402::kCurrentLoopLag_us, whole(1e6 * joint.drive.actuator.lag_s));
+  // A drive that one can buy has no such object: it is asked for where robot.yaml tells of it.
+  const double lag_s = joint.drive.actuator.lag_s;
+  if (lag_s > 0.0) compare(cia402::kCurrentLoopLag_us, whole(1e6 * lag_s));
   if (!joint.torque_sensor.present) return;
   const TorqueLoopConfig& loop = joint.torque_loop;
   write_and_compare(cia402::kInertiaRatio, float_bits(loop.inertia_ratio), Number::kFloat);
