@@ -1,6 +1,7 @@
 // What a control cycle costs: arm terms beside bare KDL calls, each law through the whole
 // controller, the whole lab. Figures that travel are ratios within one run.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
@@ -9,6 +10,8 @@
 
 #include "controller/arm_controller.h"
 #include "controller/arm_terms.h"
+#include "controller/laws/registry.h"
+#include "controller/state_judge.h"
 #include "lab/lab.h"
 
 namespace {
@@ -20,10 +23,9 @@ const LoadedRobot& openarm() {
   return robot;
 }
 
-VectorJ home() {
-  VectorJ q(openarm().robot.size());
-  for (int i = 0; i < q.size(); ++i)
-    q[i] = openarm().robot.joints[static_cast<std::size_t>(i)].home;
+VectorJ home(const Robot& robot = openarm().robot) {
+  VectorJ q(robot.size());
+  for (int i = 0; i < q.size(); ++i) q[i] = robot.joints[static_cast<std::size_t>(i)].home;
   return q;
 }
 
@@ -66,15 +68,20 @@ BENCHMARK(BM_ArmTerms);
 /// A controller that has been led to ACTIVE by a driver that answers at once.
 class ActiveController {
  public:
-  explicit ActiveController(const std::string& law) : controller_(openarm(), options(law)) {
+  ActiveController(const LoadedRobot& robot, const std::string& law)
+      : controller_(robot, options(law)) {
     state_.session = 1;
     state_.period_ns = 1'000'000;
-    state_.num_joints = static_cast<std::int8_t>(openarm().robot.size());
+    state_.num_joints = static_cast<std::int8_t>(robot.robot.size());
     state_.drive_state = joint_state_t::DRIVE_OFF;
-    const VectorJ q = home();
+    const VectorJ q = home(robot.robot);
+    const controller::JointFlags equipment = controller::equipment_of(robot.robot);
     for (int i = 0; i < q.size(); ++i) {
+      const JointConfig& joint = robot.robot.joints[static_cast<std::size_t>(i)];
       state_.q[i] = state_.theta[i] = q[i];
-      state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED;
+      state_.preload[i] = static_cast<float>(joint.transmission.preload_rad);
+      state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED |
+                              equipment[static_cast<std::size_t>(i)];
     }
     ask_at(200, mode_request_t::REQUEST_HOLD);
     ask_at(1500, mode_request_t::REQUEST_ACTIVE);
@@ -112,8 +119,14 @@ class ActiveController {
   joint_state_t state_{};
 };
 
-void BM_ControllerCycle(benchmark::State& run, const std::string& law) {
-  ActiveController controller(law);
+void BM_ControllerCycle(benchmark::State& run, const std::string& robot, const std::string& law) {
+  LoadedRobot loaded = load_robot(robot);
+  // tomei wants more than gravity's gradient.
+  for (std::size_t i = 0; i < loaded.robot.joints.size(); ++i) {
+    const double K_J = loaded.robot.joints[i].transmission.spring.stiffness_Nm_per_rad;
+    if (K_J > 0.0) loaded.robot.gains.K_q[i] = 0.1 * K_J;
+  }
+  ActiveController controller(loaded, law);
   if (!controller.active()) run.SkipWithError("the controller did not become ACTIVE");
   for (auto _ : run) benchmark::DoNotOptimize(controller.step().tau[0]);
 }
@@ -135,6 +148,21 @@ void BM_LabCycle(benchmark::State& run, const std::string& name, Integrator inte
       static_cast<double>(run.iterations()) / robot.robot.rate_hz, benchmark::Counter::kIsRate);
 }
 
+/// Each law on the first of these arms that can run it: rigid, elastic, two motors a joint.
+void register_controller_cycles() {
+  const std::pair<const char*, const char*> kinds[] = {
+      {"openarm", "rigid"}, {"iiwa14", "elastic"}, {"antagonist7", "antagonistic"}};
+  for (const controller::LawEntry& law : controller::laws()) {
+    for (const auto& [robot, kind] : kinds) {
+      const unsigned sensors = controller::sensors_of(load_robot(robot).robot);
+      if (controller::refuse_law(law, sensors) != nullptr) continue;
+      const std::string name = fmt::format("BM_ControllerCycle/{}/{}", kind, law.name);
+      benchmark::RegisterBenchmark(name.c_str(), BM_ControllerCycle, robot, law.name);
+      break;
+    }
+  }
+}
+
 /// One arm of seven joints a kind; the ratio to the rigid one is what a kind of joint costs.
 void register_lab_cycles() {
   const std::pair<const char*, const char*> kinds[] = {{"openarm", "rigid_mit"},
@@ -154,9 +182,7 @@ void register_lab_cycles() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const std::string& law : law_names()) {
-    benchmark::RegisterBenchmark(("BM_ControllerCycle/" + law).c_str(), BM_ControllerCycle, law);
-  }
+  register_controller_cycles();
   register_lab_cycles();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
