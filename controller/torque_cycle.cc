@@ -171,6 +171,19 @@ const char* TorqueCycle::set_goal(const compliance_goal_t& message) noexcept {
   return goals_.set(message, entry().follows);
 }
 
+// Of what is asked: the link of an elastic joint cannot be made stiffer than its spring.
+const char* TorqueCycle::refuse_stiffness(const LawEntry& wanted) const noexcept {
+  if (side_.resolve(asked_.settings.position, wanted.statics) == Position::kMotor) return nullptr;
+  const JointSprings& springs = side_.springs();
+  if (wanted.statics == StaticForm::kJointSpring) {
+    return springs.refuse(asked_.K_q, springs.at_rest());
+  }
+  if (wanted.statics != StaticForm::kTipSpring) return nullptr;
+  Gains here = asked_;
+  turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &here);
+  return springs.refuse(here.K_x, terms_.J, springs.at_rest());
+}
+
 const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool active) noexcept {
   if (const char* reason = refuse_gains(message, model_.size())) return reason;
   const int law = message.law.empty() ? selected_ : find_law(message.law);
@@ -181,12 +194,7 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, bool activ
   if (const char* reason = refuse_settings(asked_.settings, sensors_)) return reason;
   if (const char* reason = refuse_position(asked_.settings.position, wanted, sensors_))
     return reason;
-  const bool at_link = side_.resolve(asked_.settings.position, wanted.statics) != Position::kMotor;
-  if (wanted.statics == StaticForm::kJointSpring && at_link) {
-    if (const char* reason = side_.springs().refuse(asked_.K_q, side_.springs().at_rest())) {
-      return reason;
-    }
-  }
+  if (const char* reason = refuse_stiffness(wanted)) return reason;
   if (const char* reason = laws_[static_cast<std::size_t>(law)]->refuse(asked_)) return reason;
   if (wanted.refuse != nullptr) {
     if (const char* reason = wanted.refuse(asked_, model_.size())) return reason;
@@ -225,11 +233,22 @@ void TorqueCycle::match_goals() noexcept {
 void TorqueCycle::refresh_gains() noexcept {
   active_ = gains_.now();
   if (holding_) active_.settings = LawSettings{};
-  if (entry().statics == StaticForm::kJointSpring && position() != Position::kMotor) {
+  turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
+  keep_within_springs();
+  if (active_.settings.tank_J > 0.0) draw_from_tank();
+}
+
+// In another pose, or with less preload, than where the gains were taken.
+void TorqueCycle::keep_within_springs() noexcept {
+  softened_ = false;
+  if (!side_.springs().any() || position() == Position::kMotor) return;
+  if (entry().statics == StaticForm::kJointSpring) {
     active_.K_q = side_.springs().within(active_.K_q, side_.K_J());
   }
-  turn_to_base(goal_.X_BD.Q.toRotationMatrix(), &active_);
-  if (active_.settings.tank_J > 0.0) draw_from_tank();
+  if (entry().statics != StaticForm::kTipSpring) return;
+  const double share = JointSprings::allowed_share(active_.K_x, terms_.J, side_.K_J());
+  active_.K_x *= share;
+  softened_ = share < 1.0;
 }
 
 // A stiffer spring takes its energy from the tank; the damper of the cycle before has filled it.
@@ -307,7 +326,7 @@ bool TorqueCycle::control(double dt_s) noexcept {
   blend_.add_to(&tau);
   if (blend_.active() || gains_.moving()) limits_active_ |= controller_status_t::LIMIT_RAMP;
   limits_active_ |= limits_.clamp(state_.period_s, &tau);
-  if (!solved_) limits_active_ |= controller_status_t::LIMIT_ERROR;
+  if (softened_ || !solved_) limits_active_ |= controller_status_t::LIMIT_ERROR;
   limits_active_ |=
       preload_.control(state_, law_.sets_preload ? law_.preload : preload_.preload_at_rest(),
                        side_.deflection(), tau, dt_s);

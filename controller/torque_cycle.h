@@ -80,7 +80,9 @@ class TorqueCycle {
   Position position() const noexcept;
   void look(StaticForm form) noexcept;
   void match_goals() noexcept;
+  const char* refuse_stiffness(const LawEntry& wanted) const noexcept;
   void refresh_gains() noexcept;
+  void keep_within_springs() noexcept;
   void draw_from_tank() noexcept;
   void keep_passive() noexcept;
   void forget_energy() noexcept;
@@ -104,6 +106,7 @@ class TorqueCycle {
   bool holding_ = true;
   bool resting_ = true;
   bool solved_ = true;
+  bool softened_ = false;  // K_x, to what the springs allow
 
   GoalGenerator goals_;
   Goal goal_;  // of this cycle: tip and joints matched

@@ -1,5 +1,6 @@
 #include "controller/motor_side/joint_springs.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "controller/motor_side/spring_law.h"
@@ -57,6 +58,21 @@ MatrixJ JointSprings::within(const MatrixJ& K_q, const VectorJ& K_J) const noexc
   MatrixJ K = K_q;
   K.diagonal() = K.diagonal().cwiseMin(kHighestShare * K_J);
   return K;
+}
+
+double JointSprings::allowed_share(const Matrix6& K_x, const Matrix6J& J,
+                                   const VectorJ& K_J) noexcept {
+  const Matrix6J bent = J * K_J.cwiseSqrt().cwiseInverse().asDiagonal();
+  const MatrixJ taken = bent.transpose() * K_x * bent;
+  const Eigen::SelfAdjointEigenSolver<MatrixJ> eigen(taken, Eigen::EigenvaluesOnly);
+  return kHighestShare / std::max(eigen.eigenvalues().maxCoeff(), kHighestShare);
+}
+
+const char* JointSprings::refuse(const Matrix6& K_x, const Matrix6J& J,
+                                 const VectorJ& K_J) const noexcept {
+  if (!any_ || !(allowed_share(K_x, J, K_J) < 1.0)) return nullptr;
+  return "K_x takes more than 0.9 times the stiffness of the joints' springs in this pose: the tip "
+         "cannot be made stiffer than they are (position: motor takes more, in series with them)";
 }
 
 }  // namespace limber::controller

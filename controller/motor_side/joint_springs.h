@@ -35,6 +35,12 @@ class JointSprings {
   /// K_q, or as much of it as the springs allow. In the cycle.
   MatrixJ within(const MatrixJ& K_q, const VectorJ& K_J) const noexcept;
 
+  /// Share of a stiffness at the tip, 6 x 6, N/m and N m/rad, that the springs allow, at most 1:
+  /// kHighestShare over the greatest eigenvalue of K_J^-1/2 J^T K_x J K_J^-1/2. In the cycle.
+  static double allowed_share(const Matrix6& K_x, const Matrix6J& J, const VectorJ& K_J) noexcept;
+  /// nullptr if the link can be given K_x, else why not. In the cycle.
+  const char* refuse(const Matrix6& K_x, const Matrix6J& J, const VectorJ& K_J) const noexcept;
+
  private:
   struct OneJoint {
     TransmissionKind kind;

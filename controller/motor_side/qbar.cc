@@ -1,7 +1,6 @@
 #include "controller/motor_side/qbar.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 namespace limber::controller {
 namespace {
@@ -80,17 +79,23 @@ template <typename Spring>
 bool QbarSolver::newton(const VectorJ& theta, const Spring& spring) noexcept {
   for (int i = 0; i < options_.max_newton_steps; ++i) {
     const VectorJ residual = K_J_.cwiseProduct(q_ - theta) + law(q_, spring);
-    MatrixJ S = tangent(q_, spring);
-    S.diagonal() += K_J_;
-    const VectorJ step = S.partialPivLu().solve(residual);
+    const MatrixJ slope = tangent(q_, spring);
+    if (!stable(slope)) return false;
+    const MatrixJ S = slope + MatrixJ(K_J_.asDiagonal());
+    const VectorJ step = S.llt().solve(residual);
     q_ -= step;
     ++iterations_;
     if (!q_.allFinite()) return false;
-    if (step.cwiseAbs().maxCoeff() <= options_.tolerance) {
-      return S.llt().info() == Eigen::Success;
-    }
+    if (step.cwiseAbs().maxCoeff() <= options_.tolerance) return stable(tangent(q_, spring));
   }
   return false;
+}
+
+// On all of the way from the motor's position: a solution beyond a limb that buckles is another
+// one.
+bool QbarSolver::stable(const MatrixJ& slope) const noexcept {
+  const VectorJ left = (1.0 - kLeastShare) * K_J_;
+  return (slope + MatrixJ(left.asDiagonal())).llt().info() == Eigen::Success;
 }
 
 template <typename Spring>

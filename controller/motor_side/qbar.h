@@ -28,9 +28,12 @@ struct JointSpring {  ///< l = g - K_d (q - q_d)
 /// q_bar <- theta - K_J^-1 l(q_bar), which contracts by |K_J^-1 dl/dq|, from the last solution on;
 /// where that does not contract, by Newton steps with a differenced dl/dq. There is no solution to
 /// use where K_J + dl/dq is not positive definite: a link cannot be made stiffer than its spring
-/// (K_d < K_J + dg/dq).
+/// (K_d < K_J + dg/dq). Close to that a turn of the motor would move q_bar without bounds: at least
+/// kLeastShare K_J has to be left, at each Newton step.
 class QbarSolver {
  public:
+  static constexpr double kLeastShare = 0.05;
+
   struct Options {
     double tolerance = 1e-12;  ///< of q_bar, rad
     int max_iterations = 100;  ///< three or four are usual when warm
@@ -74,6 +77,7 @@ class QbarSolver {
   bool fixpoint(const VectorJ& theta, const Spring& spring) noexcept;
   template <typename Spring>
   bool newton(const VectorJ& theta, const Spring& spring) noexcept;
+  bool stable(const MatrixJ& slope) const noexcept;
   template <typename Spring>
   MatrixJ tangent(const VectorJ& q, const Spring& spring) noexcept;
 

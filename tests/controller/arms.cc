@@ -102,6 +102,8 @@ LoadedRobot elastic_arm(bool sensors) {
 
 LoadedRobot antagonistic_arm() {
   LoadedRobot arm = seven_joint_arm();
+  arm.robot.gains.K_x_translation_N_per_m = 250.0;  // half of what the springs allow
+  arm.robot.gains.K_x_rotation_Nm_per_rad = 10.0;
   for (JointConfig& joint : arm.robot.joints) {
     joint.drive.rotor_inertia_kgm2 = 0.02;
     joint.drive.peak_torque_Nm = 80.0;

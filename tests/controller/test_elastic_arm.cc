@@ -88,6 +88,50 @@ TEST(ElasticArm, RefusesWhatItsSpringsCannotGive) {
 
 // HOLD carries the arm where the drives took over: the link stays within what its oscillation and
 // the blend from no torque leave.
+// The tip is 0.5 m from the axis: K_x / 4 N m/rad and its moment's, of 1000.
+TEST(ElasticArm, RefusesATipStifferThanItsSprings) {
+  Rig rig(one_joint(true), "joint_pd");
+  rig.plant.q[0] = 0.0;
+  rig.elastic->rest_at(rig.plant.q);
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.law = "cartesian_impedance";
+  gains.K_x[5][5] = 100.0F;
+  gains.K_x[0][0] = 3190.0F;
+  EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+  gains.K_x[0][0] = 3210.0F;
+  EXPECT_NE(rig.controller.on_gains(gains), nullptr);
+  gains.position = Gains::POSITION_MOTOR;
+  EXPECT_EQ(rig.controller.on_gains(gains), nullptr);
+}
+
+// Accepted where the axis of K_x is across the joint's motion, and brought to where it is along it.
+TEST(ElasticArm, TipGetsNoStifferThanItsSpringsOnTheWay) {
+  Rig rig(one_joint(true), "joint_pd");
+  rig.plant.q[0] = 1.3;
+  rig.elastic->rest_at(rig.plant.q);
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.law = "cartesian_impedance";
+  for (int i = 1; i < 6; ++i) gains.K_x[i][i] = 0.0F;
+  gains.K_x[0][0] = 4400.0F;  // 79 N m/rad here, 1100 hanging
+  gains.spring_force_N = 1000.0F;
+  ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
+  rig.run(0.6);
+  EXPECT_EQ(rig.controller.status().limits & Status::LIMIT_ERROR, 0);
+  compliance_goal_t goal = rig.goal();
+  goal.offset[0] = -0.5 * std::sin(1.3);
+  goal.duration_s = 1.0;
+  ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
+  rig.run(8.0);  // so close to its spring the motor damps little
+  EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
+  EXPECT_NE(rig.controller.status().limits & Status::LIMIT_ERROR, 0);
+  EXPECT_NEAR(rig.plant.q[0], 0.0, 1e-3);
+  EXPECT_LT(std::abs(rig.plant.v[0]), 1e-3);
+  const double force = 8.0;
+  EXPECT_NEAR(force * 0.5 / deflection_by(&rig, force), 900.0, 10.0);
+}
+
 TEST(ElasticArm, HoldCarriesTheWeightExactly) {
   for (const bool sensors : {false, true}) {
     Rig rig(limber::testing::elastic_arm(sensors));

@@ -83,6 +83,21 @@ TEST(Qbar, RefusesALinkStifferThanItsSpring) {
   EXPECT_TRUE(solver.u().allFinite());
 }
 
+// A rod that stands on a spring of 14 N m/rad under 15 N m buckles: what Newton finds is another
+// balance, far over. With 15.5 it stands, but would follow the motor thirty-fold.
+TEST(Qbar, RefusesALinkThatBuckles) {
+  ArmModel model(pendulum());
+  const JointSpring none{one(0.0), MatrixJ::Zero(1, 1)};
+  for (const double K_J : {14.0, 15.5}) {
+    QbarSolver solver(&model, one(K_J));
+    EXPECT_FALSE(solver.solve(one(3.12), none)) << K_J;
+    EXPECT_EQ(solver.q_bar()[0], 3.12) << K_J;
+  }
+  QbarSolver solver(&model, one(20.0));
+  EXPECT_TRUE(solver.solve(one(3.12), none));
+  EXPECT_NEAR(20.0 * (3.12 - solver.q_bar()[0]), kWeight * std::sin(solver.q_bar()[0]), 1e-9);
+}
+
 TEST(Qbar, NewtonSolvesWhereTheFixpointCannot) {
   // A spring of 10 N m/rad under a weight of 15 N m that hangs: dg/dq / K_J = 1.5.
   ArmModel model(pendulum());
