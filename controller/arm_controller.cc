@@ -91,7 +91,8 @@ void ArmController::Impl::follow_mode() noexcept {
   activity = activity_of(supervisor);
   if (activity == before) return;
   if (before == Activity::kRest && activity != Activity::kRest) {
-    cycle.rest(cycle.tau_applied(), false, true);  // the first torque is the one present
+    // The first torque is the one present.
+    cycle.rest(cycle.tau_applied(), false, PreloadAtRest::kAsSent);
   }
   if (activity == Activity::kHold) cycle.hold();
   if (activity == Activity::kLaw) cycle.activate();
@@ -113,11 +114,14 @@ void ArmController::Impl::rest() noexcept {
   const Mode mode = supervisor.mode();
   const bool latched = mode == Mode::kFault || mode == Mode::kEstop;
   if (supervisor.powered_mode()) {
-    cycle.rest(cycle.tau_applied(), false, true);  // the drives are still coming: no wind-up
+    // The drives are still coming, with no torque; or they hold by themselves, and the springs.
+    const bool held = supervisor.drives_hold();
+    cycle.rest(cycle.tau_applied(), false,
+               held ? PreloadAtRest::kWound : PreloadAtRest::kReleased);  // no wind-up
   } else if (latched || supervisor.drives_carry()) {
-    cycle.rest(cycle.gravity(), supervisor.drives_on(), true);
+    cycle.rest(cycle.gravity(), supervisor.drives_on(), PreloadAtRest::kWound);
   } else {
-    cycle.rest(VectorJ::Zero(answer.num_joints), supervisor.drives_on(), false);
+    cycle.rest(VectorJ::Zero(answer.num_joints), supervisor.drives_on(), PreloadAtRest::kReleased);
   }
 }
 

@@ -25,11 +25,13 @@ PreloadServo::PreloadServo(const Robot& robot)
   }
 }
 
-void PreloadServo::rest(const ArmState& state, const VectorJ& x, bool wound,
+void PreloadServo::rest(const ArmState& state, const VectorJ& x, PreloadAtRest where,
                         bool in_steps) noexcept {
   for (const Motors& pair : pairs_) {
     const Eigen::Index i = pair.joint;
     c_d_[i] = state.preload[i];
+    if (where == PreloadAtRest::kAsSent) continue;
+    const bool wound = where == PreloadAtRest::kWound;
     const double force = wound ? pair.springs.preload_torque(c_d_[i], x[i]) : 0.0;
     const double target = std::clamp(force, 0.0, pair.torque_Nm);
     const double step = pair.rate_Nm_per_s * state.period_s;

@@ -11,6 +11,13 @@
 
 namespace limber::controller {
 
+/// Where the torque goes while no law runs.
+enum class PreloadAtRest {
+  kReleased,  ///< to zero
+  kWound,     ///< to what keeps the preload there is
+  kAsSent,    ///< nowhere
+};
+
 /// For c = (theta_1 + theta_2) / 2, on which tau_1 + tau_2 acts with the inertia B = B_1 + B_2:
 ///   tau_preload = f(c_d + x) + f(c_d - x) - K_c (c - c_d) - D_c c'
 ///   K_c = B w^2,  D_c = 2 B w
@@ -27,9 +34,8 @@ class PreloadServo {
 
   explicit PreloadServo(const Robot& robot);
 
-  /// Keeps the preload there is if `wound`, else lets it go: at once, or in steps the gate lets
-  /// pass if `in_steps`. x: n, rad.
-  void rest(const ArmState& state, const VectorJ& x, bool wound, bool in_steps) noexcept;
+  /// At once, or in steps the gate lets pass if `in_steps`. x: n, rad.
+  void rest(const ArmState& state, const VectorJ& x, PreloadAtRest where, bool in_steps) noexcept;
   /// `wanted`: n, rad, kept within 0 and robot.yaml's greatest. x: n, rad; tau: joint torque of
   /// this cycle, n, N m. Returns LIMIT_* bits.
   std::int32_t control(const ArmState& state, const VectorJ& wanted, const VectorJ& x,

@@ -44,6 +44,10 @@ class Supervisor {
     return drive_state_ == joint_state_t::DRIVE_ON && !idle_asked_;
   }
   bool drives_on() const noexcept { return drive_state_ == joint_state_t::DRIVE_ON; }
+  /// Enabled drives that the driver lets hold or brake by themselves.
+  bool drives_hold() const noexcept {
+    return drive_state_ == joint_state_t::DRIVE_HOLD || drive_state_ == joint_state_t::DRIVE_DAMP;
+  }
   /// REQUEST_* to the driver in this cycle.
   std::int8_t drive_request() const noexcept;
   const StateJudge& states() const noexcept { return judge_; }

@@ -340,13 +340,13 @@ VectorJ TorqueCycle::null_space() noexcept {
   return null_space_torque(seen_, terms_, goal_, active_, rows, null_limit_);
 }
 
-void TorqueCycle::rest(const VectorJ& target, bool in_steps, bool wound) noexcept {
+void TorqueCycle::rest(const VectorJ& target, bool in_steps, PreloadAtRest preload) noexcept {
   VectorJ tau = target;
   if (!resting_) {
     resting_ = true;
     look(StaticForm::kGravity);
   }
-  preload_.rest(state_, side_.deflection(), wound, in_steps);
+  preload_.rest(state_, side_.deflection(), preload, in_steps);
   goals_.reset(terms_.X_BT, seen_.q);
   goal_ = goals_.goal();
   law_.reset();

@@ -61,8 +61,8 @@ class TorqueCycle {
   /// torque is then the one before.
   bool control(double dt_s) noexcept;
   /// One cycle without a law, the goal where the arm is: straight to `target`, or in steps the gate
-  /// lets pass if `in_steps`. The preload of two motors is kept if `wound`, else let go.
-  void rest(const VectorJ& target, bool in_steps, bool wound) noexcept;
+  /// lets pass if `in_steps`.
+  void rest(const VectorJ& target, bool in_steps, PreloadAtRest preload) noexcept;
 
   const VectorJ& torque() const noexcept { return limits_.previous(); }
   /// Of two motors the sum of their torques, n; zero for joints with one.

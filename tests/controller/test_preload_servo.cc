@@ -38,7 +38,7 @@ class Preload : public ::testing::Test {
 
 TEST_F(Preload, MovesAlongItsRampAndHoldsTheSprings) {
   state.preload[0] = 0.1;
-  servo.rest(state, one(0.0), true, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
   EXPECT_NEAR(servo.torque()[0], 400.0 * 0.01, 1e-12) << "what the springs pull with there";
   run(0.25, 0.4, 0.0, 0.0);
   EXPECT_NEAR(state.preload[0], 0.1 + 0.25 * 0.6, 0.02) << "preload_max a second";
@@ -51,7 +51,7 @@ TEST_F(Preload, MovesAlongItsRampAndHoldsTheSprings) {
 
 TEST_F(Preload, LeavesTheMotorsWhatTheJointNeeds) {
   state.preload[0] = 0.3;
-  servo.rest(state, one(0.0), true, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
   state.preload[0] = -5.0;  // far off: it would pull with all it has
   for (int i = 0; i < 500; ++i) {
     const double before = servo.torque()[0];
@@ -65,19 +65,31 @@ TEST_F(Preload, LeavesTheMotorsWhatTheJointNeeds) {
   }
 }
 
+// Motors that are on, wound up, with no torque yet: as fast as the gate lets, nothing at once.
+TEST_F(Preload, StartsFromWhatWasSent) {
+  state.preload[0] = 0.3;
+  servo.rest(state, one(0.0), PreloadAtRest::kReleased, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kAsSent, false);
+  EXPECT_EQ(servo.torque()[0], 0.0);
+  for (int i = 1; i <= 45; ++i) {
+    servo.control(state, one(0.3), one(0.0), one(0.0), kT);
+    EXPECT_NEAR(servo.torque()[0], std::min(0.8 * i, 36.0), 1e-9);
+  }
+}
+
 TEST_F(Preload, LetsGoInSteps) {
   state.preload[0] = 0.3;
-  servo.rest(state, one(0.0), true, false);
-  servo.rest(state, one(0.0), false, true);
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
   EXPECT_NEAR(servo.torque()[0], 36.0 - 0.8, 1e-12);
-  for (int i = 0; i < 100; ++i) servo.rest(state, one(0.0), false, true);
+  for (int i = 0; i < 100; ++i) servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
   EXPECT_EQ(servo.torque()[0], 0.0);
 }
 
 TEST_F(Preload, DoesNotAllocate) {
   const auto before = limber::testing::allocations();
   run(0.01, 0.3, 0.0, 1.0);
-  servo.rest(state, one(0.0), true, true);
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, true);
   EXPECT_EQ(limber::testing::allocations(), before);
 }
 
