@@ -17,7 +17,7 @@ struct JointReading {
   double theta_dot = 0.0;
   double q = 0.0;  ///< link
   double v = 0.0;
-  double motor_torque = 0.0;  ///< of this drive's motor
+  double motor_torque = 0.0;  ///< of this drive's motor, by the drive's own estimate
   double joint_torque = 0.0;  ///< as the torque sensor reads it; zero without one
   double current_A = 0.0;
   double winding_degC = 25.0;
