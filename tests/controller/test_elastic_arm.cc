@@ -1,6 +1,7 @@
 // The cycle at arms with springs in their joints: what the link meets, and that it stays quiet.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/config_error.h"
@@ -215,6 +216,23 @@ TEST(AntagonisticArm, PreloadGoesToWhereItRests) {
     EXPECT_NEAR(rig.answer.tau_preload[i], 400.0 * (0.09 + x * x), 0.05);
   }
   EXPECT_LT(rig.plant.v.norm(), 1e-3);
+}
+
+// Drives that come up have no torque yet, whatever their springs pull with: the gate counts from
+// there, 2 N m a cycle of both motors.
+TEST(AntagonisticArm, PreloadNeverJumps) {
+  Rig rig(limber::testing::antagonistic_arm());
+  rig.run(0.12);
+  rig.ask(mode_request_t::REQUEST_HOLD);
+  double before = 0.0;
+  double least = 1.0;
+  for (int i = 0; i < 500; ++i) {
+    rig.step();
+    ASSERT_LE(std::abs(rig.answer.tau_preload[0] - before), 0.8 + 1e-9) << i;
+    before = rig.answer.tau_preload[0];
+    least = std::min(least, rig.elastic->c[0]);
+  }
+  EXPECT_GT(least, 0.1) << "of 0.15 that they were wound to, without a stand";
 }
 
 }  // namespace
