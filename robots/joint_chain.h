@@ -86,9 +86,23 @@ struct TransmissionConfig {
   double preload_max_rad = 0.0;
 };
 
+/// What an encoder reads too much, besides its counts: bias + eccentricity sin(angle) + noise,
+/// delay_s late. For the simulator.
+struct EncoderErrors {
+  double bias_rad = 0.0;
+  double eccentricity_rad = 0.0;  ///< amplitude, once a joint revolution
+  double noise_rad = 0.0;         ///< standard deviation of one reading
+  double delay_s = 0.0;
+
+  bool any() const {
+    return bias_rad != 0.0 || eccentricity_rad != 0.0 || noise_rad != 0.0 || delay_s != 0.0;
+  }
+};
+
 struct LinkEncoderConfig {
   bool present = false;
   int bits = 20;  ///< per joint revolution
+  EncoderErrors errors;
 };
 
 /// Measures the torque on the link: reading = scale * torque + bias + noise, filtered, rounded.

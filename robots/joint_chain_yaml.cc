@@ -94,10 +94,20 @@ FrictionConfig read_friction(const YamlMap& yaml, const JointUnits& units) {
   return friction;
 }
 
-LinkEncoderConfig read_link_encoder(const YamlMap& yaml) {
+EncoderErrors read_encoder_errors(const YamlMap& yaml, const JointUnits& units) {
+  EncoderErrors errors;
+  errors.bias_rad = yaml.number_or("bias" + units.position, {-1.0, 1.0}, 0.0);
+  errors.eccentricity_rad = yaml.number_or("eccentricity" + units.position, {0.0, 0.1}, 0.0);
+  errors.noise_rad = yaml.number_or("noise" + units.position, {0.0, 0.1}, 0.0);
+  errors.delay_s = yaml.number_or("delay_s", {0.0, 0.01}, 0.0);
+  return errors;
+}
+
+LinkEncoderConfig read_link_encoder(const YamlMap& yaml, const JointUnits& units) {
   LinkEncoderConfig encoder;
   encoder.present = true;
   encoder.bits = static_cast<int>(yaml.integer("bits", 8, 26));
+  encoder.errors = read_encoder_errors(yaml, units);
   yaml.finish();
   return encoder;
 }
@@ -151,7 +161,13 @@ void read_joint_chain(const YamlMap& yaml, double rate_hz, JointConfig* joint) {
   if (yaml.has("friction")) joint->friction = read_friction(yaml.map("friction"), units);
   if (yaml.has("link_friction"))
     joint->link_friction = read_friction(yaml.map("link_friction"), units);
-  if (yaml.has("link_encoder")) joint->link_encoder = read_link_encoder(yaml.map("link_encoder"));
+  if (yaml.has("motor_encoder")) {
+    const YamlMap errors = yaml.map("motor_encoder");
+    joint->motor_encoder = read_encoder_errors(errors, units);
+    errors.finish();
+  }
+  if (yaml.has("link_encoder"))
+    joint->link_encoder = read_link_encoder(yaml.map("link_encoder"), units);
   if (yaml.has("torque_sensor"))
     joint->torque_sensor = read_torque_sensor(yaml.map("torque_sensor"), units);
   if (yaml.has("torque_loop"))

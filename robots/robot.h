@@ -88,6 +88,7 @@ struct JointConfig {
   TransmissionConfig transmission;
   FrictionConfig friction;       ///< of each motor, before the transmission
   FrictionConfig link_friction;  ///< behind it
+  EncoderErrors motor_encoder;   ///< its counts are DriveConfig::encoder_bits
   LinkEncoderConfig link_encoder;
   TorqueSensorConfig torque_sensor;
   TorqueLoopConfig torque_loop;

@@ -29,7 +29,13 @@ MotorNodes::MotorNodes(const Robot& robot, const Robot& reality) {
   for (int i = 0; i < robot.size(); ++i) {
     add(robot.joints[i], i, robot);
     if (robot.joints[i].has_antagonist) add(antagonist_of(robot.joints[i]), i, robot);
-    torque_sensors_.emplace_back(reality.joints[i].torque_sensor, static_cast<unsigned>(i));
+    const JointConfig& real = reality.joints[i];
+    const auto seed = static_cast<unsigned>(i);
+    for (int k = 0; k < real.motors(); ++k)
+      motor_encoders_.emplace_back(real.motor_encoder,
+                                   static_cast<unsigned>(kMaxMotors + motor_encoders_.size()));
+    link_encoders_.emplace_back(real.link_encoder.errors, seed);
+    torque_sensors_.emplace_back(real.torque_sensor, seed);
   }
 }
 
@@ -64,10 +70,12 @@ JointReading MotorNodes::reading(int motor, const ForceModel& forces,
   const Motor& stage = forces.motor(motor);
   const Node& node = nodes_[motor];
   JointReading out;
-  out.theta = at.theta;
-  out.theta_dot = at.theta_dot;
-  out.q = at.q;
-  out.v = at.v;
+  const AngleReading motor_side = motor_encoders_[motor].reading({at.theta, at.theta_dot});
+  const AngleReading link_side = link_encoders_[node.joint].reading({at.q, at.v});
+  out.theta = motor_side.angle;
+  out.theta_dot = motor_side.rate;
+  out.q = link_side.angle;
+  out.v = link_side.rate;
   out.motor_torque = stage.estimated_torque(at);
   if (node.senses_torque) out.joint_torque = torque_sensors_[node.joint].reading();
   out.current_A = stage.current_A(at);
@@ -94,8 +102,10 @@ void MotorNodes::update(const ForceModel& forces, const ArmState& x, double h, s
                         const std::vector<Inbox>& inboxes) noexcept {
   for (int i = 0; i < static_cast<int>(torque_sensors_.size()); ++i) {
     torque_sensors_[i].update(forces.spring_torque(x, i), h);
+    link_encoders_[i].update({x.q[i], x.v[i]}, h);
   }
   for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) {
+    motor_encoders_[k].update({x.theta[k], x.theta_dot[k]}, h);
     nodes_[k].motor->update(reading(k, forces, x), now_ns);
     say(k, inboxes[nodes_[k].bus].bus());
   }

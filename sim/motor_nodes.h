@@ -10,6 +10,7 @@
 #include "robots/robot.h"
 #include "sim/force_model.h"
 #include "sim/inbox.h"
+#include "sim/joints/encoder.h"
 #include "sim/joints/torque_sensor.h"
 #include "sim/nodes/motor_node.h"
 
@@ -55,7 +56,9 @@ class MotorNodes {
   void say(int motor, CanBus* out) noexcept;
 
   std::vector<Node> nodes_;                   // in the order of the motors
-  std::vector<TorqueSensor> torque_sensors_;  // one a joint
+  std::vector<Encoder> motor_encoders_;       // likewise
+  std::vector<Encoder> link_encoders_;        // one a joint
+  std::vector<TorqueSensor> torque_sensors_;  // likewise
 };
 
 }  // namespace limber::sim

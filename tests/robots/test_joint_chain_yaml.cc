@@ -68,6 +68,11 @@ TEST_F(GoodChain, ElasticJointWithSensorsAndLoop) {
   EXPECT_EQ(turn_.link_friction.viscous_Nms_per_rad, 0.1);
   EXPECT_TRUE(turn_.link_encoder.present);
   EXPECT_EQ(turn_.link_encoder.bits, 20);
+  EXPECT_EQ(turn_.link_encoder.errors.bias_rad, -0.001);
+  EXPECT_EQ(turn_.link_encoder.errors.delay_s, 0.00025);
+  EXPECT_EQ(turn_.motor_encoder.eccentricity_rad, 0.0003);
+  EXPECT_EQ(turn_.motor_encoder.noise_rad, 2e-5);
+  EXPECT_FALSE(roll_.motor_encoder.any());
   EXPECT_TRUE(turn_.torque_sensor.present);
   EXPECT_EQ(turn_.torque_sensor.resolution_Nm, 0.02);
   EXPECT_EQ(turn_.torque_sensor.noise_Nm, 0.05);
@@ -159,7 +164,9 @@ const Mutation kSlips[] = {
      "is for antagonistic joints only"},
     {"NoPreload", "preload_rad: 0.1", "preload_rad: 0", "leaves the joint without stiffness"},
     {"PreloadBeyondMost", "preload_rad: 0.1", "preload_rad: 0.7", "from 0 to 0.6"},
-    {"LinkEncoderBits", "{bits: 20}", "{bits: 40}", "from 8 to 26"},
+    {"LinkEncoderBits", "{bits: 20,", "{bits: 40,", "from 8 to 26"},
+    {"EncoderNoiseNegative", "noise_rad: 2e-5", "noise_rad: -2e-5", "out of range"},
+    {"EncoderKey", "eccentricity_rad: 0.0003", "wobble_rad: 0.0003", "unknown key 'wobble_rad'"},
     {"SensorNoiseNotANumber", "noise_Nm: 0.05", "noise_Nm: .nan", "'.nan' is not a number"},
     {"LoopWithoutSensor", kSensor, "", "torque_loop: needs a torque_sensor", testing::kNoLine},
     {"LoopSlowerThanTheCycle", "rate_hz: 4000", "rate_hz: 500", "from 1000 to 20000"},
