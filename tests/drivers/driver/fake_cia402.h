@@ -215,7 +215,8 @@ inline Robot cia402_robot() {
     joint.drive.actuator.lag_s = 5e-4;
   }
   JointConfig& elastic = robot.joints[1];
-  elastic.link_encoder = {true, 18};
+  elastic.link_encoder.present = true;
+  elastic.link_encoder.bits = 18;
   elastic.torque_sensor.present = true;
   elastic.torque_loop = {4.0, 4000.0, 1e-4};
   elastic.transmission.kind = TransmissionKind::kElastic;

@@ -3,6 +3,7 @@
 
 #include "drivers/can/lockstep_frame.h"
 #include "tests/drivers/driver/fake_arm.h"
+#include "tests/drivers/driver/fake_cia402.h"
 #include "tests/support/allocation_counter.h"
 
 namespace limber {
@@ -98,34 +99,71 @@ TEST(LockstepTest, InRealtimeThereAreNoTicksAndTheRepliesCompleteTheCycle) {
   EXPECT_TRUE(arm.driver->complete());
 }
 
-TEST(AllocationTest, NoCycleAllocates) {
+// Through start-up, ON, a refused command, HOLD, DAMP and FAULT.
+class AllocationTest : public ::testing::Test {
+ protected:
+  void cycles(testing::DrivenArm* arm, int expected_state) {
+    for (int i = 0; i < 1000; ++i) cycle(arm);
+    EXPECT_EQ(arm->state->drive_state, expected_state);
+  }
+
+  std::int64_t by_driver = 0;
+
+ private:
+  void cycle(testing::DrivenArm* arm) {
+    std::int64_t before = testing::allocations();
+    arm->driver->transmit(++arm->cycle * 1'000'000);
+    by_driver += testing::allocations() - before;
+    arm->answer();
+    before = testing::allocations();
+    arm->driver->poll();
+    arm->state = &arm->driver->finish_cycle();
+    arm->command.request = joint_torque_t::REQUEST_ON;
+    arm->answer_state();
+    arm->driver->fill_status(&arm->status);
+    by_driver += testing::allocations() - before;
+  }
+};
+
+TEST_F(AllocationTest, NoCycleAllocates) {
   FakeArm arm(test_robot(7));
   for (testing::FakeMotor& motor : arm.motors) motor.frames.reserve(20'000);
-  std::int64_t by_driver = 0;
-  const auto cycle = [&](int request) {
-    std::int64_t before = testing::allocations();
-    arm.driver->transmit(++arm.cycle * 1'000'000);
-    by_driver += testing::allocations() - before;
-    arm.answer();
-    before = testing::allocations();
-    arm.driver->poll();
-    arm.state = &arm.driver->finish_cycle();
-    arm.command.request = static_cast<std::int8_t>(request);
-    arm.answer_state();
-    arm.driver->fill_status(&arm.status);
-    by_driver += testing::allocations() - before;
-  };
-  for (int i = 0; i < 1000; ++i) cycle(joint_torque_t::REQUEST_ON);  // start-up, enabling, on
-  EXPECT_EQ(arm.state->drive_state, joint_state_t::DRIVE_ON + 0);
+  cycles(&arm, joint_state_t::DRIVE_ON);
   arm.command.tau[0] = 100.0;
-  for (int i = 0; i < 1000; ++i) cycle(joint_torque_t::REQUEST_ON);  // refused, then held
-  EXPECT_EQ(arm.state->drive_state, joint_state_t::DRIVE_HOLD + 0);
+  cycles(&arm, joint_state_t::DRIVE_HOLD);
   arm.set_speed(2, 6.0);
-  for (int i = 0; i < 1000; ++i) cycle(joint_torque_t::REQUEST_ON);
-  EXPECT_EQ(arm.state->drive_state, joint_state_t::DRIVE_DAMP + 0);
+  cycles(&arm, joint_state_t::DRIVE_DAMP);
   for (testing::FakeMotor& motor : arm.motors) motor.silent = true;
-  for (int i = 0; i < 1000; ++i) cycle(joint_torque_t::REQUEST_ON);
-  EXPECT_EQ(arm.state->drive_state, joint_state_t::DRIVE_FAULT + 0);
+  cycles(&arm, joint_state_t::DRIVE_FAULT);
+  EXPECT_EQ(by_driver, 0);
+}
+
+// One joint with two motors, one with a torque loop and all sensors.
+TEST_F(AllocationTest, NoCycleWithCia402DrivesAllocates) {
+  Robot robot = testing::cia402_robot();
+  JointConfig& pair = robot.joints[0];
+  pair.has_antagonist = true;
+  pair.transmission.kind = TransmissionKind::kAntagonistic;
+  pair.transmission.preload_max_rad = 0.5;
+  pair.drive.peak_torque_Nm = 14.0;
+  pair.antagonist = pair.drive;
+  pair.antagonist.command_id = 0x205;
+  pair.antagonist.reply_id = 0x185;
+  testing::Cia402Arm arm(robot);
+  JointConfig second = pair;
+  second.drive = pair.antagonist;
+  arm.motors.emplace_back(second);
+  arm.command.tau_preload[0] = 5.0;
+  cycles(&arm, joint_state_t::DRIVE_ON);
+  EXPECT_NE(arm.state->joint_flags[0] & joint_state_t::JOINT_TWO_MOTORS, 0);
+  arm.command.tau_preload[0] = 100.0;
+  cycles(&arm, joint_state_t::DRIVE_HOLD);
+  constexpr int kCountsPerTurn = 1 << 16;
+  arm.motors[0].velocity = 4 * kCountsPerTurn;
+  arm.motors[2].velocity = -4 * kCountsPerTurn;
+  cycles(&arm, joint_state_t::DRIVE_DAMP);
+  for (testing::FakeCia402& motor : arm.motors) motor.silent = true;
+  cycles(&arm, joint_state_t::DRIVE_FAULT);
   EXPECT_EQ(by_driver, 0);
 }
 
