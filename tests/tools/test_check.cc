@@ -164,6 +164,21 @@ TEST(Check, SaysHowStiffTheGainsAre) {
       << undamped.output;
 }
 
+// tomei's bound is a law's own: the file reader does not know it.
+TEST(Check, WarnsOfGainsThatALawRefuses) {
+  const testing::TemporaryFolder folder;
+  const std::string file =
+      folder.write("s.yaml",
+                   "format: limber-scenario/1\nrobot: iiwa14\nduration_s: 3\ntimeline:\n"
+                   "  - {at_s: 1.0, gains: {law: tomei, K_q_Nm_per_rad: 300}}\n"
+                   "  - {at_s: 2.0, gains: {law: tomei, K_q_Nm_per_rad: 5}}\n");
+  const Outcome outcome = check("scenario " + file);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_FALSE(contains(outcome.output, "gains at 1 s will be refused")) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "warning: gains at 2 s will be refused: K_q is too soft"))
+      << outcome.output;
+}
+
 // planar2r: two uniform rods, l = (0.5, 0.4) m, m = (4, 2.5) kg, elbow at 1 rad. The joint modes
 // solve det(K - w^2 M) = 0.
 TEST(Check, ModesAreThoseOfTheClosedForm) {
