@@ -31,7 +31,8 @@ inline JointConfig cia402_joint() {
 }
 
 inline JointConfig with_sensors(JointConfig joint, double inertia_ratio = 1.0) {
-  joint.link_encoder = {true, 16};
+  joint.link_encoder.present = true;
+  joint.link_encoder.bits = 16;
   joint.torque_sensor.present = true;
   joint.torque_loop.inertia_ratio = inertia_ratio;
   return joint;

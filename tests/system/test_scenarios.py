@@ -74,7 +74,7 @@ def test_demo_in_lock_step(tmp_path):
 
 
 # A pause of this machine longer than the driver bridges is not our fault. Without real-time
-# priority any other program's work is such a pause: there the run is shorter.
+# priority any other program's work is such a pause: there only what is said is judged.
 @pytest.mark.flaky(reruns=4)
 @pytest.mark.parametrize(("unprivileged", "seconds"), [(False, 60), (True, 15)])
 def test_demo_in_real_time(tmp_path, unprivileged, seconds):
@@ -87,9 +87,11 @@ def test_demo_in_real_time(tmp_path, unprivileged, seconds):
     )
     found = numbers(out)
     print(done.stdout)
-    assert 1000 * (seconds - 1) <= found["cycles"]["value"] <= 1000 * seconds + 500
+    assert 0 < found["cycles"]["value"] <= 1000 * seconds + 500
     assert "late cycles" in found
-    assert found["faults"]["pass"] is True, done.stdout + done.stderr
+    if not unprivileged:
+        assert found["cycles"]["value"] >= 1000 * (seconds - 1)
+        assert found["faults"]["pass"] is True, done.stdout + done.stderr
     status = done.stdout + (out / "limber-driver.log").read_text(encoding="utf-8")
     assert ("NOT real-time" in status) == unprivileged or "granted" in status
 
