@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robots/second_motor.h"
+
 namespace limber {
 
 JointConfig motor_view(const JointConfig& joint, int motor) {
-  JointConfig view = joint;
-  if (joint.has_antagonist)
-    view.torque_limit_Nm = pulling_limit(motor == 0 ? joint.drive : joint.antagonist);
-  if (motor == 0) return view;
-  view.name += " (antagonist)";
-  view.drive = joint.antagonist;
-  view.link_encoder.present = false;
-  view.torque_sensor.present = false;
-  view.torque_loop = {};
+  JointConfig view = motor == 0 ? joint : second_motor(joint);
+  if (joint.has_antagonist) view.torque_limit_Nm = pulling_limit(view.drive);
+  if (motor != 0) view.name += " (antagonist)";
   return view;
 }
 

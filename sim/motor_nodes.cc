@@ -6,18 +6,15 @@
 #include <cmath>
 
 #include "common/config_error.h"
+#include "robots/second_motor.h"
 
 namespace limber::sim {
 namespace {
 
 /// The second drive of an antagonistic joint: a motor and nothing else.
 JointConfig antagonist_of(const JointConfig& joint) {
-  JointConfig out = joint;
-  out.drive = joint.antagonist;
+  JointConfig out = second_motor(joint);
   out.has_antagonist = false;
-  out.link_encoder.present = false;
-  out.torque_sensor.present = false;
-  out.torque_loop = {};
   return out;
 }
 

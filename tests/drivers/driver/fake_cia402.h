@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <set>
@@ -13,20 +12,9 @@
 #include <vector>
 
 #include "tests/drivers/driver/fake_arm.h"
+#include "tests/support/frame_text.h"
 
 namespace limber::testing {
-
-/// As candump writes it: "203#0F00C800".
-inline std::string text_of(const CanFrame& frame) {
-  char text[16];
-  std::snprintf(text, sizeof(text), "%03X#", frame.id);
-  std::string line = text;
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    std::snprintf(text, sizeof(text), "%02X", frame.data[i]);
-    line += text;
-  }
-  return line;
-}
 
 /// Statuswords with voltage present, remote.
 constexpr int kSwitchOnDisabled = 0x0250, kReady = 0x0231, kSwitchedOn = 0x0233,
@@ -72,7 +60,7 @@ class FakeCia402 {
     const auto id = static_cast<int>(frame.id);
     const bool for_me =
         id == 0x600 + node || id == 0x200 + node || (id == 0 && frame.data[1] == node);
-    if (for_me) heard.push_back(text_of(frame));
+    if (for_me) heard.push_back(text(frame));
     if (id == 0x080) return on_sync();
     if (!for_me) return {};
     if (id == 0) {
@@ -178,7 +166,7 @@ class FakeCia402 {
     }
     for (int i = 0; i < 4; ++i)
       reply.data[static_cast<std::size_t>(4 + i)] = static_cast<std::uint8_t>(raw >> (8 * i));
-    const bool first = asked.insert(text_of(request)).second;
+    const bool first = asked.insert(text(request)).second;
     if (silent || mute.count(object) != 0 || (forgetful && first)) return {};
     return {reply};
   }
@@ -236,7 +224,7 @@ class Cia402Arm : public DrivenArm {
     for (std::size_t b = 0; b < motor_ends.size(); ++b) {
       sent.clear();
       while (motor_ends[b]->receive(std::span(&frame, 1)) == 1) {
-        sent.push_back(text_of(frame));
+        sent.push_back(text(frame));
         for (FakeCia402& motor : motors) {
           if (motor.config.drive.bus != static_cast<int>(b)) continue;
           for (const CanFrame& reply : motor.handle(frame)) motor_ends[b]->send(reply);

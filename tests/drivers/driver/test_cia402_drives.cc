@@ -116,7 +116,7 @@ TEST(Cia402Torque, WhatIsNotFiniteIsNotSent) {
     for (const JointCommand& command : {JointCommand{0, 0, 0, bad}, JointCommand{bad, 1, 1, 0},
                                         JointCommand{0, bad, 0, 0}, JointCommand{0, 0, bad, 0}}) {
       JointLink link(cia402_robot().joints[0], true, 1e-3, 2);
-      EXPECT_EQ(testing::text_of(link.command(command)), "080#");
+      EXPECT_EQ(testing::text(link.command(command)), "080#");
       EXPECT_EQ(link.torque(0.28).data[2], 10);  // the next good one is as it should be
     }
   }
