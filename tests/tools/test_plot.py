@@ -72,6 +72,7 @@ def test_springs_only_where_there_are_sensors(log, tmp_path):
     np.testing.assert_allclose(drawn(ahead, "joint 2"), 12.0)
     np.testing.assert_allclose(drawn(torque, "joint 2"), 9.0)
     np.testing.assert_allclose(drawn(torque, "joint 2 asked of the motor"), 10.0)
+    assert torque.color_numbers() == [0, 0], "asked and measured go together"
     assert list(preload.series) == ["joint 3"]
     np.testing.assert_allclose(drawn(preload, "joint 3"), 0.25)
 

@@ -23,11 +23,13 @@ class Chart:
     dashed: set[str] = field(default_factory=set)
 
     def color_numbers(self) -> list[int]:
-        """One for each series; a desired value has the colour of the measured one before it."""
+        """One for each series; "q desired" has the colour of the "q" before it."""
         numbers: list[int] = []
+        before = None
         for name in self.series:
-            paired = numbers and name.endswith(" desired")
+            paired = before is not None and name.startswith(f"{before} ")
             numbers.append(numbers[-1] if paired else max(numbers, default=-1) + 1)
+            before = name
         return numbers
 
 
@@ -138,12 +140,12 @@ def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
         return Chart(title, unit, t, series)
 
     deflection_mrad = (state["theta"] - state["q"]) * 1e3
-    torque = chart("torque on the link", "N m", state["tau"], flags.JOINT_TORQUE_SENSOR)
-    for name, values in chart(
-        "", "", state["tau_applied"], flags.JOINT_TORQUE_SENSOR
-    ).series.items():
-        torque.series[f"{name} asked of the motor"] = values
-        torque.dashed.add(f"{name} asked of the motor")
+    torque = Chart("torque on the link", "N m", t)
+    for i in those_with(flags.JOINT_TORQUE_SENSOR):
+        asked = f"{labels[i]} asked of the motor"
+        torque.series[labels[i]] = state["tau"][:, i]
+        torque.series[asked] = state["tau_applied"][:, i]
+        torque.dashed.add(asked)
     return [
         chart("motor ahead of the link", "mrad", deflection_mrad, flags.JOINT_LINK_ENCODER),
         torque,
