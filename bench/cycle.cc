@@ -9,10 +9,11 @@
 #include <string>
 
 #include "controller/arm_controller.h"
-#include "controller/arm_terms.h"
 #include "controller/laws/registry.h"
-#include "controller/state_judge.h"
+#include "controller/model/arm_terms.h"
+#include "controller/modes/state_judge.h"
 #include "lab/lab.h"
+#include "robots/loader/default_gains.h"
 
 namespace {
 
@@ -69,7 +70,13 @@ BENCHMARK(BM_ArmTerms);
 class ActiveController {
  public:
   ActiveController(const LoadedRobot& robot, const std::string& law)
-      : controller_(robot, options(law)) {
+      : controller_(robot, options()) {
+    compliance_gains_t gains = default_gains(robot.robot);
+    gains.client = 1;
+    gains.law = law;
+    // Nothing else runs without one.
+    if (law == "admittance") gains.contact = compliance_gains_t::CONTACT_JOINT_TORQUE;
+    controller_.on_gains(gains);
     state_.session = 1;
     state_.period_ns = 1'000'000;
     state_.num_joints = static_cast<std::int8_t>(robot.robot.size());
@@ -90,9 +97,9 @@ class ActiveController {
 
   bool active() const { return controller_.status().mode == controller_status_t::MODE_ACTIVE; }
 
-  const joint_torque_t& step() {
-    const joint_torque_t& torque = controller_.step(state_);
-    if (torque.request == joint_torque_t::REQUEST_ON) state_.drive_state = joint_state_t::DRIVE_ON;
+  const joint_command_t& step() {
+    const joint_command_t& torque = controller_.step(state_);
+    if (torque.request == joint_command_t::REQUEST_ON) state_.drive_state = joint_state_t::DRIVE_ON;
     std::copy(torque.tau, torque.tau + kMaxJoints, state_.tau_applied);
     ++state_.seq;
     state_.time_ns += state_.period_ns;
@@ -100,9 +107,9 @@ class ActiveController {
   }
 
  private:
-  static ArmControllerOptions options(const std::string& law) {
+  static ArmControllerOptions options() {
     ArmControllerOptions options;
-    options.law = law;
+    options.simulated = true;
     options.measure_time = false;
     return options;
   }
@@ -155,7 +162,7 @@ void register_controller_cycles() {
   for (const controller::LawEntry& law : controller::laws()) {
     for (const auto& [robot, kind] : kinds) {
       const unsigned sensors = controller::sensors_of(load_robot(robot).robot);
-      if (controller::refuse_law(law, sensors) != nullptr) continue;
+      if (controller::check_law(law, sensors) != nullptr) continue;
       const std::string name = fmt::format("BM_ControllerCycle/{}/{}", kind, law.name);
       benchmark::RegisterBenchmark(name.c_str(), BM_ControllerCycle, robot, law.name);
       break;

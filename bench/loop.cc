@@ -12,12 +12,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstring>
 #include <limber/controller_status_t.hpp>
+#include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
-#include <limber/joint_torque_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <stdexcept>
 #include <vector>
@@ -25,13 +24,14 @@
 #include "common/clock.h"
 #include "common/latency_histogram.h"
 #include "common/lcm_port.h"
+#include "common/program.h"
 #include "common/realtime.h"
 #include "lcmtypes/channels.h"
-#include "robots/load_robot.h"
-
-namespace {
+#include "robots/loader/load_robot.h"
 
 using namespace limber;
+
+namespace {
 
 constexpr int kPriority = 40;
 
@@ -102,11 +102,11 @@ class FakeDriver {
       state_.q[i] = state_.theta[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
       state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED;
     }
-    arm_.subscribe<joint_torque_t>(channels::kJointTorque, 10,
-                                   [this](const joint_torque_t& torque) {
-                                     if (torque.state_seq == state_.seq)
-                                       answer_ = torque, answered_ = true;
-                                   });
+    arm_.subscribe<joint_command_t>(channels::kJointTorque, 10,
+                                    [this](const joint_command_t& torque) {
+                                      if (torque.state_seq == state_.seq)
+                                        answer_ = torque, answered_ = true;
+                                    });
     user_.subscribe<controller_status_t>(
         channels::kControllerStatus, 10,
         [this](const controller_status_t& status) { mode_ = status.mode; });
@@ -124,7 +124,8 @@ class FakeDriver {
     if (!answered_) return -1;
     ++state_.seq;
     state_.time_ns += state_.period_ns;
-    if (answer_.request == joint_torque_t::REQUEST_ON) state_.drive_state = joint_state_t::DRIVE_ON;
+    if (answer_.request == joint_command_t::REQUEST_ON)
+      state_.drive_state = joint_state_t::DRIVE_ON;
     std::copy(answer_.tau, answer_.tau + 16, state_.tau_applied);
     return taken;
   }
@@ -152,7 +153,7 @@ class FakeDriver {
   LcmPort arm_;
   LcmPort user_;
   joint_state_t state_{};
-  joint_torque_t answer_{};
+  joint_command_t answer_{};
   bool answered_ = false;
   int mode_ = -1;
 };
@@ -164,14 +165,14 @@ std::int64_t ping(int descriptor, const std::vector<char>& message, std::vector<
   return monotonic_ns() - start;
 }
 
-void run(const std::string& controller, int rounds) {
+int run(const std::string& controller, std::int64_t rounds) {
   const LoadedRobot robot = load_robot("openarm");
   const pid_t child = spawn([&] {
     execl(controller.c_str(), controller.c_str(), "--robot", "openarm",
           static_cast<char*>(nullptr));
   });
   const std::size_t state_bytes = static_cast<std::size_t>(joint_state_t().getEncodedSize());
-  const std::size_t torque_bytes = static_cast<std::size_t>(joint_torque_t().getEncodedSize());
+  const std::size_t torque_bytes = static_cast<std::size_t>(joint_command_t().getEncodedSize());
   const pid_t peer = spawn([&] { echo(torque_bytes); });
   const int descriptor = multicast_socket(kPongPort);
   const RealtimeGrant grant = ask_for_realtime(kPriority);
@@ -185,7 +186,7 @@ void run(const std::string& controller, int rounds) {
   LatencyHistogram limber_time;
   LatencyHistogram udp_time;
   constexpr int kBatch = 200;
-  for (int done = 0; done < rounds; done += kBatch) {
+  for (std::int64_t done = 0; done < rounds; done += kBatch) {
     for (int i = 0; i < kBatch; ++i) limber_time.add(driver.round());
     for (int i = 0; i < kBatch; ++i) udp_time.add(ping(descriptor, message, buffer));
   }
@@ -205,24 +206,17 @@ void run(const std::string& controller, int rounds) {
       static_cast<double>(limber_time.quantile(0.5)) / static_cast<double>(udp_time.quantile(0.5)),
       static_cast<double>(limber_time.quantile(0.99)) /
           static_cast<double>(udp_time.quantile(0.99)));
+  return kExitDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP multicast ping-pong."};
+  CommandLine line("limber-bench-loop",
+                   "Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP multicast ping-pong.");
   std::string controller;
-  int rounds = 20'000;
-  app.add_option("--controller", controller, "limber-controller to measure")
-      ->required()
-      ->check(CLI::ExistingFile);
-  app.add_option("--rounds", rounds)->check(CLI::Range(200, 10'000'000));
-  CLI11_PARSE(app, argc, argv);
-  try {
-    run(controller, rounds);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "limber-bench-loop: {}\n", error.what());
-    return 3;
-  }
-  return 0;
+  std::int64_t rounds = 20'000;
+  line.text("--controller", &controller, "limber-controller to measure").required();
+  line.integer("--rounds", &rounds, 200, 10'000'000, "messages of each kind");
+  return run_program(line, argc, argv, [&] { return run(controller, rounds); });
 }

@@ -2,9 +2,9 @@
 // `limber experiment run E06` puts them beside the whole cycle.
 #include <benchmark/benchmark.h>
 
-#include "controller/arm_terms.h"
-#include "controller/stiffness_mapping.h"
-#include "robots/load_robot.h"
+#include "controller/gains/stiffness_mapping.h"
+#include "controller/model/arm_terms.h"
+#include "robots/loader/load_robot.h"
 
 namespace {
 

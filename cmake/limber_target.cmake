@@ -1,14 +1,18 @@
-# Options and the two functions every folder uses.
+# Options and the functions every folder uses.
 #
-#   limber_library(NAME SOURCES... [LINK targets...] [EIGEN])   static library limber_NAME
-#   limber_program(NAME SOURCES... [LINK targets...] [EIGEN])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin
-#   limber_test(NAME SOURCES... [LINK targets...] [EIGEN])      GoogleTest program, registered with ctest
+#   limber_sources(RESULT [ONLY folder] [EXCEPT ...])   the sources of a folder
+#   limber_library(NAME SOURCES... [LINK targets...])   static library limber_NAME
+#   limber_program(NAME SOURCES... [LINK targets...])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin
+#   limber_tests(NAME [EXCEPT ...] [LINK targets...] [SHARDS n])   GoogleTest program of all test_*.cc below, registered with ctest
 #
-# EIGEN: with precompiled Eigen headers, which are half of the time such a file takes to compile.
+# What takes time is Eigen: its headers, which are precompiled once for all, and its templates, which every translation unit
+# instantiates anew. So files are compiled LIMBER_UNITY at a time as one. Two of them may then not have helpers of one name in
+# their anonymous namespaces; a test file has a namespace of its own. LIMBER_UNITY=0 compiles each by itself: finds missing includes, and builds faster after small edits.
 
 option(LIMBER_BUILD_TESTS "Build the tests" ON)
 option(LIMBER_BUILD_BENCH "Build the benchmarks" OFF)
 option(LIMBER_WERROR "Treat warnings as errors" OFF)
+set(LIMBER_UNITY 16 CACHE STRING "Source files compiled as one; 0: each by itself")
 set(LIMBER_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
 
 if(NOT CMAKE_BUILD_TYPE)
@@ -19,6 +23,11 @@ if(LIMBER_CCACHE)
   # What ccache asks for with precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${LIMBER_CCACHE})
   add_compile_options(-fpch-preprocess)
+endif()
+
+if(LIMBER_UNITY)
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE ${LIMBER_UNITY})
 endif()
 
 set(CMAKE_CXX_STANDARD 20)
@@ -38,50 +47,73 @@ if(LIMBER_SANITIZE)
   target_link_options(limber_flags INTERFACE -fsanitize=${LIMBER_SANITIZE})
 endif()
 
-# Owns the precompiled headers that all targets with EIGEN share.
+# Precompiled headers that all targets share, and those that all tests share.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+target_link_libraries(limber_flags INTERFACE Eigen3::Eigen fmt::fmt)
 function(limber_precompiled name)
   file(WRITE ${CMAKE_BINARY_DIR}/generated/${name}.cc "")
   add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/${name}.cc)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE limber_flags ${ARGN})
   target_precompile_headers(${name} PRIVATE
-    <Eigen/Cholesky> <Eigen/Core> <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <memory> <string> <vector>)
+    <Eigen/Cholesky> <Eigen/Core> <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <fmt/format.h>
+    <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <span> <string> <variant> <vector>
+    ${CMAKE_SOURCE_DIR}/common/eigen_templates.h)
 endfunction()
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-limber_precompiled(limber_eigen_headers Eigen3::Eigen)
+limber_precompiled(limber_headers)
 if(LIMBER_BUILD_TESTS)
   find_package(GTest REQUIRED)
-  limber_precompiled(limber_test_headers Eigen3::Eigen GTest::gtest)
+  limber_precompiled(limber_test_headers GTest::gtest)
   target_precompile_headers(limber_test_headers PRIVATE <gtest/gtest.h>)
 endif()
 
+# All sources of this folder and the ones below: of ONLY these, or of all EXCEPT these (files, or folders with a `/`).
+function(limber_sources result)
+  cmake_parse_arguments(arg "" "" "ONLY;EXCEPT" ${ARGN})
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  foreach(part IN LISTS arg_EXCEPT)
+    list(FILTER found EXCLUDE REGEX "^${part}")
+  endforeach()
+  if(arg_ONLY)
+    list(FILTER found INCLUDE REGEX "^${arg_ONLY}")
+  endif()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
 function(limber_library name)
-  cmake_parse_arguments(arg "EIGEN" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
   add_library(limber_${name} STATIC ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(limber_${name} PUBLIC limber_flags ${arg_LINK})
-  if(arg_EIGEN)
-    target_precompile_headers(limber_${name} REUSE_FROM limber_eigen_headers)
-  endif()
+  target_precompile_headers(limber_${name} REUSE_FROM limber_headers)
 endfunction()
 
 function(limber_program name)
-  cmake_parse_arguments(arg "EIGEN" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
   add_executable(limber-${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(limber-${name} PRIVATE limber_flags ${arg_LINK})
-  if(arg_EIGEN)
-    target_precompile_headers(limber-${name} REUSE_FROM limber_eigen_headers)
-  endif()
+  target_precompile_headers(limber-${name} REUSE_FROM limber_headers)
   set_target_properties(limber-${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 
-function(limber_test name)
-  cmake_parse_arguments(arg "EIGEN" "" "LINK" ${ARGN})
-  add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
+# All test_*.cc of this folder and the ones below in one program; run as several, side by side, if SHARDS is given.
+function(limber_tests name)
+  cmake_parse_arguments(arg "" "SHARDS" "EXCEPT;LINK" ${ARGN})
+  limber_sources(sources EXCEPT ${arg_EXCEPT})
+  list(FILTER sources INCLUDE REGEX "(^|/)test_[^/]*$")
+  add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE limber_flags ${arg_LINK} GTest::gtest GTest::gtest_main)
-  if(arg_EIGEN)
-    target_precompile_headers(test_${name} REUSE_FROM limber_test_headers)
-  endif()
+  target_precompile_headers(test_${name} REUSE_FROM limber_test_headers)
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 6)
   target_compile_definitions(test_${name} PRIVATE LIMBER_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   set_target_properties(test_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  add_test(NAME ${name} COMMAND test_${name})
-  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  if(NOT arg_SHARDS)
+    set(arg_SHARDS 1)
+  endif()
+  math(EXPR last "${arg_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${name}_${shard} COMMAND test_${name})
+    set_tests_properties(${name}_${shard} PROPERTIES
+      TIMEOUT 900 ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

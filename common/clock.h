@@ -1,4 +1,4 @@
-// The only clock limber looks at.
+// The only clock limber reads.
 #pragma once
 
 #include <time.h>

@@ -1,12 +1,9 @@
 #include "common/lcm_port.h"
 
-#include <poll.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
-#include "common/clock.h"
 #include "common/config_error.h"
 #include "lcmtypes/channels.h"
 
@@ -61,18 +58,6 @@ void LcmPort::subscribe_bytes(const char* channel, int queue, BytesHandler handl
 void LcmPort::handle_waiting() noexcept {
   while (lcm_->handleTimeout(0) > 0) {
   }
-}
-
-bool wait_readable(std::span<const int> descriptors, std::int64_t deadline_ns) noexcept {
-  std::array<pollfd, 8> polled{};
-  nfds_t count = 0;
-  for (const int descriptor : descriptors) {
-    if (descriptor >= 0 && count < polled.size()) polled[count++] = {descriptor, POLLIN, 0};
-  }
-  const std::int64_t left =
-      deadline_ns <= 0 ? 0 : std::max<std::int64_t>(deadline_ns - monotonic_ns(), 0);
-  const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
-  return ppoll(polled.data(), count, &timeout, nullptr) > 0;
 }
 
 std::string arm_plane_url() { return from_environment("LIMBER_ARM_URL", channels::kArmPlaneUrl); }

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "common/wait_readable.h"
+
 namespace limber {
 
 /// Longest encoded message: never fragmented on any link.
@@ -31,7 +33,7 @@ class LcmPort {
   }
 
   /// Calls `handler(message)` for each message on the channel that decodes whole and is not too
-  /// long; others are counted. `queue` messages are kept while the process is busy.
+  /// long; others are dropped. `queue` messages are kept while the process is busy.
   template <typename Message, typename Handler>
   void subscribe(const char* channel, int queue, Handler handler);
 
@@ -39,7 +41,6 @@ class LcmPort {
   void handle_waiting() noexcept;
 
   int descriptor() const noexcept { return descriptor_; }
-  std::int64_t undecodable() const noexcept { return undecodable_; }
 
  private:
   using BytesHandler = std::function<void(const void* data, unsigned size)>;
@@ -50,18 +51,13 @@ class LcmPort {
       handlers_;  // outlive lcm_, which holds pointers to them
   std::unique_ptr<lcm::LCM> lcm_;
   int descriptor_ = -1;
-  std::int64_t undecodable_ = 0;
   std::array<std::uint8_t, kMaxMessageBytes> buffer_{};
 };
-
-/// Waits until a descriptor (-1 entries are ignored) is readable or the absolute CLOCK_MONOTONIC
-/// time has come (ns; <= 0: return at once). False on time-out. Allowed inside the cycle.
-bool wait_readable(std::span<const int> descriptors, std::int64_t deadline_ns) noexcept;
 
 /// `url` with a 2 MiB receive buffer; refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1. Throws
 /// ConfigError. Set-up only.
 std::string checked_lcm_url(const std::string& url);
-/// What to tell a user whose machine has no multicast route.
+/// The error message for a machine without a multicast route.
 std::string no_multicast_route(const std::string& url);
 
 /// $LIMBER_ARM_URL or the arm plane's address of the channel table; $LCM_DEFAULT_URL or the user
@@ -75,7 +71,6 @@ void LcmPort::subscribe(const char* channel, int queue, Handler handler) {
                   [this, handler, message = Message()](const void* data, unsigned size) mutable {
                     if (size > static_cast<unsigned>(kMaxMessageBytes) ||
                         message.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size)) {
-                      ++undecodable_;
                       return;
                     }
                     handler(message);

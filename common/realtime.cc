@@ -42,7 +42,6 @@ std::int64_t PeriodicLoop::wait() noexcept {
   deadline_ns_ += period_ns_;
   if (deadline_ns_ <= now) {
     const std::int64_t missed = (now - deadline_ns_) / period_ns_ + 1;
-    skipped_ += missed;
     deadline_ns_ += missed * period_ns_;
   }
   return now - target;

@@ -1,4 +1,4 @@
-// What a process asks of the kernel to be on time, and what it got.
+// Real-time scheduling: what a process requests of the kernel, and what was granted.
 #pragma once
 
 #include <cstdint>
@@ -30,13 +30,11 @@ class PeriodicLoop {
   std::int64_t wait() noexcept;
   /// The next deadline.
   std::int64_t deadline_ns() const noexcept { return deadline_ns_; }
-  std::int64_t skipped() const noexcept { return skipped_; }
 
  private:
   std::int64_t period_ns_;
   std::int64_t spin_ns_;
   std::int64_t deadline_ns_ = 0;
-  std::int64_t skipped_ = 0;
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Strict reading of YAML: every access says type and allowed range, every complaint names file,
-// line, key and value, and a key nobody asked for is an error.
+// Strict reading of YAML: every access gives type and allowed range, every error names file,
+// line, key and value, and a key that no access used is an error.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -62,7 +62,7 @@ class YamlMap {
   /// The keys of this mapping in file order (for maps from names to things); marks them as known.
   std::vector<std::string> keys() const;
 
-  /// Refuses keys that were never asked for: "unknown key 'x'; allowed here: ...".
+  /// Refuses keys that were never read: "unknown key 'x'; allowed here: ...".
   void finish() const;
 
   /// A complaint about this mapping's key, for checks that need more than a range.

@@ -1,12 +1,10 @@
 #include "controller/arm_controller.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "common/clock.h"
 #include "common/config_error.h"
-#include "controller/supervisor.h"
-#include "controller/torque_cycle.h"
+#include "controller/status_writer.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -15,12 +13,10 @@ namespace {
 using namespace controller;
 
 constexpr std::int64_t kLongestStep = 3;  // periods
-
-/// What the torque cycle is to do in a mode.
-enum class Activity { kRest, kHold, kLaw, kStop };
+constexpr std::int64_t kStartPatience_ns = 5'000'000'000;
 
 Activity activity_of(const Supervisor& supervisor) noexcept {
-  if (!supervisor.engaged()) return Activity::kRest;
+  if (!supervisor.engaged()) return Activity::kStandby;
   switch (supervisor.mode()) {
     case Mode::kActive:
       return Activity::kLaw;
@@ -42,194 +38,132 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
 
 }  // namespace
 
-struct ArmController::Impl {
-  Impl(const LoadedRobot& robot, const ArmControllerOptions& given)
-      : options(given),
-        supervisor(robot.robot.size(), given.bridged_cycles, equipment_of(robot.robot)),
-        cycle(controllable(robot), given.law) {
-    answer.controller = options.controller;
-    answer.num_joints = static_cast<std::int16_t>(robot.robot.size());
-    status.controller = options.controller;
-  }
-
-  void apply_timeline(std::int64_t time_ns) noexcept;
-  void follow_mode() noexcept;
-  void control(std::int64_t missed) noexcept;
-  void rest() noexcept;
-  void write_answer(const joint_state_t& state) noexcept;
-  void write_status(std::int64_t started_ns) noexcept;
-
-  const char* on_mode(const mode_request_t& request) noexcept;
-  const char* on_goal(const compliance_goal_t& goal) noexcept;
-  const char* on_gains(const compliance_gains_t& gains) noexcept;
-  const char* counted(const char* reason) noexcept {
-    if (reason != nullptr) ++status.requests_refused;
-    return reason;
-  }
-
-  ArmControllerOptions options;
-  Supervisor supervisor;
-  TorqueCycle cycle;
-  Activity activity = Activity::kRest;
-  std::optional<Timeline> timeline;
-  double period_s = 0.0;
-  joint_torque_t answer{};
-  controller_status_t status{};
-};
-
-void ArmController::Impl::apply_timeline(std::int64_t time_ns) noexcept {
-  if (!timeline) return;
-  while (const ScenarioMessage* message = timeline->due(time_ns)) {
-    if (const auto* request = std::get_if<mode_request_t>(message)) counted(on_mode(*request));
-    if (const auto* goal = std::get_if<compliance_goal_t>(message)) counted(on_goal(*goal));
-    if (const auto* gains = std::get_if<compliance_gains_t>(message)) counted(on_gains(*gains));
-  }
-}
-
-void ArmController::Impl::follow_mode() noexcept {
-  const Activity before = activity;
-  activity = activity_of(supervisor);
-  if (activity == before) return;
-  if (before == Activity::kRest && activity != Activity::kRest) {
-    // The first torque is the one present.
-    cycle.rest(cycle.tau_applied(), false, PreloadAtRest::kAsSent);
-  }
-  if (activity == Activity::kHold) cycle.hold();
-  if (activity == Activity::kLaw) cycle.activate();
-  if (activity == Activity::kStop) {
-    cycle.stop_goal(static_cast<double>(Supervisor::kSoftStop_ns) * 1e-9);
-  }
-}
-
-void ArmController::Impl::control(std::int64_t missed) noexcept {
-  // After a longer gap the goal goes on from where it was, not from where it would be.
-  const std::int64_t periods = std::min(missed, kLongestStep - 1) + 1;
-  if (!cycle.control(static_cast<double>(periods) * period_s)) {
-    supervisor.raise(Event::kTorqueInvalid);
-    follow_mode();
-  }
-}
-
-void ArmController::Impl::rest() noexcept {
-  const Mode mode = supervisor.mode();
-  const bool latched = mode == Mode::kFault || mode == Mode::kEstop;
-  if (supervisor.powered_mode()) {
-    // The drives are still coming, with no torque; or they hold by themselves, and the springs.
-    const bool held = supervisor.drives_hold();
-    cycle.rest(cycle.tau_applied(), false,
-               held ? PreloadAtRest::kWound : PreloadAtRest::kReleased);  // no wind-up
-  } else if (latched || supervisor.drives_carry()) {
-    cycle.rest(cycle.gravity(), supervisor.drives_on(), PreloadAtRest::kWound);
-  } else {
-    cycle.rest(VectorJ::Zero(answer.num_joints), supervisor.drives_on(), PreloadAtRest::kReleased);
-  }
-}
-
-void ArmController::Impl::write_answer(const joint_state_t& state) noexcept {
-  answer.state_seq = state.seq;
-  answer.time_ns = state.time_ns;
-  answer.session = state.session;
-  answer.request = supervisor.drive_request();
-  answer.mode = static_cast<std::int8_t>(supervisor.mode());
-  const int n = answer.num_joints;
-  Eigen::Map<VectorJ>(answer.tau, n) = cycle.torque();
-  Eigen::Map<VectorJ>(answer.tau_preload, n) = cycle.preload_torque();
-  Eigen::Map<VectorJ>(answer.tau_gravity, n) = cycle.gravity();
-}
-
-void ArmController::Impl::write_status(std::int64_t started_ns) noexcept {
-  if (answer.state_seq % channels::kControllerStatusEvery == 0)
-    ++status.seq;  // those that are published
-  status.time_ns = answer.time_ns;
-  status.session = answer.session;
-  status.state_seq = answer.state_seq;
-  status.mode = answer.mode;
-  status.reason = supervisor.reason();
-  status.states_received = supervisor.states().received();
-  status.states_lost = supervisor.states().lost();
-  cycle.describe(&status);
-  if (!options.measure_time) return;
-  status.cycle_ns = monotonic_ns() - started_ns;
-  status.cycle_max_ns = std::max(status.cycle_max_ns, status.cycle_ns);
-}
-
-const char* ArmController::Impl::on_mode(const mode_request_t& request) noexcept {
-  const char* reason = supervisor.on_mode(request);
-  follow_mode();
-  return reason;
-}
-
-const char* ArmController::Impl::on_goal(const compliance_goal_t& goal) noexcept {
-  if (const char* reason = supervisor.refuse_client(goal.client)) return reason;
-  if (supervisor.mode() != Mode::kActive) return "goals are taken in ACTIVE";
-  if (const char* reason = cycle.set_goal(goal)) return reason;
-  supervisor.take_lease(goal.client);
-  return nullptr;
-}
-
-const char* ArmController::Impl::on_gains(const compliance_gains_t& gains) noexcept {
-  if (const char* reason = supervisor.refuse_client(gains.client)) return reason;
-  if (const char* reason = cycle.set_gains(gains, activity == Activity::kLaw)) return reason;
-  supervisor.take_lease(gains.client);
-  return nullptr;
-}
-
 ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOptions& options)
-    : impl_(std::make_unique<Impl>(robot, options)) {}
-
-ArmController::~ArmController() = default;
-
-const joint_torque_t& ArmController::step(const joint_state_t& state) noexcept {
-  Impl& self = *impl_;
-  const std::int64_t started_ns = self.options.measure_time ? monotonic_ns() : 0;
-  const StateJudgement judgement = self.supervisor.on_state(state);
-  if (judgement.repeated) return self.answer;
-  if (judgement.new_session && self.timeline) self.timeline->rewind();
-
-  if (judgement.new_session || judgement.silent) self.cycle.restart();
-  if (judgement.usable) {
-    self.period_s = static_cast<double>(state.period_ns) * 1e-9;
-    self.cycle.measure(state);
-    self.follow_mode();
-    self.apply_timeline(state.time_ns);
-  }
-  self.follow_mode();
-  if (self.activity != Activity::kRest) self.control(judgement.missed);
-  if (self.activity == Activity::kRest) self.rest();
-
-  self.write_answer(state);
-  self.write_status(started_ns);
-  return self.answer;
+    : options_(options),
+      supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
+      cycle_(controllable(robot), options.law,
+             options.simulated || robot.robot.on_virtual_buses()) {
+  answer_.controller = options.controller;
+  answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
+  status_.controller = options.controller;
 }
 
-void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) noexcept {
-  impl_->timeline.emplace(timeline);
+const joint_command_t& ArmController::step(const joint_state_t& state) noexcept {
+  const std::int64_t started_ns = options_.measure_time ? monotonic_ns() : 0;
+  const StateJudgement judgement = supervisor_.on_state(state);
+  if (judgement.repeated) return answer_;
+  if (judgement.new_session && timeline_) timeline_->rewind();
+  if (judgement.new_session || judgement.silent) cycle_.restart();
+  if (judgement.usable) {
+    period_s_ = static_cast<double>(state.period_ns) * 1e-9;
+    cycle_.measure(state);
+    apply_timeline(state.time_ns);
+  }
+
+  // After a longer gap the goal goes on from where it was, not from where it would be.
+  const std::int64_t periods = std::min(judgement.missed, kLongestStep - 1) + 1;
+  const Activity activity = activity_of(supervisor_);
+  if (activity != Activity::kStandby &&
+      !cycle_.step(activity, static_cast<double>(periods) * period_s_)) {
+    supervisor_.raise(Event::kTorqueInvalid);
+  }
+  if (activity_of(supervisor_) == Activity::kStandby) cycle_.stand_by(standby());
+
+  write_answer(state);
+  write_status(started_ns);
+  return answer_;
+}
+
+void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
+  if (!timeline_) return;
+  while (const TimedMessage* next = timeline_->peek(time_ns)) {
+    // A slow start of the drives or a busy machine must not cost the requests of a whole run.
+    const auto* mode = std::get_if<mode_request_t>(&next->message);
+    if (mode != nullptr && supervisor_.not_yet(*mode) &&
+        time_ns - next->time_ns < kStartPatience_ns) {
+      return;
+    }
+    const ScenarioMessage* message = timeline_->due(time_ns);
+    if (const auto* request = std::get_if<mode_request_t>(message)) on_mode(*request);
+    if (const auto* goal = std::get_if<compliance_goal_t>(message)) on_goal(*goal);
+    if (const auto* gains = std::get_if<compliance_gains_t>(message)) on_gains(*gains);
+  }
+}
+
+Standby ArmController::standby() const noexcept {
+  using Torque = Standby::Torque;
+  const Mode mode = supervisor_.mode();
+  const bool latched = mode == Mode::kFault || mode == Mode::kEstop;
+  const bool on = supervisor_.drives_on();
+  if (supervisor_.powered_mode()) {
+    // The drives are still being enabled, without torque; or they hold by themselves, and so do
+    // the springs between two motors. No wind-up.
+    return {Torque::kAsSent, false,
+            supervisor_.drives_hold() ? PreloadAtRest::kWound : PreloadAtRest::kReleased};
+  }
+  if (latched || supervisor_.drives_carry()) return {Torque::kGravity, on, PreloadAtRest::kWound};
+  return {Torque::kZero, on, PreloadAtRest::kReleased};
+}
+
+void ArmController::write_answer(const joint_state_t& state) noexcept {
+  answer_.state_seq = state.seq;
+  answer_.time_ns = state.time_ns;
+  answer_.session = state.session;
+  answer_.request = supervisor_.drive_request();
+  answer_.mode = static_cast<std::int8_t>(supervisor_.mode());
+  const int n = answer_.num_joints;
+  Eigen::Map<VectorJ>(answer_.tau, n) = cycle_.torque();
+  Eigen::Map<VectorJ>(answer_.tau_preload, n) = cycle_.preload_torque();
+  Eigen::Map<VectorJ>(answer_.tau_gravity, n) = cycle_.gravity();
+}
+
+void ArmController::write_status(std::int64_t started_ns) noexcept {
+  const bool published = answer_.state_seq % channels::kControllerStatusEvery == 0;
+  if (published) ++status_.seq;
+  status_.time_ns = answer_.time_ns;
+  status_.session = answer_.session;
+  status_.state_seq = answer_.state_seq;
+  status_.mode = answer_.mode;
+  status_.reason = supervisor_.reason();
+  status_.states_received = supervisor_.states().received();
+  status_.states_lost = supervisor_.states().lost();
+  controller::write_status(cycle_.trace(), &status_);
+  if (!options_.measure_time) return;
+  status_.cycle_ns = monotonic_ns() - started_ns;
+  status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
+}
+
+const char* ArmController::counted(const char* refusal) noexcept {
+  if (refusal != nullptr) ++status_.requests_refused;
+  return refusal;
 }
 
 const char* ArmController::on_mode(const mode_request_t& request) noexcept {
-  return impl_->counted(impl_->on_mode(request));
+  return counted(supervisor_.on_mode(request));
 }
+
 const char* ArmController::on_goal(const compliance_goal_t& goal) noexcept {
-  return impl_->counted(impl_->on_goal(goal));
+  if (const char* reason = supervisor_.check_client(goal.client)) return counted(reason);
+  if (supervisor_.mode() != Mode::kActive) return counted("goals are accepted in ACTIVE only");
+  if (const char* reason = cycle_.set_goal(goal, activity_of(supervisor_))) return counted(reason);
+  supervisor_.take_lease(goal.client);
+  return nullptr;
 }
+
 const char* ArmController::on_gains(const compliance_gains_t& gains) noexcept {
-  return impl_->counted(impl_->on_gains(gains));
+  if (const char* reason = supervisor_.check_client(gains.client)) return counted(reason);
+  if (const char* reason = cycle_.set_gains(gains, activity_of(supervisor_))) {
+    return counted(reason);
+  }
+  supervisor_.take_lease(gains.client);
+  return nullptr;
 }
 
 void ArmController::on_silence() noexcept {
-  impl_->supervisor.raise(Event::kStateLost);
-  impl_->follow_mode();
-  ++impl_->status.seq;
-  impl_->status.mode = static_cast<std::int8_t>(impl_->supervisor.mode());
-  impl_->status.reason = impl_->supervisor.reason();
-}
-
-const controller_status_t& ArmController::status() const noexcept { return impl_->status; }
-
-std::vector<std::string> law_names() {
-  std::vector<std::string> names;
-  for (const LawEntry& entry : laws()) names.emplace_back(entry.name);
-  return names;
+  supervisor_.raise(Event::kStateLost);
+  ++status_.seq;
+  status_.mode = static_cast<std::int8_t>(supervisor_.mode());
+  status_.reason = supervisor_.reason();
 }
 
 }  // namespace limber

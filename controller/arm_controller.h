@@ -6,15 +6,17 @@
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
 #include <limber/controller_status_t.hpp>
+#include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
-#include <limber/joint_torque_t.hpp>
 #include <limber/mode_request_t.hpp>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "robots/load_robot.h"
-#include "scenarios/scenario.h"
+#include "controller/modes/supervisor.h"
+#include "controller/torque_cycle.h"
+#include "robots/loader/load_robot.h"
+#include "scenarios/loader/scenario.h"
 
 namespace limber {
 
@@ -24,41 +26,53 @@ struct ArmControllerOptions {
   std::string law = "cartesian_impedance";  ///< the law ACTIVE starts with
   int bridged_cycles = 2;    ///< without a state or a joint's answer; one more: FAULT
   bool measure_time = true;  ///< false in lock step: no clock is read
+  /// Every bus is simulated, whatever robot.yaml says, as in the lab. False: by robot.yaml.
+  bool simulated = false;
 };
 
 class ArmController {
  public:
   /// Throws ConfigError (unknown law, gains that do not fit the arm).
   ArmController(const LoadedRobot& robot, const ArmControllerOptions& options);
-  ~ArmController();
 
-  /// The cycle: state in, terms, law, null space, gravity, limits, torque out. Any state is
-  /// answered: one that is stale, repeated (same seq: the same answer again, nothing advances),
-  /// from another session or not finite is handled as the supervisor's table says. No allocation,
-  /// lock, log or exception.
-  const joint_torque_t& step(const joint_state_t& state) noexcept;
+  /// One cycle: state in, torque out. Any state is answered: one that is stale, repeated (same seq:
+  /// the same answer again, nothing advances), from another session or not finite is handled as the
+  /// supervisor's table says. No allocation, lock, log or exception.
+  const joint_command_t& step(const joint_state_t& state) noexcept;
 
-  /// Messages of the timeline that are due are applied at the start of step(), before the law runs.
-  void set_timeline(const std::vector<TimedMessage>* timeline) noexcept;
+  /// Messages of the timeline that are due are applied in step(), before the law runs. `hold` and
+  /// `active`, and all that follows them, wait up to 5 s for controller and drives to be ready.
+  void set_timeline(const std::vector<TimedMessage>* timeline) noexcept {
+    timeline_.emplace(timeline);
+  }
 
   // Requests from outside, between cycles. A refused one changes nothing and is counted; the return
-  // says why (nullptr: accepted). Goals and gains act from the next step(), without a torque jump.
+  // is the reason (nullptr: accepted). Goals and gains act from the next step(), without a torque
+  // jump.
   const char* on_mode(const mode_request_t& request) noexcept;
   const char* on_goal(const compliance_goal_t& goal) noexcept;
   const char* on_gains(const compliance_gains_t& gains) noexcept;
 
-  /// Realtime only: no JOINT_STATE for this long. The supervisor enters FAULT; the next answer says
-  /// so.
+  /// Realtime only: no JOINT_STATE for this long. The supervisor enters FAULT; the next answer
+  /// carries it.
   void on_silence() noexcept;
 
-  const controller_status_t& status() const noexcept;
+  const controller_status_t& status() const noexcept { return status_; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
+  void apply_timeline(std::int64_t time_ns) noexcept;
+  controller::Standby standby() const noexcept;
+  void write_answer(const joint_state_t& state) noexcept;
+  void write_status(std::int64_t started_ns) noexcept;
+  const char* counted(const char* refusal) noexcept;
 
-/// Names in the law registry, in order of their index in controller_status_t.
-std::vector<std::string> law_names();
+  ArmControllerOptions options_;
+  controller::Supervisor supervisor_;
+  controller::TorqueCycle cycle_;
+  std::optional<Timeline> timeline_;
+  double period_s_ = 0.0;
+  joint_command_t answer_{};
+  controller_status_t status_{};
+};
 
 }  // namespace limber

@@ -15,9 +15,9 @@ namespace {
 // Lock step keeps everything, realtime only needs the newest; the rest is counted as lost.
 constexpr int kStateQueue = 64;
 constexpr int kRequestQueue = 32;
-constexpr std::int64_t kComplainEvery_ns = 200'000'000;
+constexpr std::int64_t kLogInterval_ns = 200'000'000;
 
-RealtimeGrant ask(const ControllerProcessOptions& options) {
+RealtimeGrant request_realtime(const ControllerProcessOptions& options) {
   if (options.lockstep || options.priority == 0) return {};
   RealtimeGrant grant = ask_for_realtime(options.priority);
   if (!grant.reason.empty()) spdlog::warn("not real-time: {}; cycles may be late", grant.reason);
@@ -33,7 +33,7 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       // LCM starts a thread for each plane. The user plane's, which anybody may flood, keeps normal
       // priority; the arm plane's inherits ours.
       user_(user_plane_url()),
-      grant_(ask(options)),
+      grant_(request_realtime(options)),
       arm_(arm_plane_url()) {
   arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
                                 [this](const joint_state_t& state) { on_state(state); });
@@ -51,17 +51,17 @@ ControllerProcess::ControllerProcess(ArmController* controller,
                                       });
 }
 
-void ControllerProcess::run(const volatile bool& stop) noexcept {
+void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
   const std::int64_t end_ns =
       options_.duration_s > 0.0
           ? monotonic_ns() + static_cast<std::int64_t>(options_.duration_s * 1e9)
           : std::numeric_limits<std::int64_t>::max();
-  heard_ns_ = monotonic_ns();
+  last_state_ns_ = monotonic_ns();
   const std::array descriptors{arm_.descriptor(), user_.descriptor()};
-  while (!stop && monotonic_ns() < end_ns) {
+  while (stop == 0 && monotonic_ns() < end_ns) {
     wait_readable(descriptors, monotonic_ns() + kSilence_ns);
     handle_waiting();
-    if (!options_.lockstep) watch_silence();
+    if (!options_.lockstep) check_silence();
   }
 }
 
@@ -82,8 +82,8 @@ void ControllerProcess::on_state(const joint_state_t& state) noexcept {
 }
 
 void ControllerProcess::answer(const joint_state_t& state) noexcept {
-  heard_ns_ = monotonic_ns();
-  const joint_torque_t& torque = controller_->step(state);
+  last_state_ns_ = monotonic_ns();
+  const joint_command_t& torque = controller_->step(state);
   arm_.publish(channels::kJointTorque, torque);
   if (torque.state_seq == answered_seq_ && torque.session == answered_session_) return;
   answered_seq_ = torque.state_seq;
@@ -94,10 +94,10 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
   }
 }
 
-void ControllerProcess::watch_silence() noexcept {
+void ControllerProcess::check_silence() noexcept {
   const std::int64_t now_ns = monotonic_ns();
-  if (now_ns - heard_ns_ < kSilence_ns) return;
-  heard_ns_ = now_ns;
+  if (now_ns - last_state_ns_ < kSilence_ns) return;
+  last_state_ns_ = now_ns;
   controller_->on_silence();
   user_.publish(channels::kControllerStatus, controller_->status());
 }
@@ -112,14 +112,14 @@ void ControllerProcess::reply(const Request& request, const char* what,
   answer.accepted = reason == nullptr ? 1 : 0;
   answer.reason = reason == nullptr ? "" : reason;
   user_.publish(channels::kRequestAnswer, answer);
-  complain(what, reason);
+  log_refusal(what, reason);
 }
 
-void ControllerProcess::complain(const char* what, const char* reason) noexcept {
+void ControllerProcess::log_refusal(const char* what, const char* reason) noexcept {
   if (reason == nullptr) return;
   const std::int64_t now_ns = monotonic_ns();
-  if (now_ns - complained_ns_ < kComplainEvery_ns) return;  // all are counted in the status
-  complained_ns_ = now_ns;
+  if (now_ns - logged_ns_ < kLogInterval_ns) return;  // all are counted in the status
+  logged_ns_ = now_ns;
   spdlog::warn("{}: {}", what, reason);
 }
 

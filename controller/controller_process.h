@@ -1,6 +1,7 @@
-// The controller with its sockets: waits for states, answers them, hears users.
+// The controller on its LCM planes: a JOINT_TORQUE for each JOINT_STATE, an answer to each request.
 #pragma once
 
+#include <csignal>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
 
@@ -11,9 +12,9 @@
 namespace limber {
 
 struct ControllerProcessOptions {
-  bool lockstep = false;    ///< every state is answered in order; no clock decides anything
+  bool lockstep = false;    ///< every state is answered in order; no clock is read
   double duration_s = 0.0;  ///< ends by itself after this long; 0: never
-  int priority = 0;         ///< SCHED_FIFO priority to ask for; 0: do not ask
+  int priority = 0;         ///< SCHED_FIFO priority to request; 0: none
 };
 
 class ControllerProcess {
@@ -21,8 +22,8 @@ class ControllerProcess {
   /// Opens both planes. The controller outlives the process. Throws ConfigError.
   ControllerProcess(ArmController* controller, const ControllerProcessOptions& options);
 
-  /// Runs until the duration is over or `stop` becomes true.
-  void run(const volatile bool& stop) noexcept;
+  /// Runs until the duration is over or `stop` is set.
+  void run(const volatile std::sig_atomic_t& stop) noexcept;
 
  private:
   /// Without a state for this long the arm counts as out of reach.
@@ -31,11 +32,11 @@ class ControllerProcess {
   void on_state(const joint_state_t& state) noexcept;
   void answer(const joint_state_t& state) noexcept;
   void handle_waiting() noexcept;
-  void watch_silence() noexcept;
-  /// Tells the user what became of a request, and the log if it was refused.
+  void check_silence() noexcept;
+  /// Publishes REQUEST_ANSWER; a refusal also goes to the log.
   template <typename Request>
   void reply(const Request& request, const char* what, const char* reason) noexcept;
-  void complain(const char* what, const char* reason) noexcept;
+  void log_refusal(const char* what, const char* reason) noexcept;
 
   ArmController* controller_;
   ControllerProcessOptions options_;
@@ -46,8 +47,8 @@ class ControllerProcess {
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;
   std::int64_t answered_seq_ = -1;
-  std::int64_t heard_ns_ = 0;
-  std::int64_t complained_ns_ = 0;
+  std::int64_t last_state_ns_ = 0;
+  std::int64_t logged_ns_ = 0;
 };
 
 }  // namespace limber

@@ -1,17 +1,15 @@
 // limber-controller: answers each JOINT_STATE with a JOINT_TORQUE, by the selected control law.
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
-#include <exception>
-#include <optional>
-#include <random>
+#include <limits>
 
-#include "common/config_error.h"
+#include "common/program.h"
+#include "common/run_id.h"
 #include "controller/arm_controller.h"
 #include "controller/controller_process.h"
 #include "controller/laws/registry.h"
+#include "controller/list_laws.h"
 
 namespace {
 
@@ -20,48 +18,42 @@ using namespace limber;
 // Longer than the 50 ms that the driver bridges on virtual buses: the driver decides first.
 constexpr double kVirtualBridge_s = 0.06;
 
-volatile bool stop = false;
-
-extern "C" void on_signal(int /*signal*/) { stop = true; }
-
 struct Arguments {
   std::string robot;
   std::string scenario;
   std::string law = ArmControllerOptions().law;
   std::optional<bool> lockstep;
-  std::optional<std::int64_t> controller;
+  std::int64_t controller = 0;
   int priority = 80;
   double duration_s = 0.0;
   bool list_laws = false;
+  bool as_json = false;
 };
 
-void define(CLI::App& app, Arguments& given) {
-  app.add_option("--robot", given.robot,
-                 "shipped robot or folder with robot.yaml (default: the scenario's, else openarm)");
-  app.add_option("--scenario", given.scenario,
-                 "scenario file: names the robot, plays its timeline");
-  app.add_option("--law", given.law, "the law ACTIVE starts with")->capture_default_str();
-  app.add_flag("--lockstep,!--realtime", given.lockstep,
-               "answer every state in order and look at no clock (default: as the scenario says, "
-               "else realtime)");
-  app.add_option("--controller-id", given.controller,
-                 "names this run; default 1 in lock step, random in realtime")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--realtime-priority", given.priority, "SCHED_FIFO priority; 0: do not ask")
-      ->check(CLI::Range(0, 99))
-      ->capture_default_str();
-  app.add_option("--duration", given.duration_s, "end after this many seconds; 0: never")
-      ->check(CLI::NonNegativeNumber);
-  app.add_flag("--list-laws", given.list_laws, "print all control laws and exit");
+void define(CommandLine& line, Arguments* given) {
+  line.text("--robot", &given->robot,
+            "shipped robot or folder with robot.yaml (default: the scenario's, else openarm)");
+  line.text("--scenario", &given->scenario,
+            "scenario file: names the robot, plays its timeline, lock step or not");
+  line.text("--law", &given->law, "the law ACTIVE starts with");
+  line.pace(&given->lockstep, "answer every state in order, without a clock");
+  line.integer("--controller-id", &given->controller, 1, std::numeric_limits<std::int64_t>::max(),
+               "names this run; default 1 in lock step, random in realtime");
+  line.priority(&given->priority);
+  line.number("--duration", &given->duration_s, 0.0, 1e8, "end after this many seconds; 0: never");
+  line.flag("--list-laws", &given->list_laws, "print all control laws and exit");
+  line.flag(
+      "--json", &given->as_json,
+      "with --list-laws: as JSON, with every gain; with --robot also what the arm cannot run");
 }
 
-void print_laws() {
-  for (const auto& law : controller::laws()) std::printf("%-24s %s\n", law.name, law.summary);
-}
-
-std::int64_t random_id() {
-  std::random_device device;
-  return std::uniform_int_distribution<std::int64_t>(2)(device);
+int print_laws(const Arguments& given) {
+  std::optional<LoadedRobot> robot;
+  if (!given.robot.empty()) robot = load_robot(given.robot);
+  const std::string list = given.as_json ? controller::list_laws_json(robot ? &*robot : nullptr)
+                                         : controller::list_laws();
+  std::fputs(list.c_str(), stdout);
+  return kExitDone;
 }
 
 std::string robot_name(const Arguments& given) {
@@ -69,56 +61,43 @@ std::string robot_name(const Arguments& given) {
   return given.scenario.empty() ? "openarm" : scenario_robot(given.scenario);
 }
 
-void run(const Arguments& given) {
-  const LoadedRobot robot = load_robot(robot_name(given));
-  std::optional<Scenario> scenario;
-  if (!given.scenario.empty()) scenario = load_scenario(given.scenario, robot);
-  const bool lockstep = given.lockstep.value_or(scenario ? scenario->lockstep : false);
-
+ArmControllerOptions options_from(const Arguments& given, const Robot& robot, bool lockstep) {
   ArmControllerOptions options;
   options.law = given.law;
-  options.controller = given.controller.value_or(lockstep ? 1 : random_id());
+  options.controller = run_id(given.controller, lockstep);
   options.measure_time = !lockstep;
-  if (!lockstep && robot.robot.on_virtual_buses()) {
-    // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the
-    // controller.
-    options.bridged_cycles = static_cast<int>(kVirtualBridge_s * robot.robot.rate_hz);
-  }
+  // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the
+  // controller.
+  if (!lockstep && robot.on_virtual_buses())
+    options.bridged_cycles = static_cast<int>(kVirtualBridge_s * robot.rate_hz);
+  return options;
+}
+
+int run(const Arguments& given) {
+  if (given.list_laws) return print_laws(given);
+  const LoadedRobot robot = load_robot(robot_name(given));
+  std::optional<Scenario> scenario;
+  if (!given.scenario.empty())
+    scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
+  const bool lockstep = given.lockstep.value_or(scenario ? scenario->lockstep : false);
+  const ArmControllerOptions options = options_from(given, robot.robot, lockstep);
   ArmController controller(robot, options);
   if (scenario) controller.set_timeline(&scenario->timeline);
   ControllerProcess process(&controller, {lockstep, given.duration_s, given.priority});
-
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  const auto& stop = stop_on_signals();
   spdlog::info("{}: {} joints, law {}, {}, controller {}", robot.robot.name, robot.robot.size(),
                options.law, lockstep ? "lock step" : "realtime", options.controller);
   process.run(stop);
   spdlog::info("ended after {} states", controller.status().states_received);
+  return kExitDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Answers each JOINT_STATE with a JOINT_TORQUE, by the selected control law."};
+  CommandLine line("limber-controller",
+                   "Answers each JOINT_STATE with a JOINT_TORQUE, by the selected control law.");
   Arguments given;
-  define(app, given);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  if (given.list_laws) {
-    print_laws();
-    return 0;
-  }
-  try {
-    run(given);
-  } catch (const limber::ConfigError& error) {
-    std::fprintf(stderr, "limber-controller: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber-controller: %s\n", error.what());
-    return 3;
-  }
-  return 0;
+  define(line, &given);
+  return run_program(line, argc, argv, [&] { return run(given); });
 }

@@ -1,140 +1,104 @@
-// From measured state to torque: the terms, the law that runs, and everything around it.
+// One control cycle, from the measured state to the torque. Mode logic is in Supervisor.
+//
+//   measure    velocities estimated; the model evaluated at the control point; contact observed
+//   requests   goals and gains are taken; they act from this cycle on
+//   step       goal, gains, law, passivity, model torque, output: see torque_cycle.cc
+//   or stand_by while no law runs
+//
+// The model is evaluated once a cycle, twice where a law begins. Where the control point is the
+// link's static equilibrium, it depends on goal and gains: then it is found in step(), between
+// gains and law, and what needs the model before (the springs' share of K_x, the tank) has it of
+// the last cycle. Everything else that is of the last cycle is named last_*.
 #pragma once
 
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
-#include <limber/controller_status_t.hpp>
 #include <limber/joint_state_t.hpp>
-#include <memory>
-#include <vector>
 
-#include "controller/arm_side.h"
-#include "controller/arm_state.h"
-#include "controller/arm_terms.h"
-#include "controller/energy_tank.h"
-#include "controller/estimation.h"
-#include "controller/gains.h"
-#include "controller/goal_generator.h"
-#include "controller/inverse_kinematics.h"
-#include "controller/laws/registry.h"
-#include "controller/limits.h"
-#include "controller/nullspace.h"
-#include "controller/observers/passivity_observer.h"
-#include "controller/preload_servo.h"
-#include "controller/torque_blend.h"
+#include "controller/cycle_trace.h"
+#include "controller/gains/gain_scheduler.h"
+#include "controller/gains/gains_check.h"
+#include "controller/goals/goal_tracker.h"
+#include "controller/laws/law_bank.h"
+#include "controller/model/arm_view.h"
+#include "controller/observers/observers.h"
+#include "controller/output/passivity_guard.h"
+#include "controller/output/torque_output.h"
 
 namespace limber::controller {
 
-/// Does as it is told and knows no modes. After construction no member allocates, locks, logs or
-/// throws; all may be called in the cycle.
+/// What the cycle does in a mode.
+enum class Activity {
+  kStandby,  ///< no law runs
+  kHold,     ///< joint_pd where the arm was, with nothing of the user's choices but K_q: it carries
+             ///< the weight and damps, whatever was tried before
+  kLaw,      ///< the selected law
+  kStop,     ///< the running law, while its goal comes to rest
+};
+
+/// After construction no member allocates, locks, logs or throws; all may be called in the cycle.
 class TorqueCycle {
  public:
-  /// Makes all laws this arm can run. Throws ConfigError.
-  TorqueCycle(const LoadedRobot& robot, const std::string& law);
+  /// `simulated`: every bus is; only then demonstrations of mistakes are allowed. Throws
+  /// ConfigError.
+  TorqueCycle(const LoadedRobot& robot, const std::string& law, bool simulated);
 
-  /// The state of this cycle, judged usable, and the terms that follow from it.
+  /// A state that has been judged usable.
   void measure(const joint_state_t& message) noexcept;
-  /// The next state does not follow on the last one: nothing estimated from the past is left.
-  void restart() noexcept { estimation_.restart(); }
+  /// The next state does not follow on the last one: nothing estimated from the past is kept.
+  void restart() noexcept { observers_.restart(); }
 
-  /// Runs joint_pd, or the selected law, around the place where the arm is. The torque
-  /// continues from the last one and fades over to the law (TorqueBlend).
-  /// Holding knows no choices of the user's, only K_q (as far as the springs of elastic joints
-  /// allow) and its damping ratio: it carries the weight and damps, whatever was tried before, and
-  /// brings the preload of two motors to robot.yaml's.
-  void hold() noexcept {
-    holding_ = true;
-    run(hold_, true);
-  }
-  void activate() noexcept {
-    holding_ = false;
-    run(selected_, true);
-  }
-  /// The goal comes to rest.
-  void stop_goal(double duration_s) noexcept { goals_.stop(duration_s); }
+  /// nullptr: accepted, else why not; then nothing has changed.
+  const char* set_goal(const compliance_goal_t& message, Activity activity) noexcept;
+  const char* set_gains(const compliance_gains_t& message, Activity activity) noexcept;
 
-  /// nullptr: accepted, else why not. `active`: the selected law is the one that runs.
-  const char* set_goal(const compliance_goal_t& message) noexcept;
-  const char* set_gains(const compliance_gains_t& message, bool active) noexcept;
+  /// One cycle of a law, `dt_s` after the last. Where an activity or a law begins, its first torque
+  /// is the one present, and fades over. False if the result is not finite: the last torque stays.
+  bool step(Activity activity, double dt_s) noexcept;
+  /// One cycle without a law; the goal is where the arm is.
+  void stand_by(const Standby& how) noexcept;
 
-  /// One cycle of the running law, `dt_s` after the last. False if the result is not finite; the
-  /// torque is then the one before.
-  bool control(double dt_s) noexcept;
-  /// One cycle without a law, the goal where the arm is: straight to `target`, or in steps the gate
-  /// lets pass if `in_steps`.
-  void rest(const VectorJ& target, bool in_steps, PreloadAtRest preload) noexcept;
-
-  const VectorJ& torque() const noexcept { return limits_.previous(); }
-  /// Of two motors the sum of their torques, n; zero for joints with one.
-  const VectorJ& preload_torque() const noexcept { return preload_.torque(); }
-  const VectorJ& tau_applied() const noexcept { return state_.tau_applied; }
+  const VectorJ& torque() const noexcept { return output_.torque(); }
+  const VectorJ& preload_torque() const noexcept { return output_.preload_torque(); }
   /// The model's gravity torque, within the joints' limits; the last finite one.
   const VectorJ& gravity() const noexcept { return gravity_; }
-
-  /// Everything in the status that follows from state, law and torque.
-  void describe(controller_status_t* status) noexcept;
+  const CycleTrace& trace() const noexcept { return trace_; }
 
  private:
-  void run(int law, bool from_here) noexcept;
+  void enter(Activity activity) noexcept;
+  void switch_law(GoalType from, bool from_here) noexcept;
+  void evaluate_model(Potential potential, const VectorJ& tau_constant) noexcept;
+  void evaluate_and_observe(Potential potential) noexcept;
+  bool point_depends_on_goal() const noexcept;
+  PositionFeedback position() const noexcept;
   bool due(Term term) const noexcept;
-  Position position() const noexcept;
-  void look(StaticForm form) noexcept;
-  void match_goals() noexcept;
-  const char* refuse_stiffness(const LawEntry& wanted) const noexcept;
-  void refresh_gains() noexcept;
-  void keep_within_springs() noexcept;
-  void draw_from_tank() noexcept;
-  void keep_passive() noexcept;
-  void forget_energy() noexcept;
-  VectorJ friction() const noexcept;
-  VectorJ null_space() noexcept;
-  void describe_tip(controller_status_t* status) const noexcept;
-  void describe_parts(controller_status_t* status) const noexcept;
   LawInputs inputs(double dt_s) const noexcept;
-  const LawEntry& entry() const noexcept { return laws()[static_cast<std::size_t>(running_)]; }
+  TaskRows last_rows() const noexcept { return TaskRows(gains_.effective().K_x); }
+  void add_model_torque(const LawEntry& law) noexcept;
+  VectorJ null_space_torque() noexcept;
+  void trace_result() noexcept;
+  VectorJ friction_torque(GoalType type) const noexcept;
 
-  ArmModel model_;
-  ArmState state_;  // as measured
-  ArmState seen_;   // on the side the law looks at; the terms are evaluated there
-  ArmTerms terms_;
-  unsigned sensors_;
-  ArmSide side_;
-  std::vector<std::unique_ptr<Law>> laws_;  // by registry index; empty where the arm lacks a sensor
-  int hold_;
-  int selected_;
-  int running_;
-  bool holding_ = true;
-  bool resting_ = true;
-  bool solved_ = true;
-  bool softened_ = false;  // K_x, to what the springs allow
+  const joint_state_t* message_ = nullptr;  // of this cycle, until the step is over
+  ArmState state_;
+  ArmView arm_;
+  LawBank laws_;
+  GoalTracker goals_;
+  GainScheduler gains_;
+  Observers observers_;
+  PassivityGuard guard_;
+  TorqueOutput output_;
+  CycleTrace trace_;
 
-  GoalGenerator goals_;
-  Goal goal_;  // of this cycle: tip and joints matched
-  InverseKinematics inverse_kinematics_;
-  GainRamp gains_;
-  Gains active_;  // of this cycle, in base axes
-  Gains asked_;   // where a gains message is read into
-  Estimation estimation_;
-  EnergyTank tank_;
-  PassivityObserver<Eigen::Vector3d> passivity_;
-  Eigen::Vector3d F_on_its_way_ = Eigen::Vector3d::Zero();
-  double dissipated_W_ = 0.0;  // by the law's damper in the cycle before
-  TaskRows rows_;
-  std::int64_t cycles_ = 0;
-  TorqueBlend blend_;
-  bool switched_ = false;
-  JointLimits limits_;
-  PreloadServo preload_;
-  VectorJ null_limit_;
-  VectorJ none_;
-
-  LawOutput law_;
-  VectorJ tau_null_;
-  VectorJ tau_gravity_;
-  VectorJ tau_coriolis_;
-  VectorJ tau_friction_;
+  GainsCheck check_;
+  Gains requested_;  // where a gains message is read into
   VectorJ gravity_;
-  std::int32_t limits_active_ = 0;
+  VectorJ zero_;
+  VectorJ null_limit_;
+  std::int64_t cycles_ = 0;
+  Activity last_activity_ = Activity::kStandby;
+  TaskRows last_null_rows_;
+  bool last_solved_ = true;
 };
 
 }  // namespace limber::controller

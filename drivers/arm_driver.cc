@@ -3,254 +3,196 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/arm_driver_impl.h"
+#include "drivers/bus_load.h"
 #include "drivers/driver_setup.h"
+#include "lcmtypes/channels.h"
 
 namespace limber {
 namespace {
 
-constexpr double kSettling_s = 0.1;  // HOLD: damping before the position is held
 constexpr double kShutDownBraking_s = 0.3;
-constexpr int kFramesPerPoll = 16;  // batches: a flooded bus must not keep the cycle
+constexpr int kBatchesPerPoll = 16;  // a flooded bus must not keep the cycle
+
+std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& buses,
+                             std::int64_t session) {
+  check_robot(robot, buses.size(), session);
+  std::vector<BusEnd> ends;
+  for (std::size_t b = 0; b < buses.size(); ++b)
+    ends.emplace_back(buses[b], robot.buses[b], checked_bus_load(robot, static_cast<int>(b)));
+  return ends;
+}
 
 }  // namespace
 
-ArmDriver::Impl::Impl(const Robot& robot, const std::vector<CanBus*>& can,
-                      const ArmDriverOptions& options)
-    : rate_hz(robot.rate_hz),
-      drive_watchdog_cycles(drive_watchdog_cycles_of(robot)),
-      lockstep(options.lockstep),
-      bridged_cycles(options.bridged_cycles),
-      session(options.session),
-      gate(gate_limits(robot, options.session)) {
-  for (std::size_t b = 0; b < can.size(); ++b) {
-    buses.emplace_back(can[b], robot.buses[b]);
-    load_predicted.push_back(checked_bus_load(robot, static_cast<int>(b)));
-  }
-  for (const JointConfig& joint : robot.joints) joints.emplace_back(robot, joint, bridged_cycles);
-  for (const ArmJoint& joint : joints) {
-    for (const Drive& motor : joint.motors()) {
-      CanFrame frame;
-      if (motor.link().needs_bus_frame(&frame))
-        buses[static_cast<std::size_t>(motor.bus())].end_with(frame);
-    }
-  }
-  if (robot.has_tip_sensor) tip_sensor.emplace(robot.tip_sensor, bridged_cycles);
-  published.session = session;
-  published.period_ns = std::llround(1e9 / rate_hz);
-  published.num_joints = static_cast<std::int8_t>(joints.size());
-}
-
-ArmDriver::ArmDriver(const Robot& robot, std::vector<CanBus*> buses,
-                     const ArmDriverOptions& options) {
-  check_robot(robot, buses.size(), options.session);
-  impl_ = std::make_unique<Impl>(robot, buses, options);
-}
-
-ArmDriver::~ArmDriver() = default;
-
-void ArmDriver::Impl::apply(DriveEvent event, int joint) noexcept {
-  const DriveState from = state();
-  if (!machine.apply(event, joint)) return;
-  cycles_in_state = 0;
-  for (std::size_t i = 0; i < joints.size(); ++i)
-    joints[i].enter(state(), {tau_gravity[i], torque[i].preload});
-  if (in(DriveState::kOn) && from == DriveState::kEnabling) {
-    torque.fill({});
-    torque_present.fill({});
-  }
+ArmDriver::ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses,
+                     const ArmDriverOptions& options)
+    : rate_hz_(robot.rate_hz),
+      lockstep_(options.lockstep),
+      session_(options.session),
+      buses_(bus_ends(robot, buses, options.session)),
+      drives_(robot, options.bridged_cycles),
+      supervisor_(robot),
+      gate_(gate_limits(robot, options.session)),
+      controller_watch_(options.bridged_cycles),
+      window_ns_(reply_window_ns_of(robot, options.lockstep)),
+      least_round_trip_ns_(options.lockstep ? least_round_trip_ns_of(robot) : 0) {
+  drives_.add_bus_frames(&buses_);
+  if (robot.has_tip_sensor) tip_sensor_.emplace(robot.tip_sensor, options.bridged_cycles);
+  state_.session = session_;
+  state_.period_ns = std::llround(1e9 / rate_hz_);
+  state_.num_joints = static_cast<std::int8_t>(robot.size());
 }
 
 // --- 1. transmit ---------------------------------------------------------------------------------
 
-void ArmDriver::transmit(std::int64_t time_ns) noexcept {
-  impl_->take_frames(/*late=*/true);
-  ++impl_->cycle;
-  impl_->time_ns = time_ns;
-  impl_->gate.next_cycle();
-  impl_->watch_controller();
-  impl_->watch_shut_down();
-  impl_->send_commands();
-}
+void ArmDriver::transmit(std::int64_t time_ns, std::int64_t stamp_ns) noexcept {
+  drives_.begin_cycle();
+  if (tip_sensor_) tip_sensor_->begin_cycle();
+  ++cycle_;
+  time_ns_ = time_ns;
+  stamp_ns_ = stamp_ns;
+  receive(/*before_commands=*/true);
+  gate_.next_cycle();
+  controller_watch_.next_cycle(gate_.leased());
+  if (controller_watch_.lost()) drives_.apply(DriveEvent::kControllerLost);
+  if (shutting_down_) advance_shut_down();
 
-void ArmDriver::Impl::watch_controller() noexcept {
-  unheard_cycles = heard ? 0 : unheard_cycles + 1;
-  if (!heard && gate.memory().controller != 0) ++missing;
-  heard = false;
-  if (unheard_cycles > bridged_cycles) apply(DriveEvent::kControllerLost);
-}
-
-void ArmDriver::Impl::watch_shut_down() noexcept {
-  if (!shutting_down) return;
-  apply(DriveEvent::kShutDown);
-  if (cycles_in_state >= cycles_of(kShutDownBraking_s, rate_hz)) apply(DriveEvent::kRequestOff);
-}
-
-void ArmDriver::Impl::send_commands() noexcept {
-  const bool settling = cycles_in_state < cycles_of(kSettling_s, rate_hz);
-  for (BusEnd& bus : buses) bus.clear();
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    std::vector<Drive>& motors = joints[i].motors();
-    for (std::size_t m = 0; m < motors.size(); ++m) {
-      const double tau = joints[i].share(torque[i], m);
-      buses[static_cast<std::size_t>(motors[m].bus())].add(
-          motors[m].next_frame(state(), tau, settling));
-      motors[m].begin_cycle();
-    }
+  for (BusEnd& bus : buses_) bus.clear();
+  drives_.add_commands(&buses_);
+  if (tip_sensor_) {
+    buses_[tip_sensor_->bus()].add(tip_sensor_->next_frame());
   }
-  if (tip_sensor) {
-    buses[static_cast<std::size_t>(tip_sensor->bus())].add(tip_sensor->next_frame());
-    tip_sensor->begin_cycle();
-  }
-  ++cycles_in_state;
-  if (in(DriveState::kOn)) torque_present = torque;
-  for (BusEnd& bus : buses) {
+  for (BusEnd& bus : buses_) {
     bus.send();
-    bus.expect_tock(cycle);
-    if (lockstep) bus.send_tick();
+    bus.expect_tock(cycle_);
   }
+  if (lockstep_) repeat_tick();
+}
+
+void ArmDriver::advance_shut_down() noexcept {
+  drives_.apply(DriveEvent::kShutDown);
+  if (drives_.cycles_in_state() >= cycles_of(kShutDownBraking_s, rate_hz_))
+    drives_.apply(DriveEvent::kRequestOff);
 }
 
 void ArmDriver::repeat_tick() noexcept {
-  for (BusEnd& bus : impl_->buses) {
+  for (BusEnd& bus : buses_) {
     if (!bus.tocked()) bus.send_tick();
   }
 }
 
 // --- 2. poll -------------------------------------------------------------------------------------
 
-void ArmDriver::poll() noexcept { impl_->take_frames(/*late=*/false); }
+void ArmDriver::poll() noexcept { receive(/*before_commands=*/false); }
 
-void ArmDriver::Impl::take_frames(bool late) noexcept {
-  for (std::size_t b = 0; b < buses.size(); ++b) {
-    for (int batch = 0; batch < kFramesPerPoll; ++batch) {
-      const std::span<const CanFrame> frames = buses[b].receive();
-      for (const CanFrame& frame : frames) take_frame(static_cast<int>(b), frame, late);
+// A frame is late if it is here before this cycle's commands are, or too soon after them.
+void ArmDriver::receive(bool before_commands) noexcept {
+  const std::int64_t soonest_ns = stamp_ns_ + least_round_trip_ns_;
+  const std::int64_t until_ns = before_commands ? stamp_ns_ : stamp_ns_ + window_ns_;
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    for (int batch = 0; batch < kBatchesPerPoll; ++batch) {
+      const std::span<const CanFrame> frames = buses_[b].receive(until_ns);
+      for (const CanFrame& frame : frames) {
+        const bool too_soon = frame.timestamp_ns != 0 && frame.timestamp_ns < soonest_ns;
+        route(b, frame, before_commands || too_soon);
+      }
       if (frames.empty()) break;
     }
   }
 }
 
-void ArmDriver::Impl::take_frame(int bus, const CanFrame& frame, bool late) noexcept {
-  BusEnd& end = buses[static_cast<std::size_t>(bus)];
-  if (frame.error || end.take_lockstep(frame)) return;
-  if (tip_sensor && tip_sensor->is_mine(bus, frame)) {
-    tip_sensor->receive(frame, late);
-    return;
+void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcept {
+  if (frame.error || buses_[bus].take_lockstep(frame)) return;
+  if (tip_sensor_ && tip_sensor_->is_mine(bus, frame)) {
+    tip_sensor_->receive(frame, late);
+  } else if (!drives_.receive(bus, frame, late)) {
+    buses_[bus].count_foreign();
+    // This driver's own frames do not come back to it.
+    if (drives_.is_command(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
   }
-  Drive* drive = sender_of(bus, frame);
-  if (drive == nullptr) {
-    end.count_foreign();
-  } else if (late) {
-    drive->receive_late(state(), frame);
-  } else {
-    drive->receive(state(), frame);
-  }
-}
-
-Drive* ArmDriver::Impl::sender_of(int bus, const CanFrame& frame) noexcept {
-  for (ArmJoint& joint : joints) {
-    for (Drive& motor : joint.motors()) {
-      if (motor.bus() == bus && motor.link().is_mine(frame)) return &motor;
-    }
-  }
-  return nullptr;
 }
 
 bool ArmDriver::complete() const noexcept {
-  if (impl_->lockstep) {
-    return std::all_of(impl_->buses.begin(), impl_->buses.end(),
-                       [](const BusEnd& bus) { return bus.tocked(); });
-  }
-  return impl_->all_joints(&ArmJoint::answered) &&
-         (!impl_->tip_sensor || impl_->tip_sensor->settled());
+  if (lockstep_) return std::ranges::all_of(buses_, &BusEnd::tocked);
+  return drives_.all_answered() && (!tip_sensor_ || tip_sensor_->settled());
 }
 
 // --- 3. finish_cycle -----------------------------------------------------------------------------
 
 const joint_state_t& ArmDriver::finish_cycle() noexcept {
-  impl_->supervise();
-  impl_->describe_state();
-  return impl_->published;
+  drives_.close_cycle(cycle_);
+  if (tip_sensor_) tip_sensor_->close_cycle();
+  supervisor_.check(buses_, &drives_);
+  drives_.update_torque_present();
+  if ((cycle_ + 1) % channels::kDriverStatusEvery == 0) {
+    for (BusEnd& bus : buses_) bus.close_interval(channels::kDriverStatusEvery / rate_hz_);
+  }
+  state_.seq = cycle_;
+  state_.time_ns = time_ns_;
+  drives_.write_state(&state_);
+  if (tip_sensor_) tip_sensor_->write_state(&state_);
+  return state_;
 }
 
 // --- 4. accept -----------------------------------------------------------------------------------
 
-int ArmDriver::accept(const joint_torque_t& command) noexcept {
-  Impl& driver = *impl_;
-  const GateSituation situation = driver.situation();
-  const int verdict = driver.gate.judge(command, situation);
-  ++driver.verdicts[static_cast<std::size_t>(verdict)];
+int ArmDriver::accept(const joint_command_t& command) noexcept {
+  const int verdict = gate_.judge(command, situation());
+  controller_watch_.note(verdict);
   if (verdict == driver_status_t::VERDICT_ACCEPTED) {
-    driver.obey(command, situation.followed);
-  } else if (driver.gate.refused_too_often()) {
-    driver.apply(DriveEvent::kCommandRefused);
+    drives_.set_gravity(command);
+    if (!shutting_down_) drives_.follow(command);
+  } else if (gate_.refused_too_often()) {
+    drives_.apply(DriveEvent::kCommandRefused);
   }
   return verdict;
 }
 
-GateSituation ArmDriver::Impl::situation() const noexcept {
-  const bool held = in(DriveState::kHold) || in(DriveState::kDamp);
+GateSituation ArmDriver::situation() const noexcept {
   GateSituation now;
-  now.state_seq = cycle;
-  now.powered = machine.powered();
-  now.followed = in(DriveState::kOn) || (held && machine.acknowledged());
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    now.torque_present[i] = torque_present[i].tau;
-    now.preload_present[i] = torque_present[i].preload;
-  }
-  std::copy_n(published.v, kMaxJoints, now.velocity.begin());
+  now.state_seq = cycle_;
+  drives_.write_situation(&now);
+  std::copy_n(state_.v, kMaxJoints, now.velocity.begin());
   return now;
 }
 
-void ArmDriver::Impl::obey(const joint_torque_t& command, bool followed) noexcept {
-  heard = true;
-  std::copy_n(command.tau_gravity, kMaxJoints, tau_gravity.begin());
-  if (shutting_down) return;
-  switch (command.request) {
-    case joint_torque_t::REQUEST_OFF:
-      apply(DriveEvent::kRequestOff);
-      break;
-    case joint_torque_t::REQUEST_HOLD:
-      apply(DriveEvent::kRequestHold);
-      break;
-    case joint_torque_t::REQUEST_ON:
-    case joint_torque_t::REQUEST_ACKNOWLEDGE:
-      if (followed && all_joints(&ArmJoint::healthy)) {
-        apply(DriveEvent::kTakenOver);
-      } else if (command.request == joint_torque_t::REQUEST_ACKNOWLEDGE) {
-        acknowledge();
-      } else if (all_joints(&ArmJoint::ready_to_enable)) {
-        apply(DriveEvent::kRequestOn);
-      }
-      break;
-    default:
-      break;
+std::uint16_t ArmDriver::fault_detail() const noexcept {
+  if (state_.fault == joint_state_t::FAULT_DRIVE_ERROR && state_.fault_joint >= 0)
+    return static_cast<std::uint16_t>(state_.drive_status[state_.fault_joint]);
+  if (state_.fault != joint_state_t::FAULT_BUS) return 0;
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    if (buses_[b].lost()) return static_cast<std::uint16_t>(b << 8U | buses_[b].state());
   }
-  if (!in(DriveState::kOn)) return;
-  for (std::size_t i = 0; i < joints.size(); ++i)
-    torque[i] = {command.tau[i], command.tau_preload[i]};
+  return 0;
 }
 
-void ArmDriver::Impl::acknowledge() noexcept {
-  const bool held = in(DriveState::kHold) || in(DriveState::kDamp);
-  if (held && !all_joints(&ArmJoint::healthy)) return;
-  for (ArmJoint& joint : joints) joint.acknowledge();
-  apply(DriveEvent::kAcknowledge);
+std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) const {
+  if (detail == 0) return "";
+  if (fault == joint_state_t::FAULT_DRIVE_ERROR)
+    return drives_.status_text(static_cast<std::size_t>(joint), detail);
+  const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
+  switch (detail & 0xFFU) {
+    case driver_status_t::BUS_OFF:
+      return name + " is bus-off; check wiring, termination and bit rate";
+    case driver_status_t::BUS_LINK_DOWN:
+      return name + ": the interface is down or gone; was the adapter unplugged?";
+    default:
+      return name + ": the transmit queue is full (ENOBUFS); does any motor acknowledge frames?";
+  }
 }
 
-// --- requests from outside -----------------------------------------------------------------------
+// --- status --------------------------------------------------------------------------------------
 
-void ArmDriver::request_hold(int fault) noexcept {
-  impl_->apply(fault == joint_state_t::FAULT_OVERRUN ? DriveEvent::kOverrun
-                                                     : DriveEvent::kHoldAsked);
-}
-
-void ArmDriver::request_shut_down() noexcept { impl_->shutting_down = true; }
-
-bool ArmDriver::shut_down() const noexcept {
-  return impl_->shutting_down && (impl_->in(DriveState::kOff) || impl_->in(DriveState::kFault)) &&
-         impl_->all_joints(&ArmJoint::disabled);
+void ArmDriver::fill_status(driver_status_t* status) const noexcept {
+  status->time_ns = time_ns_;
+  status->session = session_;
+  status->lockstep = lockstep_ ? 1 : 0;
+  status->cycles = cycle_ + 1;
+  controller_watch_.write_status(status);
+  drives_.write_status(status);
+  if (tip_sensor_) tip_sensor_->write_status(status);
+  status->num_buses = static_cast<std::int8_t>(buses_.size());
+  for (std::size_t b = 0; b < buses_.size(); ++b) buses_[b].write_status(b, status);
 }
 
 }  // namespace limber

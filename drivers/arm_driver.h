@@ -1,23 +1,30 @@
-// The driver's cycle without its loop: what goes to the motors, what comes back, who is obeyed. The
-// process (drivers/main.cc) and the lab call the same five steps in the same order.
+// The driver's cycle without its loop: commands to the motors, their replies, and the check of the
+// controller's answer. The process (drivers/processes) and the lab call the same steps in the same
+// order.
 #pragma once
 
 #include <cstdint>
 #include <limber/driver_status_t.hpp>
+#include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
-#include <limber/joint_torque_t.hpp>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "drivers/arm_drives.h"
 #include "drivers/can/can_bus.h"
-#include "robots/robot.h"
+#include "drivers/controller_watch.h"
+#include "drivers/drive/bus_end.h"
+#include "drivers/drive/tip_sensor_link.h"
+#include "drivers/drive_supervisor.h"
+#include "drivers/gate/torque_gate.h"
+#include "robots/loader/robot.h"
 
 namespace limber {
 
 struct ArmDriverOptions {
   std::int64_t session = 1;  ///< random in realtime, from the seed in lock step; never 0
-  bool lockstep = false;     ///< end each cycle with a TICK, know it complete by the TOCK
+  bool lockstep = false;     ///< each cycle ends with a TICK and is complete at the TOCK
   /// So many cycles in a row may go without an answer of the controller, or of a motor; the next
   /// one trips.
   int bridged_cycles = 2;
@@ -30,14 +37,14 @@ struct ArmDriverOptions {
 class ArmDriver {
  public:
   /// `buses` in the order of robot.buses; they outlive the driver. Throws ConfigError: no drives,
-  /// or a predicted bus load above 90 % at robot.rate_hz.
-  ArmDriver(const Robot& robot, std::vector<CanBus*> buses, const ArmDriverOptions& options);
-  ~ArmDriver();
+  /// or replies that cannot come in time at robot.rate_hz (checked_bus_load).
+  ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses, const ArmDriverOptions& options);
 
-  /// 1. Counts stragglers of the last cycle as late, then sends one frame to every motor (and the
-  /// TICK).
-  void transmit(std::int64_t time_ns) noexcept;
-  /// 2. Takes the replies that have arrived.
+  /// 1. Takes what came after the end of the last cycle, one cycle old, then sends one frame to
+  /// every motor (and the TICK). `time_ns`: arm time of this cycle; `stamp_ns`: the same in the
+  /// clock of the frames' stamps.
+  void transmit(std::int64_t time_ns, std::int64_t stamp_ns) noexcept;
+  /// 2. Reads the replies that have arrived.
   void poll() noexcept;
   /// True when every joint has answered, and the tip sensor, unless it has been silent for longer
   /// than is bridged (in lock step: when every bus has sent its TOCK).
@@ -45,33 +52,68 @@ class ArmDriver {
   /// Lock step, first cycle or a lost datagram: sends the TICK again. The simulator answers without
   /// advancing twice.
   void repeat_tick() noexcept;
-  /// 3. Closes the cycle: missing replies, watchdogs, drive state machine. The returned state is
-  /// valid until transmit().
+  /// No reply is faster than this: what comes sooner after the start of a cycle answers the command
+  /// before. In lock step it is computed; in real time it is 0 until it has been measured.
+  void set_least_round_trip(std::int64_t time_ns) noexcept { least_round_trip_ns_ = time_ns; }
+  /// After the start of a cycle, ns: what comes later belongs to the next one.
+  std::int64_t reply_window_ns() const noexcept { return window_ns_; }
+  /// 3. Closes the cycle: missing replies, watchdogs, drive states. The returned state is valid
+  /// until the next call.
   const joint_state_t& finish_cycle() noexcept;
-  /// 4. Judges an answer; returns VERDICT_*. Only an accepted one has an effect: it is sent by the
-  /// next transmit().
-  int accept(const joint_torque_t& command) noexcept;
+  /// 4. Judges an answer; returns VERDICT_* of driver_status_t. Only an accepted one has an effect:
+  /// the next transmit() sends it.
+  int accept(const joint_command_t& command) noexcept;
 
-  /// Asks for the arm to be held by the drives themselves, whatever the controller says (operator,
-  /// overrun).
-  void request_hold(int fault) noexcept;
+  /// Too many cycles took longer than their period: the drives hold the arm by themselves.
+  void report_overruns() noexcept { drives_.apply(DriveEvent::kOverrun); }
 
-  /// Ends the session for good: drives that are enabled brake for 0.3 s, then are disabled; the
-  /// controller is not heard any more. Keep cycling until shut_down() (true when every drive that
+  /// Ends the session for good: drives that are enabled brake for 0.3 s, then are disabled, and
+  /// commands have no effect any more. Keep cycling until shut_down() (true when every drive that
   /// answers reports disabled).
-  void request_shut_down() noexcept;
-  bool shut_down() const noexcept;
+  void request_shut_down() noexcept { shutting_down_ = true; }
+  bool shut_down() const noexcept { return shutting_down_ && drives_.all_off(); }
 
   /// The drive whose start-up dialogue failed, in words ("joint3: register 23 is 10, expected 28");
-  /// empty if none did. Allocates: for messages, outside the cycle.
-  std::string configuration_problem() const;
+  /// empty if none did. Allocates: for messages, not for the cycle.
+  std::string configuration_problem() const { return drives_.configuration_problem(); }
 
-  /// Counters and states; timing fields are left for the process to fill.
+  /// What the start-up found missing in drives that may miss it ("joint3: object 1400h:05 is
+  /// missing: ..."); a line each. Allocates likewise.
+  std::vector<std::string> configuration_warnings() const {
+    return drives_.configuration_warnings();
+  }
+  /// What lies behind the fault of the last state: of a drive's error its drive_status, of a lost
+  /// bus its number << 8 and BUS_*; else 0. Allowed in the cycle.
+  std::uint16_t fault_detail() const noexcept;
+  /// The same in words; "" for 0. Allocates: for messages.
+  std::string fault_text(int fault, int joint, std::uint16_t detail) const;
+
+  /// Counters and states; the timing fields are left as they are.
   void fill_status(driver_status_t* status) const noexcept;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  void receive(bool before_commands) noexcept;
+  void route(std::size_t bus, const CanFrame& frame, bool late) noexcept;
+  void advance_shut_down() noexcept;
+  GateSituation situation() const noexcept;
+
+  double rate_hz_;
+  bool lockstep_;
+  std::int64_t session_;
+  std::vector<BusEnd> buses_;
+  ArmDrives drives_;
+  std::optional<TipSensorLink> tip_sensor_;
+  DriveSupervisor supervisor_;
+  TorqueGate gate_;
+  ControllerWatch controller_watch_;
+
+  std::int64_t window_ns_;
+  std::int64_t least_round_trip_ns_;
+  std::int64_t cycle_ = -1;
+  std::int64_t time_ns_ = 0;
+  std::int64_t stamp_ns_ = 0;  ///< start of the cycle, in the clock of the frames' stamps
+  bool shutting_down_ = false;
+  joint_state_t state_{};  ///< as published last
 };
 
 }  // namespace limber

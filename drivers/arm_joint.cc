@@ -1,9 +1,8 @@
 #include "drivers/arm_joint.h"
 
 #include <cmath>
-#include <limber/joint_state_t.hpp>
 
-#include "drivers/motor_view.h"
+#include "drivers/drive/motor_view.h"
 
 namespace limber {
 namespace {
@@ -47,7 +46,7 @@ void ArmJoint::acknowledge() noexcept {
   for (Drive& motor : motors_) motor.acknowledge();
 }
 
-// --- what is known -------------------------------------------------------------------------------
+// --- measured ------------------------------------------------------------------------------------
 
 double ArmJoint::q() const noexcept { return joint_.link_encoder.present ? first().q() : theta(); }
 
@@ -83,16 +82,6 @@ JointTorque ArmJoint::applied() const noexcept {
   return {one - other, one + other};
 }
 
-double ArmJoint::current_A() const noexcept {
-  const double one = first().current_A();
-  const double other = second().current_A();
-  return std::abs(one) >= std::abs(other) ? one : other;
-}
-
-double ArmJoint::temperature_degC() const noexcept {
-  return std::max(first().temperature_degC(), second().temperature_degC());
-}
-
 std::int32_t ArmJoint::age_cycles() const noexcept {
   return std::max(first().age_cycles(), second().age_cycles());
 }
@@ -100,7 +89,7 @@ std::int32_t ArmJoint::age_cycles() const noexcept {
 std::int32_t ArmJoint::flags() const noexcept {
   using State = joint_state_t;
   return (fresh() ? State::JOINT_FRESH : 0) | (enabled() ? State::JOINT_ENABLED : 0) |
-         (any(&Drive::failed) ? State::JOINT_DRIVE_ERROR : 0) |
+         (std::ranges::any_of(motors_, &Drive::failed) ? State::JOINT_DRIVE_ERROR : 0) |
          (out_of_range() ? State::JOINT_OUT_OF_RANGE : 0) |
          (joint_.link_encoder.present ? State::JOINT_LINK_ENCODER : 0) |
          (joint_.torque_sensor.present ? State::JOINT_TORQUE_SENSOR : 0) |
@@ -121,6 +110,38 @@ bool ArmJoint::out_of_range() const noexcept {
 
 bool ArmJoint::ready_to_enable() const noexcept {
   return fresh() && !out_of_range() && fast_cycles_ == 0;
+}
+
+// --- messages ------------------------------------------------------------------------------------
+
+void ArmJoint::write_state(std::size_t i, joint_state_t* state) const noexcept {
+  const double one_A = first().current_A();
+  const double other_A = second().current_A();
+  state->q[i] = q();
+  state->v[i] = v();
+  state->theta[i] = theta();
+  state->theta_dot[i] = theta_dot();
+  state->preload[i] = static_cast<float>(preload());
+  state->preload_dot[i] = static_cast<float>(preload_dot());
+  state->tau[i] = tau();
+  state->tau_applied[i] = applied().tau;
+  state->current_A[i] = static_cast<float>(std::abs(one_A) >= std::abs(other_A) ? one_A : other_A);
+  state->temperature_degC[i] =
+      static_cast<float>(std::max(first().temperature_degC(), second().temperature_degC()));
+  const auto failed = std::ranges::find_if(motors_, &Drive::failed);
+  const Drive& told = failed == motors_.end() ? motors_.front() : *failed;
+  state->drive_status[i] = static_cast<std::int16_t>(told.link().status());
+  state->age_cycles[i] = age_cycles();
+  state->joint_flags[i] = flags();
+}
+
+void ArmJoint::write_status(std::size_t i, driver_status_t* status) const noexcept {
+  status->replies_late[i] = status->replies_lost[i] = status->replies_invalid[i] = 0;
+  for (const Drive& motor : motors_) {
+    status->replies_late[i] += motor.replies_late();
+    status->replies_lost[i] += motor.replies_lost();
+    status->replies_invalid[i] += motor.replies_invalid();
+  }
 }
 
 }  // namespace limber

@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limber/driver_status_t.hpp>
+#include <limber/joint_state_t.hpp>
 #include <vector>
 
-#include "drivers/drive.h"
-#include "robots/robot.h"
+#include "drivers/drive/drive.h"
+#include "robots/loader/robot.h"
 
 namespace limber {
 
@@ -40,13 +42,13 @@ class ArmJoint {
   const std::vector<Drive>& motors() const noexcept { return motors_; }
   /// The part of a torque that motor 0 or 1 makes.
   double share(const JointTorque& torque, std::size_t motor) const noexcept;
-  /// The arm's state changed; `held` is what the motors go on making in HOLD.
+  /// The arm's state changed; `held` is what the motors go on making in FALLBACK.
   void enter(DriveState state, const JointTorque& held) noexcept;
   void close_cycle(DriveState state, std::int64_t cycle) noexcept;
-  /// The operator has seen it: the watchdogs start afresh.
+  /// The operator has acknowledged the fault: the watchdogs start afresh.
   void acknowledge() noexcept;
 
-  // --- what is known --------------------------------------------------------------------------
+  // --- measured -------------------------------------------------------------------------------
 
   double q() const noexcept;             ///< rad; without link encoder the motor's, of two motors e
   double v() const noexcept;             ///< rad/s
@@ -55,20 +57,23 @@ class ArmJoint {
   double preload() const noexcept;       ///< rad; 0 for one motor
   double preload_dot() const noexcept;   ///< rad/s
   double tau() const noexcept;           ///< N m, on the link if there is a torque sensor
-  JointTorque applied() const noexcept;  ///< what the drives were told and obeyed
-  double current_A() const noexcept;     ///< the greater one
-  double temperature_degC() const noexcept;  ///< the higher one
-  std::int32_t age_cycles() const noexcept;  ///< the greater one
-  std::int32_t flags() const noexcept;       ///< JOINT_* of joint_state_t
+  JointTorque applied() const noexcept;  ///< what the drives made of the last command
 
-  bool answered() const noexcept { return all(&Drive::answered); }
-  bool configured() const noexcept { return all(&Drive::configured); }
-  bool configuration_wrong() const noexcept { return any(&Drive::configuration_wrong); }
-  bool enabling_done() const noexcept { return all(&Drive::enabling_done); }
-  bool enabled() const noexcept { return all(&Drive::enabled); }
-  bool disabled() const noexcept { return all(&Drive::disabled); }
-  bool lost() const noexcept { return any(&Drive::lost); }
-  /// Cycles since one of its motors was last heard.
+  bool answered() const noexcept { return std::ranges::all_of(motors_, &Drive::answered); }
+  bool configured() const noexcept { return std::ranges::all_of(motors_, &Drive::configured); }
+  bool configuration_wrong() const noexcept {
+    return std::ranges::any_of(motors_, &Drive::configuration_wrong);
+  }
+  bool enabling_done() const noexcept {
+    return std::ranges::all_of(motors_, &Drive::enabling_done);
+  }
+  bool enabled() const noexcept { return std::ranges::all_of(motors_, &Drive::enabled); }
+  bool disabled() const noexcept { return std::ranges::none_of(motors_, &Drive::enabled); }
+  bool lost() const noexcept { return std::ranges::any_of(motors_, &Drive::lost); }
+  bool often_invalid() const noexcept {
+    return std::ranges::any_of(motors_, &Drive::often_invalid);
+  }
+  /// Cycles since one of its motors last replied.
   std::int64_t silent_cycles() const noexcept;
   /// 0.02 rad beyond a position limit; of two motors each also beyond what it may wind up.
   bool out_of_range() const noexcept;
@@ -79,26 +84,14 @@ class ArmJoint {
   /// The same but for being enabled.
   bool ready_to_enable() const noexcept;
 
-  // --- counts, of both motors -----------------------------------------------------------------
+  // --- messages: the fields of joint i ---------------------------------------------------------
 
-  std::int32_t replies_late() const noexcept { return sum(&Drive::replies_late); }
-  std::int32_t replies_lost() const noexcept { return sum(&Drive::replies_lost); }
-  std::int32_t replies_invalid() const noexcept { return sum(&Drive::replies_invalid); }
+  void write_state(std::size_t i, joint_state_t* state) const noexcept;
+  void write_status(std::size_t i, driver_status_t* status) const noexcept;
 
  private:
-  bool all(bool (Drive::*test)() const noexcept) const noexcept {
-    return std::all_of(motors_.begin(), motors_.end(),
-                       [test](const Drive& motor) { return (motor.*test)(); });
-  }
-  bool any(bool (Drive::*test)() const noexcept) const noexcept {
-    return std::any_of(motors_.begin(), motors_.end(),
-                       [test](const Drive& motor) { return (motor.*test)(); });
-  }
-  std::int32_t sum(std::int32_t (Drive::*count)() const noexcept) const noexcept {
-    std::int32_t total = 0;
-    for (const Drive& motor : motors_) total += (motor.*count)();
-    return total;
-  }
+  std::int32_t age_cycles() const noexcept;
+  std::int32_t flags() const noexcept;
   bool two_motors() const noexcept { return motors_.size() == 2; }
   bool fresh() const noexcept { return age_cycles() == 0; }
   const JointLink& first() const noexcept { return motors_.front().link(); }

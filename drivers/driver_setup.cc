@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "common/config_error.h"
-#include "drivers/can/bus_load.h"
-#include "drivers/motor_view.h"
+#include "drivers/bus_load.h"
+#include "drivers/drive/motor_view.h"
 
 namespace limber {
 namespace {
 
-constexpr double kGreatestLoad = 0.9;
 constexpr double kLease_s = 0.25;
 constexpr double kRefusals_s = 0.1;
 constexpr double kPowerSlack = 1.25;
@@ -27,8 +26,8 @@ int cycles_of(double seconds, double rate_hz) noexcept {
 int drive_watchdog_cycles_of(const Robot& robot) noexcept {
   double longest_s = 0.0;
   for (const JointConfig& joint : robot.joints) {
-    longest_s = std::max(longest_s, joint.drive.watchdog_s);
-    if (joint.has_antagonist) longest_s = std::max(longest_s, joint.antagonist.watchdog_s);
+    for (int motor = 0; motor < joint.motors(); ++motor)
+      longest_s = std::max(longest_s, joint.motor(motor).watchdog_s);
   }
   return cycles_of(longest_s, robot.rate_hz);
 }
@@ -49,15 +48,18 @@ void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t sessio
   if (session == 0) refuse("session", "0 names no session");
 }
 
-double checked_bus_load(const Robot& robot, int bus) {
-  const double load = predicted_bus_load(robot, bus);
-  if (load <= kGreatestLoad) return load;
-  throw ConfigError::at(
-      robot.name, 0, "buses." + robot.buses[static_cast<std::size_t>(bus)].name,
-      fmt::format("{:.0f} Hz would take {:.0f} % of the wire, at most {:.0f} % are allowed; the "
-                  "highest rate is {:.0f} Hz (or use CAN-FD, or spread the joints over more buses)",
-                  robot.rate_hz, 100.0 * load, 100.0 * kGreatestLoad,
-                  std::floor(robot.rate_hz * kGreatestLoad / load)));
+std::int64_t reply_window_ns_of(const Robot& robot, bool lockstep) noexcept {
+  const bool timeless = !lockstep && robot.on_virtual_buses();
+  return std::llround(1e9 * (timeless ? 0.6 / robot.rate_hz : reply_window_s(robot)));
+}
+
+std::int64_t least_round_trip_ns_of(const Robot& robot) noexcept {
+  double least_s = 1.0;
+  for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus) {
+    const double bus_s = least_round_trip_s(robot, bus);
+    if (bus_s > 0.0) least_s = std::min(least_s, bus_s);
+  }
+  return std::llround(1e9 * least_s);
 }
 
 GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
@@ -65,7 +67,7 @@ GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
   limits.n = robot.size();
   limits.session = session;
   limits.lease_cycles = cycles_of(kLease_s, robot.rate_hz);
-  // The controller shapes at the limit itself; a noisy velocity shall not trip the arm.
+  // The controller shapes at the limit itself; a noisy velocity must not trip the arm.
   limits.power_W = kPowerSlack * robot.power_limit_W;
   limits.refusal_cycles = cycles_of(kRefusals_s, robot.rate_hz);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {

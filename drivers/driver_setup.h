@@ -1,20 +1,16 @@
-// What robot.yaml says, turned into what the driver's cycle works with; and what it refuses to
-// start on.
+// Settings of the driver's cycle derived from robot.yaml, and the checks before the first cycle.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "drivers/gate/torque_gate.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber {
 
 /// Throws ConfigError: no drives, too many joints or buses, a session of 0. Set-up only.
 void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t session);
-
-/// Share of the wire at robot.rate_hz, 0..1. Throws ConfigError above 90 %. Set-up only.
-double checked_bus_load(const Robot& robot, int bus);
 
 /// Limits of the gate at robot.rate_hz.
 GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept;
@@ -24,5 +20,11 @@ int drive_watchdog_cycles_of(const Robot& robot) noexcept;
 
 /// A time in whole cycles, rounded up; at least one.
 int cycles_of(double seconds, double rate_hz) noexcept;
+
+/// See ArmDriver and bus_load.h. A bus without bit time (virtual, in real time) needs no window
+/// beyond 0.6 of the period.
+std::int64_t reply_window_ns_of(const Robot& robot, bool lockstep) noexcept;
+/// Over all buses, ns.
+std::int64_t least_round_trip_ns_of(const Robot& robot) noexcept;
 
 }  // namespace limber

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "controller/arm_terms.h"
+#include "controller/model/arm_terms.h"
 #include "eval/inputs.h"
 #include "eval/task.h"
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::eval {
 

@@ -1,7 +1,7 @@
 // The words of the inputs that choose something.
 #pragma once
 
-#include "controller/law_settings.h"
+#include "controller/gains/law_settings.h"
 #include "eval/inputs.h"
 
 namespace limber::eval {
@@ -19,13 +19,13 @@ inline controller::Orientation orientation(Inputs& in) {
 }
 
 /// The model torque; what the law adds by itself if nothing is said.
-inline controller::Bias bias(Inputs& in) {
-  using controller::Bias;
-  return in.choice<Bias>("bias",
-                         {{"none", Bias::kNone},
-                          {"gravity", Bias::kGravity},
-                          {"gravity+coriolis", Bias::kGravityCoriolis}},
-                         Bias::kOfLaw);
+inline controller::ModelCompensation model_compensation(Inputs& in) {
+  using controller::ModelCompensation;
+  return in.choice<ModelCompensation>("bias",
+                                      {{"none", ModelCompensation::kNone},
+                                       {"gravity", ModelCompensation::kGravity},
+                                       {"gravity+coriolis", ModelCompensation::kGravityCoriolis}},
+                                      ModelCompensation::kLawDefault);
 }
 
 }  // namespace limber::eval

@@ -27,7 +27,7 @@ Json joint_pd(Arm& arm, Inputs& in) {
   read_joint_goal(in, &run);
   run.gains.K_q = in.joint_matrix("Kp", arm.size());
   run.gains.D_q = in.joint_matrix("Kv", arm.size());
-  run.gains.settings.bias = bias(in);
+  run.gains.settings.model_compensation = model_compensation(in);
   return {{"tau", list_of(run.torque())}};
 }
 
@@ -36,7 +36,7 @@ Json salisbury(Arm& arm, Inputs& in) {
   read_joint_goal(in, &run);
   run.gains.K_x = arm.task.embed(in.symmetric("Kx", arm.task.size()));
   run.gains.D_q = in.joint_matrix("Kv", arm.size());
-  run.gains.settings.bias = bias(in);
+  run.gains.settings.model_compensation = model_compensation(in);
   const MatrixJ K_q = run.terms.J.transpose() * run.gains.K_x * run.terms.J;
   return {{"tau", list_of(run.torque())}, {"Kq", rows_of(K_q)}};
 }
@@ -44,8 +44,8 @@ Json salisbury(Arm& arm, Inputs& in) {
 Json computed_torque(Arm& arm, Inputs& in) {
   LawRun run(&arm, "computed_torque", in);
   read_moving_goal(in, &run);
-  run.gains.K_acc = in.joint_matrix("Kp_acc", arm.size());
-  run.gains.D_acc = in.joint_matrix("Kv_acc", arm.size());
+  run.set("K_acc_per_s2", in.joint_matrix("Kp_acc", arm.size()));
+  run.set("D_acc_per_s", in.joint_matrix("Kv_acc", arm.size()));
   return {{"tau", list_of(run.torque())}};
 }
 
@@ -60,7 +60,7 @@ Json pd_plus(Arm& arm, Inputs& in) {
 Json joint_impedance(Arm& arm, Inputs& in) {
   LawRun run(&arm, "joint_impedance", in);
   read_moving_goal(in, &run);
-  run.gains.M_q = in.positive_definite_joint_matrix("Md", arm.size());
+  run.set("M_q_kgm2", in.positive_definite_joint_matrix("Md", arm.size()));
   run.gains.D_q = in.joint_matrix("Bd", arm.size());
   run.gains.K_q = in.joint_matrix("Kd", arm.size());
   run.estimates.tau_ext = in.vector_or_zero("tau_ext", arm.size());

@@ -1,8 +1,8 @@
 // Where the tip is, how it moves, what the arm weighs; pose errors; singularities.
+#include "controller/gains/stiffness_mapping.h"
+#include "controller/model/pose_error.h"
+#include "controller/model/singularity.h"
 #include "controller/observers/coriolis_transpose.h"
-#include "controller/pose_error.h"
-#include "controller/singularity.h"
-#include "controller/stiffness_mapping.h"
 #include "eval/arm.h"
 #include "eval/law_run.h"
 

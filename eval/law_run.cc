@@ -11,7 +11,7 @@ namespace {
 using namespace controller;
 
 LawSettings exact_settings() {
-  LawSettings settings;
+  LawSettings settings = default_settings();
   settings.damping = DampingDesign::kGiven;
   settings.joint_damping = DampingDesign::kGiven;
   settings.spring_force_N = std::numeric_limits<double>::infinity();
@@ -25,28 +25,28 @@ LawSettings exact_settings() {
 LawRun::LawRun(Arm* given, const std::string& law, Inputs& in)
     : arm(*given),
       terms(arm.terms(in)),
+      point(arm.model.size()),
       state(arm.model.size()),
       goal(arm.model.size()),
       gains(arm.model.size()),
       estimates(arm.model.size()),
       output(arm.model.size()),
       entry_(laws()[static_cast<std::size_t>(find_law(law))]) {
-  state.q = in.vector("q", arm.size());
-  state.v = in.vector_or_zero("v", arm.size());
+  point.q = state.q = in.vector("q", arm.size());
+  point.v = state.v = in.vector_or_zero("v", arm.size());
   goal.X_BD = terms.X_BT;
   gains.settings = exact_settings();
 }
 
 VectorJ LawRun::torque() {
-  if (entry_.refuse != nullptr) {
-    if (const char* reason = entry_.refuse(gains, arm.model.size())) throw ConfigError(reason);
-  }
-  const LawInputs inputs{state, state, terms, goal, gains, estimates};
+  const LawInputs inputs{point, state, terms, goal, gains, estimates};
   const auto law = entry_.make(arm.robot);
+  if (const char* reason = law->check(gains)) throw ConfigError(reason);
   law->start(inputs);
   output.reset();
   law->compute(inputs, &output);
-  const Composition add = with_bias(entry_.composition, gains.settings.bias);
+  const Compensation add =
+      chosen_compensation(entry_.compensation, gains.settings.model_compensation);
   VectorJ tau = output.tau();
   if (add.gravity) tau += terms.g;
   if (add.coriolis) tau += terms.Cv;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "controller/laws/law.h"
+#include "controller/laws/registry.h"
 #include "eval/arm.h"
 
 namespace limber::eval {
@@ -13,19 +13,25 @@ namespace limber::eval {
 inline constexpr double kLostOnlyWhenSingular = 1e-12;
 
 /// The law with its damping as given, its spring without a limit of its force, and inverses that
-/// are damped nowhere but at a singularity. Fill in state, goal, gains and estimates, then ask for
+/// are damped nowhere but at a singularity. Fill in state, goal, gains and estimates, then take
 /// the torque.
 class LawRun {
  public:
   /// Reads q and v, and evaluates the terms there.
   LawRun(Arm* arm, const std::string& law, Inputs& in);
 
-  /// The law's torque and the model torque that the settings ask for, N m. Throws ConfigError if
+  /// The law's torque with the model torque that the settings choose, N m. Throws ConfigError if
   /// the law refuses the gains.
   VectorJ torque();
+  /// The value of a parameter of this law, by its key.
+  template <typename Value>
+  void set(const char* key, const Value& value) {
+    gains.parameters.set(*find_row(controller::law_catalog().parameters, key), value);
+  }
 
   Arm& arm;
   controller::ArmTerms terms;
+  controller::ControlPoint point;
   controller::ArmState state;
   controller::Goal goal;
   controller::Gains gains;

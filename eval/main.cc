@@ -1,22 +1,18 @@
 // limber-eval: the controller's laws as a calculator, JSON in and JSON out.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string>
 
 #include "common/config_error.h"
-#include "common/parse_number.h"
+#include "common/program.h"
 #include "eval/evaluate.h"
 #include "eval/law_table.h"
 
-namespace {
-
 using namespace limber;
+
+namespace {
 
 struct Arguments {
   std::string file = "-";
@@ -70,49 +66,32 @@ std::string answer(const Arguments& arguments) {
   }
 }
 
-void add_options(CLI::App* app, Arguments* arguments) {
-  app->add_option("file", arguments->file,
-                  "a case {\"law\", \"robot\", \"in\"} or a list of them; '-' or nothing: standard "
-                  "input");
-  auto* robot = app->add_option("--robot", arguments->robot,
-                                "arm of cases that name none: a shipped robot or a folder");
-  auto* urdf = app->add_option("--urdf", arguments->urdf, "the same, a bare URDF");
-  auto* base = app->add_option("--base", arguments->base, "link the arm is fixed by");
-  auto* tip = app->add_option("--tip", arguments->tip, "link the arm works with");
-  app->add_option("--gravity", arguments->gravity,
-                  "x,y,z in m/s^2, axes of the URDF's root link (default 0,0,-9.81)")
-      ->delimiter(',')
-      ->expected(3)
-      ->needs(urdf);
-  urdf->needs(base)->needs(tip)->excludes(robot);
-  base->needs(urdf);
-  tip->needs(urdf);
-  app->add_flag("--list", arguments->list, "print the names of all laws");
-}
-
-int run(int argc, char** argv) {
-  CLI::App app{"Evaluates control laws. Exit status 0: done, 2: refused, nothing printed."};
-  Arguments arguments;
-  add_options(&app, &arguments);
-  try {
-    app.parse(argc, argv);
-    std::fputs(answer(arguments).c_str(), stdout);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const ConfigError& error) {
-    std::fprintf(stderr, "limber-eval: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+void define(CommandLine& line, Arguments* given) {
+  line.text(
+      "file", &given->file,
+      "a case {\"law\", \"robot\", \"in\"} or a list of them; '-' or nothing: standard input");
+  auto robot = line.text("--robot", &given->robot,
+                         "arm of cases that name none: a shipped robot or a folder");
+  auto urdf = line.text("--urdf", &given->urdf, "the same, a bare URDF");
+  auto base = line.text("--base", &given->base, "link the arm is fixed by").needs(urdf);
+  auto tip = line.text("--tip", &given->tip, "link the arm works with").needs(urdf);
+  line.numbers("--gravity", &given->gravity,
+               "x,y,z in m/s^2, axes of the URDF's root link (default 0,0,-9.81)")
+      .count(3)
+      .needs(urdf);
+  urdf.needs(base).needs(tip).excludes(robot);
+  line.flag("--list", &given->list, "print the names of all laws");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber-eval: %s\n", error.what());
-    return 3;
-  }
+  CommandLine line("limber-eval",
+                   "Evaluates control laws. Exit status 0: done, 2: refused, nothing printed.");
+  Arguments given;
+  define(line, &given);
+  return run_program(line, argc, argv, [&] {
+    std::fputs(answer(given).c_str(), stdout);
+    return kExitDone;
+  });
 }

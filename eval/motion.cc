@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "common/config_error.h"
-#include "controller/interpolation.h"
+#include "common/contact_law.h"
+#include "controller/goals/interpolation.h"
 #include "eval/inputs.h"
-#include "sim/contact.h"
 
 namespace limber::eval {
 namespace {
@@ -36,13 +36,13 @@ Json interpolation(Inputs& in) {
 
 Json contact(Inputs& in) {
   const Eigen::Vector3d n = unit_vector(in, "n");
-  const sim::Approach at(in.vector("p", 3), in.vector("v", 3), in.vector("p0", 3), n);
+  const Approach at(in.vector("p", 3), in.vector("v", 3), in.vector("p0", 3), n);
   const double k = in.not_negative("k");
   const double b = in.not_negative("b");
   const double k_hc = in.not_negative("k_hc");
   const double c = in.not_negative("b_hc");
-  return {{"f_kv", list_of(sim::kelvin_voigt(at, k, b) * n)},
-          {"f_hc", list_of(sim::hunt_crossley(at, k_hc, c) * n)}};
+  return {{"f_kv", list_of(kelvin_voigt(at, k, b) * n)},
+          {"f_hc", list_of(hunt_crossley(at, k_hc, c) * n)}};
 }
 
 }  // namespace limber::eval

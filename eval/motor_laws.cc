@@ -1,12 +1,13 @@
 // Laws at the motor of an elastic joint, and such an arm's equations of motion.
 #include "common/config_error.h"
-#include "controller/motor_side/deflection_pd.h"
-#include "controller/motor_side/elastic_arm.h"
-#include "controller/motor_side/qbar.h"
-#include "controller/motor_side/tomei.h"
-#include "controller/motor_side/torque_feedback.h"
+#include "controller/elastic/full_state_feedback.h"
+#include "controller/elastic/qbar.h"
+#include "controller/elastic/tomei.h"
 #include "eval/arm.h"
 #include "eval/choices.h"
+#include "eval/deflection_pd.h"
+#include "eval/elastic_arm.h"
+#include "eval/torque_feedback.h"
 
 namespace limber::eval {
 using namespace controller;
@@ -93,7 +94,7 @@ Json deflection_pd(Inputs& in) {
   const VectorJ v = in.joints("v", shape);
   const VectorJ theta = in.joints("theta", shape);
   const VectorJ theta_dot = in.joints("thetad", shape);
-  return {{"tau_m", shape.value(controller::deflection_pd(K, D, q, v, theta, theta_dot))}};
+  return {{"tau_m", shape.value(deflection_torque(K, D, q, v, theta, theta_dot))}};
 }
 
 }  // namespace limber::eval

@@ -1,13 +1,13 @@
 // What has a memory: one value out for every sample in.
-#include "controller/admittance_filter.h"
-#include "controller/energy_tank.h"
+#include "controller/gains/energy_tank.h"
+#include "controller/observers/admittance_filter.h"
 #include "controller/observers/alpha_beta.h"
 #include "controller/observers/coriolis_transpose.h"
 #include "controller/observers/filtered_difference.h"
 #include "controller/observers/friction_observer.h"
 #include "controller/observers/levant.h"
 #include "controller/observers/momentum_observer.h"
-#include "controller/torque_limiter.h"
+#include "controller/output/torque_limiter.h"
 #include "eval/arm.h"
 
 namespace limber::eval {

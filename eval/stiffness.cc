@@ -1,6 +1,6 @@
 // A Cartesian stiffness in joint coordinates.
-#include "controller/pose_error.h"
-#include "controller/stiffness_mapping.h"
+#include "controller/gains/stiffness_mapping.h"
+#include "controller/model/pose_error.h"
 #include "eval/choices.h"
 #include "eval/law_run.h"
 
@@ -22,7 +22,7 @@ Json eq4(Arm& arm, Inputs& in) {
 }
 
 Json eq7(Arm& arm, Inputs& in) {
-  LawRun run(&arm, "eq7", in);
+  LawRun run(&arm, "mapped_joint_impedance", in);
   run.goal.q_d = in.vector("q_d", arm.size());
   run.goal.v_d = in.vector_or_zero("v_d", arm.size());
   run.goal.X_BD = arm.goal(in, run.terms.X_BT);
@@ -33,16 +33,17 @@ Json eq7(Arm& arm, Inputs& in) {
       in.choice<StiffnessTerms>("which", {{"first", StiffnessTerms::kFirst},
                                           {"first+geometric", StiffnessTerms::kGeometric},
                                           {"full", StiffnessTerms::kFull}});
-  settings.stiffness_pose = in.choice<StiffnessPose>("pose", {{"current", StiffnessPose::kCurrent},
-                                                              {"desired", StiffnessPose::kGoal},
-                                                              {"mid", StiffnessPose::kMid},
-                                                              {"mean", StiffnessPose::kMean}});
+  const auto pose = in.choice<MappingPose>("pose", {{"current", MappingPose::kCurrent},
+                                                    {"desired", MappingPose::kGoal},
+                                                    {"mid", MappingPose::kMid},
+                                                    {"mean", MappingPose::kMean}});
+  run.set("stiffness_pose", static_cast<double>(pose));
   settings.orientation = orientation(in);
-  settings.follow_velocity = in.flag("use_vd", true);
-  settings.bias = bias(in);
+  run.set("follow_velocity", in.flag("use_vd", true) ? 1.0 : 0.0);
+  settings.model_compensation = model_compensation(in);
   const VectorJ tau = run.torque();
-  const Eq7Gains gains =
-      eq7_gains(&arm.model, run.state.q, run.state.v, run.goal, run.gains, run.gains.D_x);
+  const MappedGains gains = mapped_gains(&arm.model, run.point.q, run.point.v, run.goal, run.gains,
+                                         run.gains.D_x, {pose, DampingPartials::kNone});
   return {{"tau", list_of(tau)}, {"Kp", rows_of(gains.K_p)}, {"Kv", rows_of(gains.K_v)}};
 }
 

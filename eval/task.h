@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/types.h"
-#include "controller/nullspace.h"
+#include "controller/gains/nullspace.h"
 
 namespace limber::eval {
 

@@ -1,8 +1,8 @@
 // What is left beside the task, and damping that suits the inertia at the tip.
 #include <limits>
 
-#include "controller/damping_design.h"
-#include "controller/nullspace.h"
+#include "controller/gains/damping_design.h"
+#include "controller/gains/nullspace.h"
 #include "eval/law_run.h"
 
 namespace limber::eval {
@@ -10,12 +10,12 @@ using namespace controller;
 
 Json nullspace(Arm& arm, Inputs& in) {
   const Eigen::Index n = arm.size();
-  ArmState state(arm.model.size());
+  ControlPoint point(arm.model.size());
   Goal goal(arm.model.size());
   Gains gains(arm.model.size());
   const ArmTerms terms = arm.terms(in);
-  state.q = in.vector("q", n);
-  state.v = in.vector_or_zero("v", n);
+  point.q = in.vector("q", n);
+  point.v = in.vector_or_zero("v", n);
   goal.q_null = in.vector("q_n", n);
   gains.K_null = in.joint_matrix("Kn", n);
   gains.D_null = in.joint_matrix("Dn", n);
@@ -26,7 +26,7 @@ Json nullspace(Arm& arm, Inputs& in) {
   const TaskRows rows = arm.task.rows();
   const MatrixJ N =
       null_space_projector(terms, rows, gains.settings.projector, kLostOnlyWhenSingular);
-  return {{"tau", list_of(null_space_torque(state, terms, goal, gains, rows, unlimited))},
+  return {{"tau", list_of(null_space_torque(point, terms, goal, gains, rows, unlimited))},
           {"N", rows_of(N)}};
 }
 

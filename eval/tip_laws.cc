@@ -29,8 +29,8 @@ Json cartesian_impedance(Arm& arm, Inputs& in) {
   LawRun run(&arm, "cartesian_impedance", in);
   read_impedance(in, &run);
   read_motion(in, &run);
-  run.gains.settings.bias = bias(in);
-  run.gains.settings.inertia_feedforward = in.flag("inertia_ff", false);
+  run.gains.settings.model_compensation = model_compensation(in);
+  run.set("inertia_feedforward", in.flag("inertia_ff", false) ? 1.0 : 0.0);
   const VectorJ tau = run.torque();
   const PoseError error = pose_error(run.terms.X_BT, run.goal.X_BD, run.gains.settings.orientation);
   return {{"tau", list_of(tau)},
@@ -59,7 +59,7 @@ Json accel_feedback(Arm& arm, Inputs& in) {
   const Task& task = arm.task;
   run.gains.M_x = task.embed(in.symmetric("Mx", task.size()));
   run.estimates.A_BT = task.embed(in.vector("V_meas_dot", task.size()));
-  run.gains.settings.bias = bias(in);
+  run.gains.settings.model_compensation = model_compensation(in);
   return {{"tau", list_of(run.torque())}};
 }
 

@@ -1,7 +1,7 @@
 // Joints with two motors, and the joint stiffnesses nearest to a Cartesian one.
-#include "controller/motor_side/vsa_pair.h"
-#include "controller/motor_side/vsa_stiffness.h"
+#include "controller/elastic/vsa_stiffness.h"
 #include "eval/arm.h"
+#include "eval/vsa_pair.h"
 
 namespace limber::eval {
 using namespace controller;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/run_id.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -19,17 +20,24 @@ Lab::Lab(const LoadedRobot& robot, const Scenario& scenario)
   }
   simulator_ = std::make_unique<Simulator>(robot, arm_ends, simulator_options(scenario));
   simulator_->set_timeline(&scenario.timeline);
-  driver_ = std::make_unique<ArmDriver>(robot.robot, driver_ends,
-                                        ArmDriverOptions{kLockstepSession, true});
+  driver_ =
+      std::make_unique<ArmDriver>(robot.robot, driver_ends, ArmDriverOptions{kLockstepRunId, true});
   ArmControllerOptions options;
-  options.controller = kLockstepController;
+  options.controller = kLockstepRunId;
   options.measure_time = false;
+  options.simulated = true;
   controller_ = std::make_unique<ArmController>(robot, options);
   controller_->set_timeline(&scenario.timeline);
 }
 
+std::vector<std::unique_ptr<CanBus>> Lab::attach() {
+  std::vector<std::unique_ptr<CanBus>> ends;
+  for (const auto& bus : buses_) ends.push_back(bus->attach());
+  return ends;
+}
+
 void Lab::step() noexcept {
-  driver_->transmit(time_ns());
+  driver_->transmit(time_ns(), time_ns());
   simulator_->poll();
   driver_->poll();
   state_ = &driver_->finish_cycle();

@@ -10,20 +10,19 @@
 #include "controller/arm_controller.h"
 #include "drivers/arm_driver.h"
 #include "drivers/can/memory_bus.h"
-#include "scenarios/scenario.h"
+#include "scenarios/loader/scenario.h"
 #include "sim/simulator.h"
 
 namespace limber {
-
-/// Session and controller number of every lock-step run, so that its payloads do not depend on
-/// chance.
-inline constexpr std::int64_t kLockstepSession = 1;
-inline constexpr std::int64_t kLockstepController = 1;
 
 class Lab {
  public:
   /// The scenario and robot outlive the lab. Throws ConfigError.
   Lab(const LoadedRobot& robot, const Scenario& scenario);
+
+  /// One more end on each bus, in the order of robot.yaml, to listen; they live no longer than the
+  /// lab. Set-up only.
+  std::vector<std::unique_ptr<CanBus>> attach();
 
   /// One control cycle:
   ///   commands -> nodes answer, arm advances one period -> replies -> JOINT_STATE -> law ->
@@ -36,7 +35,7 @@ class Lab {
 
   /// What the last step() exchanged.
   const joint_state_t& state() const noexcept { return *state_; }
-  const joint_torque_t& torque() const noexcept { return *torque_; }
+  const joint_command_t& torque() const noexcept { return *torque_; }
   const sim_truth_t& truth() noexcept { return simulator_->truth(); }
   const controller_status_t& controller_status() const noexcept { return controller_->status(); }
   const driver_status_t& driver_status() noexcept;
@@ -55,7 +54,7 @@ class Lab {
   std::int64_t period_ns_;
   std::int64_t cycle_ = 0;
   const joint_state_t* state_ = nullptr;
-  const joint_torque_t* torque_ = nullptr;
+  const joint_command_t* torque_ = nullptr;
   int verdict_ = 0;
   driver_status_t driver_status_{};
 };

@@ -1,19 +1,19 @@
 // limber-lab: runs a scenario in one process, in lock step, and leaves the same log the three
 // processes leave.
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <memory>
 
 #include "common/clock.h"
-#include "common/config_error.h"
+#include "common/program.h"
+#include "controller/laws/registry.h"
+#include "lab/frame_log.h"
 #include "lab/lab.h"
 #include "lab/log_writer.h"
 #include "lcmtypes/channels.h"
 
-namespace {
-
 using namespace limber;
+
+namespace {
 
 void log_cycle(Lab& lab, LogWriter& log) {
   const std::int64_t time_ns = lab.state().time_ns;
@@ -28,12 +28,23 @@ void log_cycle(Lab& lab, LogWriter& log) {
     log.write(time_ns, channels::kDriverStatus, lab.driver_status());
 }
 
-void run(const std::string& path, const std::string& log_path, bool progress) {
+struct Arguments {
+  std::string scenario;
+  std::string log;
+  std::string can;
+  bool progress = false;
+};
+
+int run(const Arguments& given) {
+  const std::string& path = given.scenario;
+  const bool progress = given.progress;
   const LoadedRobot robot = load_robot(scenario_robot(path));
-  const Scenario scenario = load_scenario(path, robot);
+  const Scenario scenario = load_scenario(path, robot, &controller::law_catalog());
   Lab lab(robot, scenario);
   std::unique_ptr<LogWriter> log;
-  if (!log_path.empty()) log = std::make_unique<LogWriter>(log_path);
+  if (!given.log.empty()) log = std::make_unique<LogWriter>(given.log);
+  std::unique_ptr<FrameLog> frames;
+  if (!given.can.empty()) frames = std::make_unique<FrameLog>(given.can, robot.robot, &lab);
 
   const auto end_ns = static_cast<std::int64_t>(scenario.duration_s * 1e9);
   const std::int64_t start_ns = monotonic_ns();
@@ -41,6 +52,7 @@ void run(const std::string& path, const std::string& log_path, bool progress) {
   while (lab.time_ns() < end_ns) {
     lab.step();
     if (log) log_cycle(lab, *log);
+    if (frames) frames->write_cycle(lab.state().time_ns);
     if (progress && lab.cycles() % 100 == 0 && monotonic_ns() - told_ns > 200'000'000) {
       told_ns = monotonic_ns();
       std::fprintf(stderr, "\r%6.2f of %.2f s", static_cast<double>(lab.time_ns()) * 1e-9,
@@ -48,34 +60,23 @@ void run(const std::string& path, const std::string& log_path, bool progress) {
     }
   }
   if (log) log->write(lab.state().time_ns, channels::kDriverStatus, lab.driver_status());
+  if (frames) frames->flush();
   const double wall_s = static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
   std::fprintf(stderr, "%s%.2f s of arm time in %.2f s: %.1f times real time\n",
                progress ? "\r" : "", scenario.duration_s, wall_s, scenario.duration_s / wall_s);
+  return kExitDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Runs a scenario in one process, in lock step, as fast as the processor allows."};
-  std::string scenario;
-  std::string log;
-  bool progress = false;
-  app.add_option("scenario", scenario, "scenario file")->required();
-  app.add_option("--log", log, "LCM event log to write");
-  app.add_flag("--progress", progress, "show how far it is");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    run(scenario, log, progress);
-  } catch (const limber::ConfigError& error) {
-    std::fprintf(stderr, "limber-lab: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber-lab: %s\n", error.what());
-    return 3;
-  }
-  return 0;
+  CommandLine line(
+      "limber-lab",
+      "Runs a scenario in one process, in lock step, as fast as the processor allows.");
+  Arguments given;
+  line.text("scenario", &given.scenario, "scenario file").required();
+  line.text("--log", &given.log, "LCM event log to write");
+  line.text("--can", &given.can, "CAN frames to write, in candump's log format, in arm time");
+  line.flag("--progress", &given.progress, "show how far it is");
+  return run_program(line, argc, argv, [&] { return run(given); });
 }

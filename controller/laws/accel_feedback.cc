@@ -5,10 +5,10 @@
 // not replace it. Sampled at T with a filter p = exp(-T / tau_a), a mass m allows
 // -m < M_x < m (1 + p) / (1 - p), about 2 m tau_a / T. D_x as for cartesian_impedance,
 // without the floor.
-#include "controller/chosen_damping.h"
-#include "controller/damping_design.h"
+#include "controller/gains/chosen_damping.h"
+#include "controller/gains/damping_design.h"
 #include "controller/laws/law.h"
-#include "controller/pose_error.h"
+#include "controller/model/pose_error.h"
 
 namespace limber::controller {
 namespace {
@@ -40,8 +40,8 @@ LawEntry accel_feedback_law() {
   return {.name = "accel_feedback",
           .summary = "Cartesian impedance with an inertia added by acceleration feedback",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kPoseGoal,
-          .composition = {.gravity = true, .coriolis = true, .null_space = true},
+          .goal_type = GoalType::kPose,
+          .compensation = {.gravity = true, .coriolis = true, .null_space = true},
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<AccelFeedback>();
           }};

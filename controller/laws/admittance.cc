@@ -7,12 +7,12 @@
 // inertia where the law started. D_x for (M_x, K_x), or as given. Without delay and without K_x and
 // D_x this is stable only if M_x is heavier than the arm; a stiff contact raises the least K_x: see
 // docs/control_laws.md.
-#include "controller/admittance_filter.h"
-#include "controller/chosen_damping.h"
-#include "controller/damping_design.h"
-#include "controller/inverse_kinematics.h"
+#include "controller/gains/chosen_damping.h"
+#include "controller/gains/damping_design.h"
+#include "controller/gains/nullspace.h"
+#include "controller/goals/inverse_kinematics.h"
 #include "controller/laws/law.h"
-#include "controller/nullspace.h"
+#include "controller/observers/admittance_filter.h"
 
 namespace limber::controller {
 namespace {
@@ -20,14 +20,25 @@ namespace {
 class Admittance : public Law {
  public:
   explicit Admittance(const LoadedRobot& robot)
-      : goal_(robot.robot.size()),
+      : joints_(robot.robot.size()),
+        goal_(joints_),
         inverse_kinematics_(robot),
         filter_(Matrix6::Identity(), Matrix6::Zero(), Matrix6::Zero(), 1.0 / robot.robot.rate_hz),
-        D_q_(MatrixJ::Zero(robot.robot.size(), robot.robot.size())) {}
+        D_q_(MatrixJ::Zero(joints_, joints_)) {}
+
+  const char* check(const Gains& gains) const noexcept override {
+    if (TaskRows(gains.K_x).count() > joints_) {
+      return "K_x has entries in more rows than the arm has joints to follow them with";
+    }
+    if (gains.settings.contact == ContactSource::kNone) {
+      return "admittance needs a contact source: contact is none";
+    }
+    return check_tip_inertia(gains);
+  }
 
   void start(const LawInputs& in) noexcept override {
     filter_.reset();
-    inverse_kinematics_.reset(in.state.q);
+    inverse_kinematics_.reset(in.point.q);
     M_start_ = task_inertia(in.terms, TaskRows(in.gains.K_x));
     design(in);
   }
@@ -43,10 +54,10 @@ class Admittance : public Law {
     goal_.q_null = in.goal.q_null;
     inverse_kinematics_.track(rows, in.dt_s, &goal_);
 
-    const VectorJ error = in.state.q - goal_.q_d;
+    const VectorJ error = in.point.q - goal_.q_d;
     out->F = out->F_other = in.goal.F_ff;  // the position loop acts at the joints
     out->tau_stiffness = -in.gains.K_q * error;
-    out->tau_damping = -D_q_ * (in.state.v - goal_.v_d);
+    out->tau_damping = -D_q_ * (in.point.v - goal_.v_d);
     out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);
   }
 
@@ -63,6 +74,7 @@ class Admittance : public Law {
     D_q_ = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
   }
 
+  int joints_;
   Goal goal_;  // what the inner loop follows
   InverseKinematics inverse_kinematics_;
   AdmittanceFilter filter_;
@@ -70,26 +82,14 @@ class Admittance : public Law {
   MatrixJ D_q_;
 };
 
-const char* refuse(const Gains& gains, int joints) {
-  const TaskRows rows(gains.K_x);
-  if (rows.count() > joints) {
-    return "K_x has entries in more rows than the arm has joints to follow them with";
-  }
-  if (gains.settings.contact == ContactSource::kNone) {
-    return "admittance needs a contact source: contact is none";
-  }
-  return refuse_tip_inertia(gains);
-}
-
 }  // namespace
 
 LawEntry admittance_law() {
   return {.name = "admittance",
           .summary = "virtual mass, spring and damper around a stiff position loop",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kPoseGoal,
-          .composition = {.gravity = true, .coriolis = true},
-          .refuse = refuse,
+          .goal_type = GoalType::kPose,
+          .compensation = {.gravity = true, .coriolis = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<Admittance>(robot);
           }};

@@ -9,15 +9,19 @@
 // such a row this is hybrid control of force and impedance, without force feedback.
 #include <limber/controller_status_t.hpp>
 
-#include "controller/chosen_damping.h"
-#include "controller/damping_design.h"
+#include "controller/gains/chosen_damping.h"
+#include "controller/gains/damping_design.h"
+#include "controller/gains/nullspace.h"
+#include "controller/gains/spring_limit.h"
 #include "controller/laws/law.h"
-#include "controller/nullspace.h"
-#include "controller/pose_error.h"
-#include "controller/spring_limit.h"
+#include "controller/model/pose_error.h"
 
 namespace limber::controller {
 namespace {
+
+GainRow inertia_feedforward = {.key = "inertia_feedforward",
+                               .meaning = "feeds the inertia torque of the moving goal forward",
+                               .words = switch_words()};
 
 class CartesianImpedance : public Law {
  public:
@@ -42,7 +46,7 @@ class CartesianImpedance : public Law {
     const Vector6 F_other = in.goal.F_ff + inertia_force(in);
     out->act_at_tip(in.terms.J, F_spring, F_damping, F_other);
     out->spring_energy_J = spring.energy_J;
-    if (spring.scale < 1.0) out->limits |= controller_status_t::LIMIT_ERROR;
+    if (spring.scale < 1.0) out->limits |= controller_status_t::LIMIT_SPRING;
   }
 
  private:
@@ -60,7 +64,7 @@ class CartesianImpedance : public Law {
   }
 
   static Vector6 inertia_force(const LawInputs& in) noexcept {
-    if (!in.gains.settings.inertia_feedforward) return Vector6::Zero();
+    if (!in.gains.parameters.on(inertia_feedforward)) return Vector6::Zero();
     const Matrix6 Lambda =
         task_inertia(in.terms, TaskRows(in.gains.K_x), in.gains.settings.lost_share);
     return Lambda * (in.goal.A_BD - in.terms.Jdot_v);
@@ -80,9 +84,10 @@ LawEntry cartesian_impedance_law() {
   return {.name = "cartesian_impedance",
           .summary = "spring and damper between the tip and its goal",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kPoseGoal,
-          .composition = {.gravity = true, .coriolis = true, .null_space = true},
-          .statics = StaticForm::kTipSpring,
+          .goal_type = GoalType::kPose,
+          .compensation = {.gravity = true, .coriolis = true, .null_space = true},
+          .potential = Potential::kTipSpring,
+          .parameters = {&inertia_feedforward},
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<CartesianImpedance>();
           }};

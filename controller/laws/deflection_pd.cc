@@ -3,15 +3,13 @@
 // It has no set-point and no stiffness at the link, which moves with M + B / (1 + K_q / K_J) and
 // falls under its weight: torque feedback around nothing. D_q for (B, K_q), or as given. q by the
 // link encoders, or from the torque sensors' K_J^-1 tau_J.
-#include "controller/chosen_damping.h"
+#include "controller/elastic/joint_springs.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/registry.h"
-#include "controller/motor_side/joint_springs.h"
 #include "controller/observers/filtered_difference.h"
 
 namespace limber::controller {
 namespace {
-
-constexpr double kTorqueRateCorner_rad_per_s = 600.0;
 
 class DeflectionPd : public Law {
  public:
@@ -25,7 +23,7 @@ class DeflectionPd : public Law {
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     const MatrixJ B = in.terms.B.asDiagonal();
     const MatrixJ D = chosen_joint_damping(in.gains, B, in.gains.K_q);
-    const ArmState& s = in.measured;
+    const ArmState& s = in.state;
     VectorJ bend = s.theta - s.q;
     VectorJ rate = s.theta_dot - s.v;
     if (!link_encoders_) {
@@ -48,8 +46,9 @@ LawEntry deflection_pd_law() {
   return {.name = "deflection_pd",
           .summary = "steers the springs' deflection to zero; for demonstration, carries nothing",
           .needs = sensors::kMotorEncoder | sensors::kElasticJoints | sensors::kDeflection,
-          .follows = Follows::kNothing,
-          .composition = {.gravity = false},
+          .goal_type = GoalType::kNone,
+          .compensation = {.gravity = false},
+          .demonstration = true,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<DeflectionPd>(robot);
           }};

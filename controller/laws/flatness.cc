@@ -5,9 +5,9 @@
 // theta_d'' contains tau_J'', which is differenced along the goal's motion. Goals for the joints
 // from rest move along a polynomial of degree nine, which has all that; other goals are followed
 // with what they have.
-#include "controller/chosen_damping.h"
+#include "controller/elastic/joint_springs.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
-#include "controller/motor_side/joint_springs.h"
 
 namespace limber::controller {
 namespace {
@@ -20,6 +20,12 @@ class Flatness : public Law {
       : model_(robot),
         K_J_(JointSprings(robot.robot).at_rest()),
         D_(MatrixJ::Zero(model_.size(), model_.size())) {}
+
+  const char* check(const Gains& gains) const noexcept override {
+    return gains.settings.model_compensation == ModelCompensation::kLawDefault
+               ? nullptr
+               : "model_compensation: flatness has its own model torque; choose law_default";
+  }
 
   void start(const LawInputs& in) noexcept override { design(in); }
 
@@ -43,11 +49,12 @@ class Flatness : public Law {
  private:
   // Torque on the links alone, h seconds from now.
   VectorJ link_torque(const Goal& goal, double h) noexcept {
+    const VectorJ jerk = goal.smooth != nullptr ? goal.smooth->jerk : VectorJ(0.0 * goal.q_d);
+    const VectorJ snap = goal.smooth != nullptr ? goal.smooth->snap : VectorJ(0.0 * goal.q_d);
     const VectorJ q =
-        goal.q_d +
-        h * (goal.v_d + h / 2.0 * (goal.a_d + h / 3.0 * (goal.j_d + h / 4.0 * goal.s_d)));
-    const VectorJ v = goal.v_d + h * (goal.a_d + h / 2.0 * (goal.j_d + h / 3.0 * goal.s_d));
-    const VectorJ a = goal.a_d + h * (goal.j_d + h / 2.0 * goal.s_d);
+        goal.q_d + h * (goal.v_d + h / 2.0 * (goal.a_d + h / 3.0 * (jerk + h / 4.0 * snap)));
+    const VectorJ v = goal.v_d + h * (goal.a_d + h / 2.0 * (jerk + h / 3.0 * snap));
+    const VectorJ a = goal.a_d + h * (jerk + h / 2.0 * snap);
     return model_.inverse_dynamics(q, v, a) - model_.rotor_inertia().cwiseProduct(a);
   }
 
@@ -60,22 +67,15 @@ class Flatness : public Law {
   MatrixJ D_;
 };
 
-const char* refuse(const Gains& gains, int /*joints*/) {
-  return gains.settings.bias == Bias::kOfLaw
-             ? nullptr
-             : "bias: flatness has its own model torque; choose of_law";
-}
-
 }  // namespace
 
 LawEntry flatness_law() {
   return {.name = "flatness",
           .summary = "follows a joint motion through the springs by feed-forward",
           .needs = sensors::kMotorEncoder | sensors::kElasticJoints,
-          .follows = Follows::kSmoothJointGoal,
-          .composition = {.gravity = false},
-          .statics = StaticForm::kGravity,
-          .refuse = refuse,
+          .goal_type = GoalType::kSmoothJoints,
+          .compensation = {.gravity = false},
+          .potential = Potential::kGravity,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<Flatness>(robot);
           }};

@@ -5,16 +5,21 @@
 // The same as torque feedback with rho = 1 + K_T around u = g - K_q (theta - theta_d) - D_q theta':
 // the motor seems rho times lighter, and so does its friction. D_q for (M + B / rho, K_q). g where
 // the weight alone bends the springs to.
-#include "controller/chosen_damping.h"
+#include "controller/elastic/full_state_feedback.h"
+#include "controller/elastic/joint_springs.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
-#include "controller/motor_side/joint_springs.h"
-#include "controller/motor_side/torque_feedback.h"
 #include "controller/observers/filtered_difference.h"
 
 namespace limber::controller {
 namespace {
 
-constexpr double kTorqueRateCorner_rad_per_s = 600.0;
+GainRow torque_gain = {
+    .key = "torque_gain",
+    .meaning =
+        "K_T, what the motor adds to each N m that the joint torque lacks; the loop divides "
+        "motor inertia and friction by 1 + K_T",
+    .high = 20.0};
 
 class FullState : public Law {
  public:
@@ -29,6 +34,12 @@ class FullState : public Law {
     }
   }
 
+  const char* check(const Gains& gains) const noexcept override {
+    return gains.settings.model_compensation == ModelCompensation::kLawDefault
+               ? nullptr
+               : "model_compensation: full_state has its own gravity torque; choose law_default";
+  }
+
   void start(const LawInputs& in) noexcept override {
     tau_rate_.reset();
     design(in);
@@ -36,25 +47,25 @@ class FullState : public Law {
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.damping_due) design(in);
-    const double K_T = in.gains.settings.torque_gain;
+    const double K_T = in.gains.parameters.number(torque_gain);
     law_.K_P = (1.0 + K_T) * in.gains.K_q;
     law_.K_D = (1.0 + K_T) * D_;
     law_.K_T.diagonal().setConstant(K_T);
     law_.K_S.diagonal() = K_T * D_J_;
     const VectorJ theta_d = in.goal.q_d + model_.gravity(in.goal.q_d).cwiseQuotient(law_.K_J);
     const VectorJ error = in.state.theta - theta_d;
-    const VectorJ& tau_dot = tau_rate_.update(in.measured.tau_measured);
+    const VectorJ& tau_dot = tau_rate_.update(in.state.tau_measured);
     out->tau_stiffness = -law_.K_P * error;
     out->tau_damping = -law_.K_D * in.state.theta_dot;
     const VectorJ all =
-        law_.torque(error, in.state.theta_dot, in.measured.tau_measured, tau_dot, in.terms.g);
+        law_.torque(error, in.state.theta_dot, in.state.tau_measured, tau_dot, in.terms.g);
     out->tau_feedforward = all - out->tau_stiffness - out->tau_damping;
   }
 
  private:
   void design(const LawInputs& in) noexcept {
     MatrixJ M = in.terms.M;
-    M.diagonal() += in.terms.B / (1.0 + in.gains.settings.torque_gain);
+    M.diagonal() += in.terms.B / (1.0 + in.gains.parameters.number(torque_gain));
     D_ = chosen_joint_damping(in.gains, M, in.gains.K_q);
   }
 
@@ -65,22 +76,16 @@ class FullState : public Law {
   FullStateFeedback law_;
 };
 
-const char* refuse(const Gains& gains, int /*joints*/) {
-  return gains.settings.bias == Bias::kOfLaw
-             ? nullptr
-             : "bias: full_state has its own gravity torque; choose of_law";
-}
-
 }  // namespace
 
 LawEntry full_state_law() {
   return {.name = "full_state",
           .summary = "motor position and joint torque fed back",
           .needs = sensors::kMotorEncoder | sensors::kElasticJoints | sensors::kTorqueSensor,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = false},
-          .statics = StaticForm::kGravity,
-          .refuse = refuse,
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = false},
+          .potential = Potential::kGravity,
+          .parameters = {&torque_gain},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<FullState>(robot);
           }};

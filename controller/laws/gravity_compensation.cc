@@ -16,9 +16,9 @@ LawEntry gravity_compensation_law() {
   return {.name = "gravity_compensation",
           .summary = "floats: carries its weight and nothing else",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kNothing,
-          .composition = {.gravity = true},
-          .statics = StaticForm::kGravity,
+          .goal_type = GoalType::kNone,
+          .compensation = {.gravity = true},
+          .potential = Potential::kGravity,
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<GravityCompensation>();
           }};

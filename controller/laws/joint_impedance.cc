@@ -7,15 +7,30 @@
 // M_d as given, or the diagonal of M where the law started; D_q for (M_d, K_q), or as given.
 #include <Eigen/Cholesky>
 
-#include "controller/chosen_damping.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {
 namespace {
 
+GainRow M_q = {
+    .key = "M_q_kgm2",
+    .meaning = "inertia of the joints; 0: the diagonal of the arm's own where the law started",
+    .unit = "kg m²",
+    .high = 1e2,
+    .per_joint = true};
+
 class JointImpedance : public Law {
  public:
   explicit JointImpedance(int joints) : M_start_(MatrixJ::Identity(joints, joints)), D_(M_start_) {}
+
+  const char* check(const Gains& gains) const noexcept override {
+    const MatrixJ& M = gains.parameters.matrix(M_q);
+    if (M.isZero(0.0)) return nullptr;
+    return Eigen::LLT<MatrixJ>(M).info() == Eigen::Success
+               ? nullptr
+               : "M_q_kgm2 must be positive for every joint";
+  }
 
   void start(const LawInputs& in) noexcept override {
     M_start_ = in.terms.M_total.diagonal().asDiagonal();
@@ -28,15 +43,16 @@ class JointImpedance : public Law {
     const auto torque = [&](const VectorJ& effort) -> VectorJ {
       return in.terms.M_total * M_d.solve(effort);
     };
-    out->tau_stiffness = torque(-in.gains.K_q * (in.state.q - in.goal.q_d));
-    out->tau_damping = torque(-D_ * (in.state.v - in.goal.v_d));
+    out->tau_stiffness = torque(-in.gains.K_q * (in.point.q - in.goal.q_d));
+    out->tau_damping = torque(-D_ * (in.point.v - in.goal.v_d));
     const VectorJ& tau_ext = in.estimates.tau_ext;
     out->tau_feedforward = in.terms.M_total * in.goal.a_d + torque(tau_ext) - tau_ext;
   }
 
  private:
   MatrixJ wanted(const Gains& gains) const noexcept {
-    return gains.M_q.isZero(0.0) ? M_start_ : gains.M_q;
+    const MatrixJ& M = gains.parameters.matrix(M_q);
+    return M.isZero(0.0) ? M_start_ : M;
   }
 
   void design(const LawInputs& in) noexcept {
@@ -47,21 +63,15 @@ class JointImpedance : public Law {
   MatrixJ D_;
 };
 
-const char* refuse(const Gains& gains, int /*joints*/) {
-  if (gains.M_q.isZero(0.0)) return nullptr;
-  const Eigen::LLT<MatrixJ> cholesky(gains.M_q);
-  return cholesky.info() == Eigen::Success ? nullptr : "M_q must be positive for every joint";
-}
-
 }  // namespace
 
 LawEntry joint_impedance_law() {
   return {.name = "joint_impedance",
           .summary = "joint inertia, damping and stiffness, contact torque measured",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = true, .coriolis = true},
-          .refuse = refuse,
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = true, .coriolis = true},
+          .parameters = {&M_q},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<JointImpedance>(robot.robot.size());
           }};

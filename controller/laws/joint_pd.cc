@@ -3,7 +3,7 @@
 // D_q by the joint damping design, from M with rotors at this pose, plus a floor where K_q is zero;
 // or as given. Coriolis torque is not compensated unless asked for: for a goal at rest the energy
 // v^T M v / 2 + (q - q_d)^T K_q (q - q_d) / 2 then never rises by itself.
-#include "controller/chosen_damping.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {
@@ -17,9 +17,9 @@ class JointPd : public Law {
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.damping_due) design(in);
-    const VectorJ error = in.state.q - in.goal.q_d;
+    const VectorJ error = in.point.q - in.goal.q_d;
     out->tau_stiffness = -in.gains.K_q * error;
-    out->tau_damping = -D_ * (in.state.v - in.goal.v_d);
+    out->tau_damping = -D_ * (in.point.v - in.goal.v_d);
     out->spring_energy_J = -0.5 * error.dot(out->tau_stiffness);
   }
 
@@ -37,9 +37,9 @@ LawEntry joint_pd_law() {
   return {.name = "joint_pd",
           .summary = "spring and damper at every joint",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = true},
-          .statics = StaticForm::kJointSpring,
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = true},
+          .potential = Potential::kJointSpring,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<JointPd>(robot.robot.size());
           }};

@@ -1,26 +1,27 @@
 // What every control law is. A law is one file in this folder and one line in registry.cc.
 //
-// The file defines `LawEntry NAME_law()` (see the end of this header) and a class derived from Law
-// that nobody else sees. The cycle composes the torque:
+// The file defines `LawEntry NAME_law()` (see the end of this header), the parameters that belong
+// to the law alone, and a class derived from Law that nobody else includes. The cycle composes
 //
-//   tau = law + [null space] + [gravity] + [Coriolis]            (what the entry asks for)
+//   tau = law + [null space] + [gravity] + [Coriolis] + friction      (what the entry wants)
 //
 // and then blends, limits and sends it; a law does none of that.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "common/types.h"
-#include "controller/arm_state.h"
-#include "controller/arm_terms.h"
-#include "controller/gains.h"
-#include "controller/goal.h"
-#include "robots/load_robot.h"
+#include "controller/gains/gains.h"
+#include "controller/goals/goal.h"
+#include "controller/model/arm_state.h"
+#include "controller/model/arm_terms.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 
-/// What a law may ask of an arm, to be combined with |.
+/// What a law may need of an arm, to be combined with |.
 namespace sensors {
 inline constexpr unsigned kLinkEncoder = 1;   ///< q, v: on a rigid joint the motor's encoder does
 inline constexpr unsigned kMotorEncoder = 2;  ///< theta, theta_dot
@@ -32,31 +33,31 @@ inline constexpr unsigned kDeflection = 64;  ///< of the springs, by link encode
 inline constexpr unsigned kSprings = 128;    ///< some joint is not rigid
 }  // namespace sensors
 
-/// Laws for the joints take goals at the tip too: the cycle solves the inverse kinematics.
-enum class Follows : std::uint8_t {
-  kNothing,
-  kPoseGoal,
-  kJointGoal,           ///< and exerts no wrench besides
-  kJointGoalAndWrench,  ///< and adds Goal::F_ff
-  kSmoothJointGoal,     ///< no wrench; from rest along SmoothMotion
+/// The goal that a law follows. Laws for the joints take goals at the tip too: the cycle solves the
+/// inverse kinematics.
+enum class GoalType : std::uint8_t {
+  kNone,
+  kPose,
+  kJoints,           ///< no feed-forward wrench
+  kJointsAndWrench,  ///< and adds Goal::F_ff
+  kSmoothJoints,     ///< no wrench; from rest along SmoothMotion
 };
 
-inline bool follows_joints(Follows follows) noexcept {
-  return follows == Follows::kJointGoal || follows == Follows::kJointGoalAndWrench ||
-         follows == Follows::kSmoothJointGoal;
+inline bool follows_joints(GoalType type) noexcept {
+  return type == GoalType::kJoints || type == GoalType::kJointsAndWrench ||
+         type == GoalType::kSmoothJoints;
 }
 
-/// What a law asks of the link at rest, as a function of the link's position: what it needs to be
-/// evaluated at q_bar (Position::kStatic, see qbar.h). Only laws whose torque at rest is the
-/// gradient of a potential have one.
-enum class StaticForm : std::uint8_t {
-  kNone,
-  kGravity,  ///< carries the weight; or sees the link where the weight alone bends the springs to
+/// The potential whose gradient a law's torque at rest is, as a function of the link's position:
+/// what it takes to evaluate the law at q_bar (PositionFeedback::kStatic, see qbar.h).
+enum class Potential : std::uint8_t {
+  kNone,         ///< its torque at rest is no gradient, or not one that q_bar is solved for
+  kGravity,      ///< the weight alone: carried, or what the springs bend under
   kJointSpring,  ///< and -K_q (q - q_d)
   kTipSpring,    ///< and J^T (F_ff - h A^T K_x e)
 };
 
-/// What the observers say of this instant; zero where LawSettings::contact names no source.
+/// Estimates of this instant; zero where LawSettings::contact names no source.
 struct Estimates {
   explicit Estimates(int joints) : tau_ext(VectorJ::Zero(joints)) {}
 
@@ -66,27 +67,27 @@ struct Estimates {
 };
 
 /// What the cycle adds to the law's torque.
-struct Composition {
+struct Compensation {
   bool gravity = true;      ///< + g
   bool coriolis = false;    ///< + C v
   bool null_space = false;  ///< + N (-K_null (q - q_null) - D_null v)
 };
 
-/// The composition with the user's choice of the model terms.
-inline Composition with_bias(Composition composition, Bias bias) noexcept {
-  if (bias == Bias::kOfLaw) return composition;
-  composition.gravity = bias != Bias::kNone;
-  composition.coriolis = bias == Bias::kGravityCoriolis;
-  return composition;
+/// The compensation with the user's choice of the model terms.
+inline Compensation chosen_compensation(Compensation of_law, ModelCompensation choice) noexcept {
+  if (choice == ModelCompensation::kLawDefault) return of_law;
+  of_law.gravity = choice != ModelCompensation::kNone;
+  of_law.coriolis = choice == ModelCompensation::kGravityCoriolis;
+  return of_law;
 }
 
-/// Everything a law may look at, of the same instant. The references outlive the call only.
+/// Everything a law receives, of the same instant. The references outlive the call only.
 struct LawInputs {
-  const ArmState& state;     ///< q, v on the side the law looks at, see Position
-  const ArmState& measured;  ///< as the joints report it
-  const ArmTerms& terms;
-  const Goal& goal;    ///< after interpolation
-  const Gains& gains;  ///< after ramps, in base axes
+  const ControlPoint& point;  ///< position and velocity for springs and dampers
+  const ArmState& state;      ///< both sides of the joints, torques, preload; velocities estimated
+  const ArmTerms& terms;      ///< of the model, at `point`
+  const Goal& goal;           ///< after interpolation
+  const Gains& gains;         ///< after ramps, in base axes
   const Estimates& estimates;
   double dt_s = 0.0;          ///< since the law's last cycle
   bool stiffness_due = true;  ///< what a law derives from K_x, it may derive anew
@@ -98,9 +99,7 @@ struct LawOutput {
   explicit LawOutput(int joints)
       : tau_stiffness(VectorJ::Zero(joints)),
         tau_damping(VectorJ::Zero(joints)),
-        tau_feedforward(VectorJ::Zero(joints)),
-        preload(VectorJ::Zero(joints)),
-        sigma(VectorJ::Zero(joints)) {}
+        tau_feedforward(VectorJ::Zero(joints)) {}
 
   void reset() noexcept {
     tau_stiffness.setZero();
@@ -108,10 +107,6 @@ struct LawOutput {
     tau_feedforward.setZero();
     F.setZero();
     F_other.setZero();
-    preload.setZero();
-    sigma.setZero();
-    sets_preload = false;
-    fit_residual = 0.0;
     spring_energy_J = 0.0;
     limits = 0;
   }
@@ -131,38 +126,50 @@ struct LawOutput {
   VectorJ tau_feedforward;
   Vector6 F = Vector6::Zero();  ///< wrench on the arm at the tip, base axes; zero if it has none
   Vector6 F_other = Vector6::Zero();  ///< what of it is neither spring nor damper
-  bool sets_preload = false;          ///< false: the preload goes to robot.yaml's
-  VectorJ preload;                    ///< of two motors, wanted, rad
-  VectorJ sigma;                      ///< stiffness asked of the springs, N m/rad; zero if none is
-  double fit_residual = 0.0;          ///< share of the wanted tip stiffness that they miss
   double spring_energy_J = 0.0;       ///< potential whose gradient tau_stiffness is, if it is one
   std::int32_t limits = 0;            ///< controller_status_t LIMIT_* bits
+};
+
+/// A quantity that a law reports besides its torque, in controller_status_t::law_outputs.
+struct LawReport {
+  const char* key;
+  const char* unit;
+  const char* meaning;
+  bool per_joint = false;
 };
 
 class Law {
  public:
   virtual ~Law() = default;
-  /// nullptr, or what in these gains does not suit this arm. May be called in the cycle.
-  virtual const char* refuse(const Gains& gains) noexcept {
+  /// nullptr, or why the law cannot work with these gains on this arm. May be called in the cycle.
+  virtual const char* check(const Gains& gains) const noexcept {
     static_cast<void>(gains);
     return nullptr;
   }
-  /// The law becomes the active one: forget the past. In the cycle.
+  /// The law becomes the running one: forget the past. In the cycle.
   virtual void start(const LawInputs& inputs) noexcept { static_cast<void>(inputs); }
   /// One cycle; `output` has been reset. No allocation, lock, log or exception.
   virtual void compute(const LawInputs& inputs, LawOutput* output) noexcept = 0;
+  /// Preload wanted of joints with two motors, n, rad; nullptr: robot.yaml's. In the cycle.
+  virtual const VectorJ* preload() const noexcept { return nullptr; }
+  /// Writes the values of LawEntry::reports, in their order, to at most 24 places; a joint quantity
+  /// takes one place a joint. In the cycle.
+  virtual void report(float* values) const noexcept { static_cast<void>(values); }
 };
 
 /// One line of the registry.
 struct LawEntry {
   const char* name;
-  const char* summary;  ///< one line for --list-laws
+  const char* summary;  ///< one line for --list-laws, with the lecture's equation if it has one
   unsigned needs;       ///< sensors::*
-  Follows follows;
-  Composition composition;
-  StaticForm statics = StaticForm::kNone;
-  /// nullptr, or what in these gains the law cannot work with. May be called in the cycle.
-  const char* (*refuse)(const Gains& gains, int joints) = nullptr;
+  GoalType goal_type;
+  Compensation compensation;
+  Potential potential = Potential::kNone;
+  /// Shows a mistake found in print; refused unless every bus is simulated.
+  bool demonstration = false;
+  /// Numbers of this law alone; rows at namespace scope in its file.
+  std::vector<GainRow*> parameters = {};
+  std::vector<LawReport> reports = {};
   /// Makes the law for an arm that has what it needs. May throw ConfigError.
   std::unique_ptr<Law> (*make)(const LoadedRobot& robot) = nullptr;
 };

@@ -7,16 +7,26 @@
 // how light the tip can be made against a stiff world: see docs/control_laws.md.
 #include <Eigen/Cholesky>
 
-#include "controller/damping_design.h"
+#include "controller/gains/damping_design.h"
+#include "controller/gains/nullspace.h"
 #include "controller/laws/law.h"
-#include "controller/nullspace.h"
-#include "controller/pose_error.h"
+#include "controller/model/pose_error.h"
 
 namespace limber::controller {
 namespace {
 
 class OpspaceImpedance : public Law {
  public:
+  explicit OpspaceImpedance(int joints) : joints_(joints) {}
+
+  const char* check(const Gains& gains) const noexcept override {
+    if (TaskRows(gains.K_x).count() > joints_) {
+      return "K_x has entries in more rows than the arm has joints: it cannot shape the inertia of "
+             "all of them";
+    }
+    return check_tip_inertia(gains);
+  }
+
   void start(const LawInputs& in) noexcept override { D_x_ = damping(in, TaskRows(in.gains.K_x)); }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
@@ -59,16 +69,9 @@ class OpspaceImpedance : public Law {
                            gains.damping_ratio);
   }
 
+  int joints_;
   Matrix6 D_x_ = Matrix6::Zero();
 };
-
-const char* refuse(const Gains& gains, int joints) {
-  if (TaskRows(gains.K_x).count() > joints) {
-    return "K_x has entries in more rows than the arm has joints: it cannot shape the inertia of "
-           "all of them";
-  }
-  return refuse_tip_inertia(gains);
-}
 
 }  // namespace
 
@@ -76,11 +79,10 @@ LawEntry opspace_impedance_law() {
   return {.name = "opspace_impedance",
           .summary = "inertia, damping and stiffness at the tip, contact wrench measured",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kPoseGoal,
-          .composition = {.gravity = true, .coriolis = true, .null_space = true},
-          .refuse = refuse,
-          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
-            return std::make_unique<OpspaceImpedance>();
+          .goal_type = GoalType::kPose,
+          .compensation = {.gravity = true, .coriolis = true, .null_space = true},
+          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
+            return std::make_unique<OpspaceImpedance>(robot.robot.size());
           }};
 }
 

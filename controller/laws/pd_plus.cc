@@ -3,7 +3,7 @@
 // Exact tracking on an exact model, and the stiffness at the joints is K_q itself. C is the matrix
 // of the Christoffel symbols, bilinear in its velocities: with c(x) = C(q, x) x,
 //   C(q, v) v_d = (c(v + v_d) - c(v) - c(v_d)) / 2.
-#include "controller/chosen_damping.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {
@@ -14,12 +14,19 @@ class PdPlus : public Law {
   explicit PdPlus(const LoadedRobot& robot)
       : model_(robot), D_(MatrixJ::Zero(model_.size(), model_.size())) {}
 
+  const char* check(const Gains& gains) const noexcept override {
+    return gains.settings.model_compensation == ModelCompensation::kGravityCoriolis
+               ? "model_compensation: pd_plus has its own Coriolis torque; choose law_default, "
+                 "gravity or none"
+               : nullptr;
+  }
+
   void start(const LawInputs& in) noexcept override { design(in); }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.damping_due) design(in);
-    const VectorJ& q = in.state.q;
-    const VectorJ& v = in.state.v;
+    const VectorJ& q = in.point.q;
+    const VectorJ& v = in.point.v;
     const VectorJ& v_d = in.goal.v_d;
     const VectorJ error = q - in.goal.q_d;
     const VectorJ both = v + v_d;
@@ -40,22 +47,15 @@ class PdPlus : public Law {
   MatrixJ D_;
 };
 
-const char* refuse(const Gains& gains, int /*joints*/) {
-  return gains.settings.bias == Bias::kGravityCoriolis
-             ? "bias: pd_plus has its own Coriolis torque; choose of_law, gravity or none"
-             : nullptr;
-}
-
 }  // namespace
 
 LawEntry pd_plus_law() {
   return {.name = "pd_plus",
           .summary = "joint springs and dampers, goal's dynamics fed forward",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = true},
-          .statics = StaticForm::kJointSpring,
-          .refuse = refuse,
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = true},
+          .potential = Potential::kJointSpring,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<PdPlus>(robot);
           }};

@@ -1,27 +1,28 @@
 #include "controller/laws/registry.h"
 
 #include <algorithm>
-#include <array>
+
+#include "common/config_error.h"
 
 // One line a law. The order is the numbering of controller_status_t.law: append, do not insert.
-#define LIMBER_LAWS(LAW)     \
-  LAW(gravity_compensation)  \
-  LAW(joint_pd)              \
-  LAW(cartesian_impedance)   \
-  LAW(salisbury)             \
-  LAW(eq4)                   \
-  LAW(eq7)                   \
-  LAW(incremental_impedance) \
-  LAW(computed_torque)       \
-  LAW(pd_plus)               \
-  LAW(joint_impedance)       \
-  LAW(opspace_impedance)     \
-  LAW(accel_feedback)        \
-  LAW(admittance)            \
-  LAW(tomei)                 \
-  LAW(full_state)            \
-  LAW(deflection_pd)         \
-  LAW(flatness)              \
+#define LIMBER_LAWS(LAW)      \
+  LAW(gravity_compensation)   \
+  LAW(joint_pd)               \
+  LAW(cartesian_impedance)    \
+  LAW(salisbury)              \
+  LAW(congruence_stiffness)   \
+  LAW(mapped_joint_impedance) \
+  LAW(multirate_impedance)    \
+  LAW(computed_torque)        \
+  LAW(pd_plus)                \
+  LAW(joint_impedance)        \
+  LAW(opspace_impedance)      \
+  LAW(accel_feedback)         \
+  LAW(admittance)             \
+  LAW(tomei)                  \
+  LAW(full_state)             \
+  LAW(deflection_pd)          \
+  LAW(flatness)               \
   LAW(variable_stiffness)
 
 namespace limber::controller {
@@ -30,12 +31,42 @@ namespace limber::controller {
 LIMBER_LAWS(LIMBER_DECLARE)
 #undef LIMBER_DECLARE
 
-std::span<const LawEntry> laws() noexcept {
+namespace {
+
+struct Registry {
+  std::vector<LawEntry> entries;
+  LawCatalog catalog;
+};
+
+Registry make_registry() {
 #define LIMBER_ENTRY(name) name##_law(),
-  static const std::array entries{LIMBER_LAWS(LIMBER_ENTRY)};
+  Registry all{{LIMBER_LAWS(LIMBER_ENTRY)}, {}};
 #undef LIMBER_ENTRY
-  return entries;
+  int scalars = 0;
+  int matrices = 0;
+  for (const LawEntry& entry : all.entries) {
+    all.catalog.names.emplace_back(entry.name);
+    for (GainRow* row : entry.parameters) {
+      row->slot = row->per_joint ? matrices++ : scalars++;
+      all.catalog.parameters.push_back(row);
+    }
+  }
+  if (scalars > LawParameters::kMostScalars || matrices > LawParameters::kMostMatrices) {
+    throw ConfigError("the laws declare more parameters than LawParameters has room for");
+  }
+  return all;
 }
+
+const Registry& registry() noexcept {
+  static const Registry all = make_registry();
+  return all;
+}
+
+}  // namespace
+
+std::span<const LawEntry> laws() noexcept { return registry().entries; }
+
+const LawCatalog& law_catalog() noexcept { return registry().catalog; }
 
 int find_law(const std::string& name) noexcept {
   const std::span<const LawEntry> all = laws();
@@ -69,7 +100,7 @@ unsigned sensors_of(const Robot& robot) noexcept {
   return have;
 }
 
-const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
+const char* check_law(const LawEntry& law, unsigned available) noexcept {
   const unsigned missing = law.needs & ~available;
   if ((missing & sensors::kLinkEncoder) != 0) return "the law needs link encoders";
   if ((missing & sensors::kMotorEncoder) != 0) return "the law needs motor encoders";
@@ -88,25 +119,28 @@ const char* refuse_law(const LawEntry& law, unsigned available) noexcept {
   return nullptr;
 }
 
-const char* refuse_settings(const LawSettings& settings, unsigned available) noexcept {
+const char* check_settings(const LawSettings& settings, unsigned available) noexcept {
   if (settings.contact == ContactSource::kTipSensor &&
       (available & sensors::kTipForceSensor) == 0) {
     return "contact: the arm has no force sensor at the tip";
   }
-  if (settings.friction == FrictionCompensation::kObserver &&
+  if (settings.friction_compensation == FrictionCompensation::kObserver &&
       (available & sensors::kTorqueSensor) == 0) {
-    return "friction: the observer needs joint torque sensors";
+    return "friction_compensation: the observer needs joint torque sensors";
   }
   return nullptr;
 }
 
-const char* refuse_position(Position position, const LawEntry& law, unsigned available) noexcept {
+const char* check_position(PositionFeedback position, const LawEntry& law,
+                           unsigned available) noexcept {
   if ((available & sensors::kSprings) == 0) return nullptr;
-  if (position == Position::kLink && (available & sensors::kLinkEncoder) == 0) {
-    return "position: link needs link encoders";
+  if (position == PositionFeedback::kLink && (available & sensors::kLinkEncoder) == 0) {
+    return "position_feedback: link needs link encoders";
   }
-  if (position == Position::kStatic && law.statics == StaticForm::kNone) {
-    return "position: the law has no static form (its torque at rest is no spring's at the link); "
+  if (position == PositionFeedback::kStatic && law.potential == Potential::kNone) {
+    return "position_feedback: the law has no static potential (its torque at rest is no spring's "
+           "at the "
+           "link); "
            "choose motor or link";
   }
   return nullptr;

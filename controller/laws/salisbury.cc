@@ -3,7 +3,7 @@
 // J at the present pose, K_v constant: as given, or the joint damping design for J^T K_x J at the
 // pose where the law started. Holds for small deviations; not conservative, since J turns with the
 // arm. Without K_null and D_null a redundant arm's null space has neither stiffness nor damping.
-#include "controller/chosen_damping.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {
@@ -30,8 +30,8 @@ class Salisbury : public Law {
     if (in.damping_due) {
       K_v_ = chosen_joint_damping(in.gains, M_start_, mapped(J_start_, in.gains.K_x));
     }
-    out->tau_stiffness = -K_q_ * (in.state.q - in.goal.q_d);
-    out->tau_damping = -K_v_ * (in.state.v - in.goal.v_d);
+    out->tau_stiffness = -K_q_ * (in.point.q - in.goal.q_d);
+    out->tau_damping = -K_v_ * (in.point.v - in.goal.v_d);
   }
 
  private:
@@ -51,8 +51,8 @@ LawEntry salisbury_law() {
   return {.name = "salisbury",
           .summary = "Cartesian stiffness mapped to the joints, constant joint damping",
           .needs = sensors::kMotorEncoder,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = true, .null_space = true},
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = true, .null_space = true},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<Salisbury>(robot.robot.size());
           }};

@@ -4,17 +4,17 @@
 // The link comes to rest at q_d from anywhere if lambda_min [K_J, -K_J; -K_J, K_J + K_q] exceeds
 // the greatest |dg/dq| of the arm; gains that do not are refused. The link meets the springs and
 // K_q in series, less the weight's gradient.
-#include "controller/motor_side/tomei.h"
+#include "controller/elastic/tomei.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 #include <string>
 
-#include "controller/chosen_damping.h"
+#include "controller/elastic/gravity_gradient.h"
+#include "controller/elastic/joint_springs.h"
+#include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
-#include "controller/motor_side/gravity_gradient.h"
-#include "controller/motor_side/joint_springs.h"
 
 namespace limber::controller {
 namespace {
@@ -56,9 +56,12 @@ class TomeiLaw : public Law {
         std::to_string(alpha_) + " N m/rad, by which this arm's weight changes at most";
   }
 
-  const char* refuse(const Gains& gains) noexcept override {
-    const Tomei asked{gains.K_q, law_.K_D, law_.K_J};
-    return asked.lambda_min() > alpha_ ? nullptr : refusal_.c_str();
+  const char* check(const Gains& gains) const noexcept override {
+    if (gains.settings.model_compensation != ModelCompensation::kLawDefault) {
+      return "model_compensation: tomei has its own gravity torque; choose law_default";
+    }
+    const Tomei wanted{gains.K_q, law_.K_D, law_.K_J};
+    return wanted.lambda_min() > alpha_ ? nullptr : refusal_.c_str();
   }
 
   void start(const LawInputs& in) noexcept override { design(in); }
@@ -85,22 +88,15 @@ class TomeiLaw : public Law {
   std::string refusal_;
 };
 
-const char* refuse_bias(const Gains& gains, int /*joints*/) {
-  return gains.settings.bias == Bias::kOfLaw
-             ? nullptr
-             : "bias: tomei has its own gravity torque; choose of_law";
-}
-
 }  // namespace
 
 LawEntry tomei_law() {
   return {.name = "tomei",
           .summary = "motor position control, weight of the goal's posture",
           .needs = sensors::kMotorEncoder | sensors::kElasticJoints,
-          .follows = Follows::kJointGoal,
-          .composition = {.gravity = false},
-          .statics = StaticForm::kGravity,
-          .refuse = refuse_bias,
+          .goal_type = GoalType::kJoints,
+          .compensation = {.gravity = false},
+          .potential = Potential::kGravity,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<TomeiLaw>(robot);
           }};

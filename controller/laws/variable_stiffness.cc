@@ -11,19 +11,27 @@
 // that the springs cannot give is clipped: both have to stay taut under tau_d, and preload_max.
 #include <Eigen/Cholesky>
 
+#include "controller/elastic/pair_inverse.h"
+#include "controller/elastic/vsa_stiffness.h"
+#include "controller/gains/nullspace.h"
+#include "controller/gains/stiffness_mapping.h"
 #include "controller/laws/registry.h"
-#include "controller/motor_side/pair_inverse.h"
-#include "controller/motor_side/vsa_stiffness.h"
-#include "controller/nullspace.h"
 #include "controller/observers/filtered_difference.h"
-#include "controller/stiffness_mapping.h"
 
 namespace limber::controller {
 namespace {
 
+enum class StiffnessFit { kDiagonal, kCompliance, kJoint };
+constexpr GainWord kFits[] = {{"diagonal", 0}, {"compliance", 1}, {"joint", 2}};
+GainRow stiffness_fit = {
+    .key = "stiffness_fit",
+    .meaning =
+        "joint stiffness from the diagonal of K_x in joint coordinates, from the compliances "
+        "nearest to K_x^-1, or K_q itself",
+    .words = kFits};
+
 constexpr double kBandwidth_rad_per_s = 50.0;
 constexpr double kLead_periods = 3.0;
-constexpr double kTorqueRateCorner_rad_per_s = 600.0;
 constexpr double kInfinite_Nm_per_rad = 1e9;
 constexpr double kLeastCompliance_rad_per_Nm = 1e-9;
 
@@ -52,11 +60,25 @@ class VariableStiffness : public Law {
         torque_sensors_((sensors_of(robot.robot) & sensors::kTorqueSensor) != 0),
         link_encoders_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
         tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / robot.robot.rate_hz),
-        wanted_(VectorJ::Zero(model_.size())) {
+        wanted_(VectorJ::Zero(model_.size())),
+        preload_(wanted_),
+        sigma_(wanted_) {
     for (const JointConfig& joint : robot.robot.joints) {
       const TransmissionConfig& t = joint.transmission;
       pairs_.push_back({{t.spring}, t.damping_Nms_per_rad, t.preload_max_rad});
     }
+  }
+
+  const char* check(const Gains& gains) const noexcept override {
+    if (gains.settings.model_compensation != ModelCompensation::kLawDefault) {
+      return "model_compensation: variable_stiffness carries the weight by its springs; choose "
+             "law_default";
+    }
+    if (chosen_fit(gains) != StiffnessFit::kCompliance) return nullptr;
+    const Eigen::LLT<Matrix6> cholesky(invertible_on_task(TaskRows(gains.K_x), gains.K_x));
+    return cholesky.info() == Eigen::Success
+               ? nullptr
+               : "stiffness_fit: compliance needs K_x to be positive definite where it has entries";
   }
 
   void start(const LawInputs& in) noexcept override {
@@ -71,17 +93,23 @@ class VariableStiffness : public Law {
     const double w = kBandwidth_rad_per_s;
     for (Eigen::Index i = 0; i < tau_d.size(); ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      const double c = in.measured.preload[i];
-      out->preload[i] = pair_preload(pair.springs, wanted_[i], tau_d[i], pair.preload_max_rad);
-      out->sigma[i] = pair.springs.stiffness(
-          out->preload[i], pair_deflection(pair.springs, out->preload[i], tau_d[i]));
+      const double c = in.state.preload[i];
+      preload_[i] = pair_preload(pair.springs, wanted_[i], tau_d[i], pair.preload_max_rad);
+      sigma_[i] =
+          pair.springs.stiffness(preload_[i], pair_deflection(pair.springs, preload_[i], tau_d[i]));
       const double e_d = in.goal.q_d[i] + pair_deflection(pair.springs, c, tau_d[i]);
-      out->tau_stiffness[i] = -in.terms.B[i] * w * w * (in.measured.theta[i] - e_d);
+      out->tau_stiffness[i] = -in.terms.B[i] * w * w * (in.state.theta[i] - e_d);
       out->tau_damping[i] = -2.0 * in.terms.B[i] * w * (in.state.theta_dot[i] - in.goal.v_d[i]);
     }
     out->tau_feedforward = spring_torque_ahead(in);
-    out->sets_preload = true;
-    out->fit_residual = residual_;
+  }
+
+  const VectorJ* preload() const noexcept override { return &preload_; }
+
+  void report(float* values) const noexcept override {
+    const Eigen::Index n = sigma_.size();
+    Eigen::Map<Eigen::VectorXf>(values, n) = sigma_.cast<float>();
+    values[n] = static_cast<float>(residual_);
   }
 
  private:
@@ -91,8 +119,12 @@ class VariableStiffness : public Law {
     double preload_max_rad;
   };
 
+  static StiffnessFit chosen_fit(const Gains& gains) noexcept {
+    return gains.parameters.choice<StiffnessFit>(stiffness_fit);
+  }
+
   VectorJ spring_torque_ahead(const LawInputs& in) noexcept {
-    const ArmState& s = in.measured;
+    const ArmState& s = in.state;
     const double T = kLead_periods * s.period_s;
     VectorJ tau = s.tau_measured;
     if (!link_encoders_) return tau + T * tau_rate_.update(tau);
@@ -108,7 +140,7 @@ class VariableStiffness : public Law {
 
   void fit(const LawInputs& in) noexcept {
     residual_ = 0.0;
-    if (in.gains.settings.stiffness_fit == StiffnessFit::kJoint) {
+    if (chosen_fit(in.gains) == StiffnessFit::kJoint) {
       wanted_ = in.gains.K_q.diagonal();
       return;
     }
@@ -118,7 +150,7 @@ class VariableStiffness : public Law {
       wanted_.setZero();
       return;
     }
-    const bool diagonal = in.gains.settings.stiffness_fit == StiffnessFit::kDiagonal;
+    const bool diagonal = chosen_fit(in.gains) == StiffnessFit::kDiagonal;
     const MatrixJ K_G = geometric_term(J, -in.goal.F_ff);
     const JointFit found = diagonal ? nearest_joint_stiffness(task.J, task.K, K_G)
                                     : nearest_joint_compliance(task.J, task.K);
@@ -136,19 +168,10 @@ class VariableStiffness : public Law {
   FilteredDifference<VectorJ> tau_rate_;
   std::vector<Pair> pairs_;
   VectorJ wanted_;
+  VectorJ preload_;
+  VectorJ sigma_;
   double residual_ = 0.0;
 };
-
-const char* refuse(const Gains& gains, int /*joints*/) {
-  if (gains.settings.bias != Bias::kOfLaw) {
-    return "bias: variable_stiffness carries the weight by its springs; choose of_law";
-  }
-  if (gains.settings.stiffness_fit != StiffnessFit::kCompliance) return nullptr;
-  const Eigen::LLT<Matrix6> cholesky(invertible_on_task(TaskRows(gains.K_x), gains.K_x));
-  return cholesky.info() == Eigen::Success
-             ? nullptr
-             : "stiffness_fit: compliance needs K_x to be positive definite where it has entries";
-}
 
 }  // namespace
 
@@ -156,10 +179,12 @@ LawEntry variable_stiffness_law() {
   return {.name = "variable_stiffness",
           .summary = "two motors a joint set the springs' stiffness",
           .needs = sensors::kMotorEncoder | sensors::kTwoMotors | sensors::kDeflection,
-          .follows = Follows::kJointGoalAndWrench,
-          .composition = {.gravity = false},
-          .statics = StaticForm::kGravity,
-          .refuse = refuse,
+          .goal_type = GoalType::kJointsAndWrench,
+          .compensation = {.gravity = false},
+          .potential = Potential::kGravity,
+          .parameters = {&stiffness_fit},
+          .reports = {{"sigma", "N m/rad", "joint stiffness set on the springs", true},
+                      {"fit_residual", "1", "share of the wanted tip stiffness that they miss"}},
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<VariableStiffness>(robot);
           }};

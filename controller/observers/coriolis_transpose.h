@@ -1,7 +1,7 @@
 // The Coriolis term that momentum has and acceleration has not.
 #pragma once
 
-#include "controller/arm_terms.h"
+#include "controller/model/arm_terms.h"
 
 namespace limber::controller {
 

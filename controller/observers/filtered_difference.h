@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "common/types.h"
-#include "controller/positive.h"
+#include "controller/model/positive.h"
 
 namespace limber::controller {
+
+/// Corner for the rate of joint torques and spring deflections, which laws of elastic joints damp.
+inline constexpr double kTorqueRateCorner_rad_per_s = 600.0;
 
 /// v_k = a v_{k-1} + (1 - a) (x_k - x_{k-1}) / T,   a = exp(-w_c T)
 /// (the difference is exact for the mean of the interval; Franklin, Powell, Workman: Digital

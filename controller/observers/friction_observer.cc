@@ -1,6 +1,6 @@
 #include "controller/observers/friction_observer.h"
 
-#include "controller/positive.h"
+#include "controller/model/positive.h"
 
 namespace limber::controller {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "controller/positive.h"
+#include "controller/model/positive.h"
 
 namespace limber::controller {
 

@@ -1,6 +1,6 @@
 #include "controller/observers/momentum_observer.h"
 
-#include "controller/positive.h"
+#include "controller/model/positive.h"
 
 namespace limber::controller {
 

@@ -13,8 +13,8 @@
 #include <limber/joint_state_t.hpp>
 
 #include "common/types.h"
-#include "controller/arm_terms.h"
-#include "robots/robot.h"
+#include "controller/model/arm_terms.h"
+#include "robots/loader/robot.h"
 
 namespace limber::controller {
 

@@ -1,4 +1,4 @@
-// What limber asks of a CAN bus, whatever carries it.
+// A CAN bus as the rest of limber uses it, whatever carries the frames.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,12 @@
 
 namespace limber {
 
+/// Where CanFrame::timestamp_ns of a received frame comes from.
+enum class Stamps : std::uint8_t {
+  kOnArrival,  ///< the kernel's time of arrival, CLOCK_MONOTONIC
+  kOfSender,   ///< virtual buses in lock step: the simulated wire's, arm time
+};
+
 struct CanStatistics {
   std::int64_t sent = 0;
   std::int64_t received = 0;
@@ -17,7 +23,8 @@ struct CanStatistics {
       0;  ///< queue full (ENOBUFS, EAGAIN) or link down: frame dropped, never queued
   std::int64_t error_frames = 0;
   std::int64_t malformed = 0;  ///< datagrams or frames that could not be a CAN frame
-  std::int64_t overflow = 0;   ///< frames lost in the receive queue, as far as the carrier tells
+  std::int64_t overflow =
+      0;  ///< frames lost in the receive queue, as far as the carrier counts them
   bool bus_off = false;
   bool link_down = false;
   int last_errno = 0;
@@ -46,12 +53,13 @@ class CanBus {
 
 /// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the
 /// reason and the cure (no such interface, interface down, no FD, no AF_CAN in this kernel, no
-/// multicast route). Set-up only.
+/// multicast route). Only a virtual bus can take the sender's stamps. Set-up only.
 ///
 /// virtual:NAME speaks python-can's udp_multicast format. NAME "default" is python-can's own group
 /// 239.74.163.2; another NAME selects a group 239.74.x.y by hash, an address "239.1.2.3" is taken
 /// as it is; port 43113, TTL 0. Environment LIMBER_VIRTUAL_BUS_PORT overrides the port.
-std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd);
+std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd,
+                                     Stamps stamps = Stamps::kOnArrival);
 
 /// Waits until one of the buses is readable or the absolute CLOCK_MONOTONIC time is reached (ns; <=
 /// 0: return at once). Returns false on time-out. May be called inside the cycle.

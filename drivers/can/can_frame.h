@@ -18,8 +18,7 @@ struct CanFrame {
   bool bitrate_switch = false;
   std::uint8_t length = 0;  ///< data bytes: 0..8, or an FD length up to 64
   std::array<std::uint8_t, 64> data{};
-  std::int64_t timestamp_ns =
-      0;  ///< receive time, CLOCK_MONOTONIC; simulated time on lock-step buses; 0 unknown
+  std::int64_t timestamp_ns = 0;  ///< receive time, see Stamps; 0 unknown
 };
 
 /// Rounds a payload length up to one an FD frame can have (0..8, 12, 16, 20, 24, 32, 48, 64). -1

@@ -34,7 +34,8 @@ class ReceiveBatch {
   std::int64_t timestamp_ns(int i) const noexcept {
     return timestamps_[static_cast<std::size_t>(i)];
   }
-  /// Datagrams the kernel has dropped because the socket's buffer was full, as far as it has told.
+  /// Datagrams the kernel has dropped because the socket's buffer was full, as far as it has
+  /// reported.
   std::int64_t lost() const noexcept { return lost_; }
 
  private:
@@ -69,7 +70,7 @@ class SendBatch {
   bool full() const noexcept { return count_ == kBatch; }
 
   /// Sends all that were added, without waiting, and forgets them. Returns how many the kernel
-  /// took; if not all, errno says why. May be called inside the cycle.
+  /// took; if not all, errno is the reason. May be called inside the cycle.
   int flush(int descriptor) noexcept;
   int size() const noexcept { return count_; }
 

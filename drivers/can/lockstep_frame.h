@@ -1,4 +1,4 @@
-// Lock step on the wire. Where the arm is simulated and no clock shall decide anything, the driver
+// Lock step on the wire. On a simulated arm without a clock the driver
 // ends each cycle with a TICK frame, and the simulator, having advanced by exactly one period,
 // answers TOCK with the same number. All replies to the cycle's commands lie before the TOCK, so a
 // lost reply is known to be lost without waiting. A TICK that is repeated (same number) is answered
@@ -14,6 +14,10 @@ namespace limber::lockstep {
 
 inline constexpr std::uint32_t kTickId = 0x1FFFFFF0;
 inline constexpr std::uint32_t kTockId = 0x1FFFFFF1;
+
+/// TICK of this number lets no time pass: what waits on a simulated wire is delivered, for the roll
+/// call before the first cycle. It has no TOCK.
+inline constexpr std::int64_t kStandstill = -1;
 
 /// Frame with an 8-byte little-endian sequence number.
 CanFrame tick(std::int64_t seq) noexcept;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "drivers/can/error_frame.h"
+
 namespace limber {
 
 /// A ring of received frames. One slot stays empty, so that equal indices mean "nothing waits".
@@ -36,6 +38,7 @@ class MemoryBus::End final : public CanBus {
     for (CanFrame& frame : frames) {
       if (first_ == last_) break;
       frame = ring_[first_];
+      if (frame.error) count_error_frame(frame, &statistics_);
       first_ = next(first_);
       ++taken;
     }

@@ -166,6 +166,15 @@ bool Reader::nil() noexcept {
   return true;
 }
 
+bool Reader::real(double* value) noexcept {
+  std::uint64_t bits = 0;
+  if (left_.size() < 9 || left_.front() != kFloat64) return false;
+  left_ = left_.subspan(1);
+  big_endian(8, &bits);
+  *value = std::bit_cast<double>(bits);
+  return true;
+}
+
 // Each object takes at least one byte, so this ends, however many objects a header promises.
 bool Reader::skip() noexcept {
   for (std::uint64_t pending = 1; pending > 0; --pending) {

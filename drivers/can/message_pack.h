@@ -44,8 +44,9 @@ class Reader {
   bool integer(std::uint64_t* value) noexcept;  ///< not negative, in any width
   bool boolean(bool* value) noexcept;
   bool binary(std::span<const std::uint8_t>* value) noexcept;
-  bool nil() noexcept;   ///< false leaves the reader where it was
-  bool skip() noexcept;  ///< any object, with all that it contains
+  bool nil() noexcept;                ///< false leaves the reader where it was
+  bool real(double* value) noexcept;  ///< 64 bits; false leaves the reader where it was
+  bool skip() noexcept;               ///< any object, with all that it contains
 
   bool at_end() const noexcept { return left_.empty(); }
 

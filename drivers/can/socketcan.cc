@@ -1,7 +1,6 @@
 #include "drivers/can/socketcan.h"
 
 #include <linux/can.h>
-#include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <net/if_arp.h>
@@ -12,8 +11,7 @@
 #include <cstring>
 
 #include "common/config_error.h"
-#include "drivers/can/datagram_batch.h"
-#include "drivers/can/file_descriptor.h"
+#include "drivers/can/datagram_bus.h"
 
 namespace limber {
 namespace {
@@ -24,8 +22,8 @@ namespace {
 
 std::string bring_up(const std::string& interface, bool fd) {
   return "sudo ip link set " + interface + " type can bitrate 1000000" +
-         (fd ? " dbitrate 5000000 fd on" : "") + " && sudo ip link set " + interface +
-         " txqueuelen 64 up";
+         (fd ? " dbitrate 5000000 fd on" : "") + " restart-ms 100 && sudo ip link set " +
+         interface + " txqueuelen 64 up";
 }
 
 FileDescriptor open_socket(const std::string& interface) {
@@ -39,11 +37,10 @@ FileDescriptor open_socket(const std::string& interface) {
   refuse(interface, std::string("cannot open a CAN socket: ") + std::strerror(errno));
 }
 
-/// Asks the kernel about an interface; the answer is in `request`.
-void ask(int socket, unsigned long what, const std::string& interface, ifreq* request) {
+/// Queries the kernel for a property of an interface; the answer is in `request`.
+void query(int socket, unsigned long what, const std::string& interface, ifreq* request) {
   if (ioctl(socket, what, request) == 0) return;
-  if (errno != ENODEV)
-    refuse(interface, std::string("cannot be asked about: ") + std::strerror(errno));
+  if (errno != ENODEV) refuse(interface, std::string("cannot be queried: ") + std::strerror(errno));
   refuse(interface,
          "there is no such interface. `ip -br link show type can` lists the adapters; a virtual "
          "one is made with: "
@@ -58,21 +55,21 @@ int checked_interface(int socket, const std::string& interface, bool fd) {
     refuse(interface, "an interface name has 1 to 15 characters");
   }
   std::memcpy(request.ifr_name, interface.data(), interface.size());
-  ask(socket, SIOCGIFHWADDR, interface, &request);
+  query(socket, SIOCGIFHWADDR, interface, &request);
   if (request.ifr_hwaddr.sa_family != ARPHRD_CAN) refuse(interface, "is not a CAN interface");
-  ask(socket, SIOCGIFFLAGS, interface, &request);
+  query(socket, SIOCGIFFLAGS, interface, &request);
   if ((request.ifr_flags & IFF_UP) == 0) {
     refuse(interface, "the interface is down. An adapter: " + bring_up(interface, fd) +
                           "; a virtual interface: sudo ip link set " + interface + " up");
   }
-  ask(socket, SIOCGIFMTU, interface, &request);
+  query(socket, SIOCGIFMTU, interface, &request);
   if (fd && request.ifr_mtu < static_cast<int>(CANFD_MTU)) {
     refuse(interface,
-           "the interface carries no CAN-FD, which the robot asks for. First sudo ip link set " +
+           "the interface carries no CAN-FD, which the robot needs. First sudo ip link set " +
                interface + " down, then an adapter: " + bring_up(interface, fd) +
                "; a virtual interface: sudo ip link set " + interface + " mtu 72 up");
   }
-  ask(socket, SIOCGIFINDEX, interface, &request);
+  query(socket, SIOCGIFINDEX, interface, &request);
   return request.ifr_ifindex;
 }
 
@@ -94,7 +91,7 @@ FileDescriptor open_bound(const std::string& interface, bool fd) {
   return socket;
 }
 
-/// Writes the kernel's form of a frame; returns its size, which is also what tells classic from FD.
+/// Writes the kernel's form of a frame; returns its size, which distinguishes classic from FD.
 std::size_t to_kernel(const CanFrame& frame, std::span<std::uint8_t> out) noexcept {
   canfd_frame raw{};
   raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) |
@@ -126,60 +123,31 @@ bool from_kernel(std::span<const std::uint8_t> bytes, CanFrame* frame) noexcept 
 
 bool is_link_error(int error) noexcept { return error == ENETDOWN || error == ENODEV; }
 
-class SocketCanBus final : public CanBus {
+class SocketCanBus final : public DatagramBus {
  public:
-  using CanBus::send;
-
   SocketCanBus(const std::string& interface, bool fd)
-      : fd_(fd), socket_(open_bound(interface, fd)) {}
-
-  int send(std::span<const CanFrame> frames) noexcept override {
-    int accepted = 0;
-    for (const CanFrame& frame : frames) {
-      if (!is_possible(frame) || (frame.fd && !fd_)) continue;
-      outgoing_.add(to_kernel(frame, outgoing_.next()));
-      if (outgoing_.full()) accepted += flush();
-    }
-    accepted += flush();
-    statistics_.sent += accepted;
-    statistics_.send_refused += static_cast<std::int64_t>(frames.size()) - accepted;
-    return accepted;
+      : DatagramBus(fd, Stamps::kOnArrival, CANFD_MTU, CANFD_MTU) {
+    receiver_ = open_bound(interface, fd);
   }
-
-  int receive(std::span<CanFrame> frames) noexcept override {
-    std::size_t taken = 0;
-    bool link_error = false;
-    while (taken < frames.size()) {
-      const int count = incoming_.receive(socket_.get(), static_cast<int>(frames.size() - taken));
-      if (count == 0) break;
-      if (count < 0) {
-        // The kernel reports a lost link once, perhaps late, before the frames that wait behind the
-        // report.
-        if (!note_error() || link_error) break;
-        link_error = true;
-        continue;
-      }
-      for (int i = 0; i < count; ++i) taken += accept(i, &frames[taken]) ? 1U : 0U;
-    }
-    statistics_.received += static_cast<std::int64_t>(taken);
-    statistics_.overflow = incoming_.lost();
-    return static_cast<int>(taken);
-  }
-
-  int descriptor() const noexcept override { return socket_.get(); }
-  const CanStatistics& statistics() const noexcept override { return statistics_; }
 
  private:
-  int flush() noexcept {
-    const int wanted = outgoing_.size();
-    if (wanted == 0) return 0;
-    const int sent = outgoing_.flush(socket_.get());
-    if (sent < wanted) note_error();
-    if (sent == wanted) statistics_.link_down = false;
-    return sent;
+  std::size_t encode(const CanFrame& frame, std::span<std::uint8_t> out) const noexcept override {
+    return to_kernel(frame, out);
+  }
+  bool decode(std::span<const std::uint8_t> datagram, CanFrame* frame) const noexcept override {
+    return from_kernel(datagram, frame);
   }
 
-  /// Keeps errno; true if it tells of the link.
+  void note_sent(int sent, int wanted) noexcept override {
+    if (sent < wanted) note_error();
+    if (sent == wanted) statistics_.link_down = false;
+  }
+
+  /// The kernel reports a lost link once, perhaps late, before the frames that wait behind the
+  /// report.
+  bool note_receive_error() noexcept override { return note_error(); }
+
+  /// Keeps errno; true if it is the link's.
   bool note_error() noexcept {
     statistics_.last_errno = errno;
     if (!is_link_error(errno)) return false;
@@ -188,30 +156,10 @@ class SocketCanBus final : public CanBus {
     return true;
   }
 
-  bool accept(int i, CanFrame* frame) noexcept {
-    if (!from_kernel(incoming_.datagram(i), frame)) {
-      ++statistics_.malformed;
-      return false;
-    }
-    frame->timestamp_ns = incoming_.timestamp_ns(i);
+  bool note_received(const CanFrame& /*frame*/) noexcept override {
     statistics_.link_down = false;
-    if (frame->error) note_error_frame(*frame);
     return true;
   }
-
-  void note_error_frame(const CanFrame& frame) noexcept {
-    ++statistics_.error_frames;
-    const bool active_again =
-        (frame.id & CAN_ERR_CRTL) != 0 && (frame.data[1] & CAN_ERR_CRTL_ACTIVE) != 0;
-    if ((frame.id & CAN_ERR_RESTARTED) != 0 || active_again) statistics_.bus_off = false;
-    if ((frame.id & CAN_ERR_BUSOFF) != 0) statistics_.bus_off = true;
-  }
-
-  bool fd_;
-  FileDescriptor socket_;
-  SendBatch outgoing_{CANFD_MTU};
-  ReceiveBatch incoming_{CANFD_MTU};
-  CanStatistics statistics_;
 };
 
 }  // namespace

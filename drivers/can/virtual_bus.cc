@@ -13,8 +13,7 @@
 #include <cstring>
 
 #include "common/config_error.h"
-#include "drivers/can/datagram_batch.h"
-#include "drivers/can/file_descriptor.h"
+#include "drivers/can/datagram_bus.h"
 #include "drivers/can/virtual_frame.h"
 
 namespace limber {
@@ -24,30 +23,17 @@ constexpr const char* kDefaultGroup = "239.74.163.2";
 constexpr std::uint16_t kDefaultPort = 43113;
 constexpr std::size_t kLongestDatagramBytes = 1024;  // ours have at most 256; others may add keys
 
-[[noreturn]] void refuse(const std::string& name, const std::string& problem) {
+[[noreturn]] void refuse_bus(const std::string& name, const std::string& problem) {
   throw ConfigError("virtual:" + name + ": " + problem);
 }
 
 [[noreturn]] void refuse_with_errno(const std::string& name, const std::string& attempt) {
   if (errno == ENETUNREACH || errno == ENODEV || errno == EADDRNOTAVAIL) {
-    refuse(name,
-           "there is no multicast route on this machine. Without a network it needs:\n"
-           "  sudo ip link set lo multicast on\n  sudo ip route add 224.0.0.0/4 dev lo");
+    refuse_bus(name,
+               "there is no multicast route on this machine. Without a network it needs:\n"
+               "  sudo ip link set lo multicast on\n  sudo ip route add 224.0.0.0/4 dev lo");
   }
-  refuse(name, attempt + ": " + std::strerror(errno));
-}
-
-std::uint16_t port() {
-  const char* text = std::getenv("LIMBER_VIRTUAL_BUS_PORT");
-  if (text == nullptr) return kDefaultPort;
-  std::uint16_t value = 0;
-  const char* end = text + std::strlen(text);
-  const auto [stop, error] = std::from_chars(text, end, value);
-  if (error != std::errc() || stop != end || value == 0) {
-    throw ConfigError("LIMBER_VIRTUAL_BUS_PORT: '" + std::string(text) +
-                      "' is not a port: 1 to 65535");
-  }
-  return value;
+  refuse_bus(name, attempt + ": " + std::strerror(errno));
 }
 
 std::uint32_t fnv1a(const std::string& text) {
@@ -89,7 +75,7 @@ FileDescriptor open_receiver(const std::string& name, const sockaddr_in& group) 
   return socket;
 }
 
-/// Sends from a port of its own, by which our frames can be told from everybody else's. Not
+/// Sends from a port of its own, by which our frames are distinguished from all others. Not
 /// connected: the kernel would fix a source address, and then prefer that address's interface to
 /// the route.
 FileDescriptor open_sender(const std::string& name) {
@@ -109,7 +95,7 @@ void drop_own(const std::string& name, int receiver, int sender) {
   sockaddr_in own{};
   socklen_t size = sizeof(own);
   if (getsockname(sender, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
-    refuse_with_errno(name, "cannot tell the port we send from");
+    refuse_with_errno(name, "cannot read the port to send from");
   }
   constexpr std::uint32_t kSourcePort = 0;  // a UDP socket's filter sees the UDP header first
   std::array<sock_filter, 4> program = {{
@@ -121,14 +107,13 @@ void drop_own(const std::string& name, int receiver, int sender) {
   set(name, receiver, SOL_SOCKET, SO_ATTACH_FILTER, sock_fprog{program.size(), program.data()});
 }
 
-class VirtualBus final : public CanBus {
+class VirtualBus final : public DatagramBus {
  public:
-  using CanBus::send;
-
-  VirtualBus(const std::string& name, bool fd) : fd_(fd) {
+  VirtualBus(const std::string& name, bool fd, Stamps stamps)
+      : DatagramBus(fd, stamps, kLongestEncodedBytes, kLongestDatagramBytes) {
     sockaddr_in group{};
     group.sin_family = AF_INET;
-    group.sin_port = htons(port());
+    group.sin_port = htons(virtual_bus_port());
     inet_pton(AF_INET, virtual_bus_group(name).c_str(), &group.sin_addr);
     receiver_ = open_receiver(name, group);
     sender_ = open_sender(name);
@@ -136,62 +121,24 @@ class VirtualBus final : public CanBus {
     outgoing_.set_destination(group);
   }
 
-  int send(std::span<const CanFrame> frames) noexcept override {
-    int accepted = 0;
-    for (const CanFrame& frame : frames) {
-      if (!is_possible(frame) || (frame.fd && !fd_)) continue;
-      outgoing_.add(encode_datagram(frame, outgoing_.next()));
-      if (outgoing_.full()) accepted += flush();
-    }
-    accepted += flush();
-    statistics_.sent += accepted;
-    statistics_.send_refused += static_cast<std::int64_t>(frames.size()) - accepted;
-    return accepted;
-  }
-
-  int receive(std::span<CanFrame> frames) noexcept override {
-    std::size_t taken = 0;
-    while (taken < frames.size()) {
-      const int count = incoming_.receive(receiver_.get(), static_cast<int>(frames.size() - taken));
-      if (count < 0) statistics_.last_errno = errno;
-      if (count <= 0) break;
-      for (int i = 0; i < count; ++i) taken += accept(i, &frames[taken]) ? 1U : 0U;
-    }
-    statistics_.received += static_cast<std::int64_t>(taken);
-    statistics_.overflow = incoming_.lost();
-    return static_cast<int>(taken);
-  }
-
-  int descriptor() const noexcept override { return receiver_.get(); }
-  const CanStatistics& statistics() const noexcept override { return statistics_; }
-
  private:
-  int flush() noexcept {
-    const int wanted = outgoing_.size();
-    if (wanted == 0) return 0;
-    const int sent = outgoing_.flush(sender_.get());
+  std::size_t encode(const CanFrame& frame, std::span<std::uint8_t> out) const noexcept override {
+    return encode_datagram(frame, out);
+  }
+  bool decode(std::span<const std::uint8_t> datagram, CanFrame* frame) const noexcept override {
+    return decode_datagram(datagram, frame);
+  }
+  bool note_received(const CanFrame& frame) noexcept override { return fd_ || !frame.fd; }
+
+  void note_sent(int sent, int wanted) noexcept override {
     statistics_.link_down =
         sent == 0 && (errno == ENETUNREACH || errno == ENETDOWN || errno == ENODEV);
     if (sent < wanted) statistics_.last_errno = errno;
-    return sent;
   }
-
-  bool accept(int i, CanFrame* frame) noexcept {
-    if (!decode_datagram(incoming_.datagram(i), frame)) {
-      ++statistics_.malformed;
-      return false;
-    }
-    frame->timestamp_ns = incoming_.timestamp_ns(i);
-    if (frame->error) ++statistics_.error_frames;
-    return fd_ || !frame->fd;
+  bool note_receive_error() noexcept override {
+    statistics_.last_errno = errno;
+    return false;
   }
-
-  bool fd_;
-  FileDescriptor receiver_;
-  FileDescriptor sender_;
-  SendBatch outgoing_{kLongestEncodedBytes};
-  ReceiveBatch incoming_{kLongestDatagramBytes};
-  CanStatistics statistics_;
 };
 
 }  // namespace
@@ -201,21 +148,34 @@ std::string virtual_bus_group(const std::string& name) {
   in_addr address{};
   if (inet_pton(AF_INET, name.c_str(), &address) == 1) {
     if (IN_MULTICAST(ntohl(address.s_addr))) return name;
-    refuse(name, "is no multicast address: 224.0.0.0 to 239.255.255.255");
+    refuse_bus(name, "is no multicast address: 224.0.0.0 to 239.255.255.255");
   }
   const auto is_allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_';
   };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_allowed)) {
-    refuse(name, "a name has letters, digits, '-' and '_' only, or is a multicast address");
+    refuse_bus(name, "a name has letters, digits, '-' and '_' only, or is a multicast address");
   }
   const std::uint32_t hash = fnv1a(name);
   const std::uint32_t low = (hash ^ (hash >> 16U)) & 0xFFFFU;
   return "239.74." + std::to_string(low >> 8U) + "." + std::to_string(low & 0xFFU);
 }
 
-std::unique_ptr<CanBus> open_virtual_bus(const std::string& name, bool fd) {
-  return std::make_unique<VirtualBus>(name, fd);
+std::uint16_t virtual_bus_port() {
+  const char* text = std::getenv("LIMBER_VIRTUAL_BUS_PORT");
+  if (text == nullptr) return kDefaultPort;
+  std::uint16_t value = 0;
+  const char* end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, value);
+  if (error != std::errc() || stop != end || value == 0) {
+    throw ConfigError("LIMBER_VIRTUAL_BUS_PORT: '" + std::string(text) +
+                      "' is not a port: 1 to 65535");
+  }
+  return value;
+}
+
+std::unique_ptr<CanBus> open_virtual_bus(const std::string& name, bool fd, Stamps stamps) {
+  return std::make_unique<VirtualBus>(name, fd, stamps);
 }
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 #include "drivers/can/virtual_frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -9,10 +10,13 @@
 namespace limber {
 namespace {
 
+constexpr double kLatest_s = 9e9;  // what 64 bits of nanoseconds hold
+
 struct Fields {
   std::optional<std::uint64_t> id;
   std::optional<std::uint64_t> dlc;
   std::span<const std::uint8_t> data;
+  double time_s = 0.0;
   bool extended = true;
   bool remote = false;
   bool error = false;
@@ -32,6 +36,7 @@ bool read_value(std::string_view key, message_pack::Reader* reader, Fields* fiel
   if (key == "arbitration_id") return read_optional_integer(reader, &fields->id);
   if (key == "dlc") return reader->nil() || read_optional_integer(reader, &fields->dlc);
   if (key == "data") return reader->nil() || reader->binary(&fields->data);
+  if (key == "timestamp") return reader->real(&fields->time_s) || reader->skip();
   if (key == "is_extended_id") return reader->boolean(&fields->extended);
   if (key == "is_remote_frame") return reader->boolean(&fields->remote);
   if (key == "is_error_frame") return reader->boolean(&fields->error);
@@ -53,6 +58,7 @@ bool to_frame(const Fields& fields, CanFrame* frame) noexcept {
   frame->fd = fields.fd;
   frame->bitrate_switch = fields.bitrate_switch;
   frame->length = static_cast<std::uint8_t>(length);
+  if (std::abs(fields.time_s) < kLatest_s) frame->timestamp_ns = std::llround(fields.time_s * 1e9);
   if (!fields.remote) std::copy(fields.data.begin(), fields.data.end(), frame->data.begin());
   return is_possible(*frame);
 }

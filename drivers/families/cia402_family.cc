@@ -24,17 +24,24 @@ DriveCondition condition_of(cia402::State state) noexcept {
   return DriveCondition::kDisabled;
 }
 
+cia402::StateLayout layout_of(const JointConfig& joint, bool fd) noexcept {
+  return {fd, joint.link_encoder.present, joint.torque_sensor.present};
+}
+
 }  // namespace
 
 Cia402Family::Cia402Family(const JointConfig& joint, bool fd, double period_s)
     : drive_(joint.drive),
       fd_(fd),
       link_encoder_(joint.link_encoder.present),
-      rad_per_count_(std::ldexp(2.0 * std::numbers::pi, -joint.drive.encoder_bits)),
+      torque_sensor_(joint.torque_sensor.present),
+      rad_per_count_(2.0 * std::numbers::pi / joint.drive.counts_per_turn),
       link_rad_per_count_(std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)),
       rated_current_A_(joint.drive.rated_torque_Nm / joint.drive.torque_constant_Nm_per_A),
       most_torque_(most_permille(joint) * drive_.rated_torque_Nm / 1000.0),
-      startup_(joint, period_s) {}
+      state_(layout_of(joint, fd), node()),
+      last_state_(state_),
+      startup_(joint, layout_of(joint, fd), period_s) {}
 
 // --- towards the drive ---------------------------------------------------------------------------
 
@@ -74,19 +81,31 @@ CanFrame Cia402Family::presence_request() const noexcept {
 // --- from the drive ------------------------------------------------------------------------------
 
 bool Cia402Family::is_mine(const CanFrame& frame) const noexcept {
-  return has_id(frame, drive_.reply_id) || is_aside(frame);
+  return state_.is_part(frame) || is_unsolicited(frame);
 }
 
-bool Cia402Family::is_aside(const CanFrame& frame) const noexcept {
+bool Cia402Family::is_unsolicited(const CanFrame& frame) const noexcept {
+  // Before the start-up has switched them off, a drive may send more TPDOs than are used.
+  for (int k = state_.tpdos(); k < canopen::kPdos; ++k) {
+    if (has_id(frame, canopen::tpdo_id(k, node()))) return true;
+  }
   return has_id(frame, canopen::kSdoAnswerCode + node()) ||
          has_id(frame, canopen::kEmergencyCode + node()) ||
          has_id(frame, canopen::kHeartbeatCode + node());
 }
 
-bool Cia402Family::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
-  cia402::DriveState state;
-  if (!has_id(frame, drive_.reply_id) || !cia402::decode_state(frame, link_encoder_, &state))
-    return false;
+bool Cia402Family::is_presence(const CanFrame& frame) const noexcept {
+  canopen::SdoMessage answer;
+  return canopen::decode_sdo_answer(frame, node(), &answer) &&
+         answer.object == canopen::kDeviceType.id;
+}
+
+StateReading Cia402Family::read_state(const CanFrame& frame, bool late,
+                                      DriveReport* report) noexcept {
+  Cia402State& parts = late ? last_state_ : state_;
+  const StateReading reading = parts.take(frame);
+  if (reading != StateReading::kWhole) return reading;
+  const cia402::DriveState& state = parts.values();
   report->condition = condition_of(cia402::state_of(state.statusword));
   report->status = state.statusword;
   report->angle_rad = state.position_counts * rad_per_count_;
@@ -97,8 +116,25 @@ bool Cia402Family::read_state(const CanFrame& frame, DriveReport* report) const 
                                      ? state.link_velocity_counts_per_s * link_rad_per_count_
                                      : report->speed_rad_per_s;
   report->torque_Nm = cia402::from_permille(state.torque_permille, drive_.rated_torque_Nm);
-  report->current_A = cia402::from_permille(state.current_permille, rated_current_A_);
-  return true;
+  report->current_A = fd_ || torque_sensor_
+                          ? cia402::from_permille(state.current_permille, rated_current_A_)
+                          : report->torque_Nm / drive_.torque_constant_Nm_per_A;
+  return reading;
+}
+
+/// Only a node that is operational sends PDOs.
+Answer Cia402Family::check_answer(int index, const CanFrame& frame, double* found) noexcept {
+  if (!startup_.is_start(index)) return startup_.check_answer(index, frame, found);
+  *found = 0.0;
+  switch (state_.take(frame)) {
+    case StateReading::kWhole:
+      return Answer::kRight;
+    case StateReading::kPart:
+      return Answer::kNotYet;
+    case StateReading::kNone:
+      break;
+  }
+  return Answer::kNone;
 }
 
 }  // namespace limber

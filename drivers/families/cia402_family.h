@@ -1,10 +1,11 @@
-// CANopen drives with profile CiA 402 in cyclic synchronous torque mode. A drive takes its command
-// (RPDO1) and tells its state (TPDO1) at the SYNC, which is also what asks for the state.
+// CANopen drives with profile CiA 402 in cyclic synchronous torque mode. At the SYNC a drive
+// executes its command (RPDO1) and sends its state (TPDO1, and those that follow it).
 #pragma once
 
 #include "drivers/families/cia402_startup.h"
+#include "drivers/families/cia402_state.h"
 #include "drivers/families/drive_family.h"
-#include "drivers/protocols/cia402.h"
+#include "drivers/protocols/cia402_pdos.h"
 
 namespace limber {
 
@@ -12,7 +13,7 @@ class Cia402Family final : public DriveFamily {
  public:
   Cia402Family(const JointConfig& joint, bool fd, double period_s);
 
-  /// The drive knows no gains: tau = kp (angle - angle seen) + kd (speed - speed seen) + torque is
+  /// The drive has no gains: tau = kp (angle - angle seen) + kd (speed - speed seen) + torque is
   /// computed here, a cycle late, and is `torque` alone if the drive was not seen of late. The
   /// rounding error of the torque, up to half a thousandth of the rated one, is added to the next.
   bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
@@ -28,21 +29,28 @@ class Cia402Family final : public DriveFamily {
     return true;
   }
 
-  /// TPDO1, SDO answers, emergencies, boot-up and heartbeat of the node.
+  /// TPDOs, SDO answers, emergencies, boot-up and heartbeat of the node.
   bool is_mine(const CanFrame& frame) const noexcept override;
-  /// All of them but TPDO1.
-  bool is_aside(const CanFrame& frame) const noexcept override;
-  bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
+  /// All of them but the TPDOs that make the state.
+  bool is_unsolicited(const CanFrame& frame) const noexcept override;
+  bool is_presence(const CanFrame& frame) const noexcept override;
+  void begin_cycle() noexcept override {
+    last_state_ = state_;
+    state_.begin();
+  }
+  StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
   double angle_resolution() const noexcept override { return rad_per_count_; }
 
   bool disable_is_answered() const noexcept override { return false; }
   int patience_cycles() const noexcept override { return startup_.patience_cycles(); }
-  int questions() const noexcept override { return startup_.questions(); }
-  StartupQuestion question(int index) const noexcept override { return startup_.question(index); }
-  CanFrame ask(int index) const noexcept override { return startup_.ask(index); }
-  Answer judge(int index, const CanFrame& frame, double* found) const noexcept override {
-    return startup_.judge(index, frame, found);
+  int startup_steps() const noexcept override { return startup_.startup_steps(); }
+  StartupStep startup_step(int index) const noexcept override {
+    return startup_.startup_step(index);
   }
+  CanFrame startup_request(int index) const noexcept override {
+    return startup_.startup_request(index);
+  }
+  Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
   std::string describe(const StartupFailure& failure) const override {
     return startup_.describe(failure);
   }
@@ -54,11 +62,14 @@ class Cia402Family final : public DriveFamily {
   DriveConfig drive_;
   bool fd_;
   bool link_encoder_;
+  bool torque_sensor_;
   double rad_per_count_;
   double link_rad_per_count_;
   double rated_current_A_;
-  double most_torque_;  ///< N m: whole thousandths within the joint's limit
-  double carry_ = 0.0;  ///< rounding error not sent yet, N m
+  double most_torque_;      ///< N m: whole thousandths within the joint's limit
+  double carry_ = 0.0;      ///< rounding error not sent yet, N m
+  Cia402State state_;       ///< of this cycle
+  Cia402State last_state_;  ///< of the one before: the rest of it may come late
   Cia402Startup startup_;
 };
 

@@ -15,7 +15,7 @@ using canopen::Object;
 using canopen::SdoKind;
 using canopen::SdoMessage;
 
-constexpr double kPatience_s = 0.05;  // SDO servers run beside the drive's cycle
+constexpr double kPatience_s = 1.0;  // SDO servers run beside the drive's cycle
 constexpr std::uint32_t kProfileMask = 0xFFFF;
 constexpr std::uint32_t kProfile = 402;
 constexpr std::uint32_t kTorqueMode = 1U << (cia402::kCyclicSynchronousTorque - 1);
@@ -24,6 +24,26 @@ constexpr std::uint32_t kSynchronous = 1;
 constexpr double kMostPermille = 32767.0;
 constexpr std::uint32_t kFaultPowerOff = 0;  // 605Eh
 constexpr std::uint32_t kFaultBrakes = 2;    // by the quick stop's ramp
+constexpr double kCountsAgree = 1e-9;        // of themselves
+
+// Counts per turn of the joint: first over second, times third over fourth.
+constexpr std::array kCountsObjects = {cia402::kEncoderCounts, cia402::kEncoderTurns,
+                                       cia402::kGearMotorTurns, cia402::kGearJointTurns};
+
+/// What it means that a drive has no such object.
+struct MissingObject {
+  canopen::ObjectId id;
+  const char* meaning;
+};
+constexpr std::array kMayBeMissing = {
+    MissingObject{canopen::pdo_event_timer_ms(canopen::kRpdoCommunication).id,
+                  "the drive does not notice that its commands have stopped"},
+    MissingObject{cia402::kConnectionLostOption.id,
+                  "what the drive does when its commands stop is its maker's choice"},
+    MissingObject{cia402::kFaultOption.id, "what the drive does in a fault is its maker's choice"},
+    MissingObject{cia402::kCyclePeriod.id, "the drive is not told the cycle time"},
+    MissingObject{cia402::kCyclePeriodExponent.id, "the drive is not told the cycle time"},
+};
 
 std::uint32_t whole(double value) noexcept {
   return static_cast<std::uint32_t>(std::llround(value));
@@ -58,12 +78,13 @@ std::uint32_t most_permille(const JointConfig& joint) noexcept {
   return whole(std::min(std::floor(permille * (1.0 + 1e-12)), kMostPermille));
 }
 
-Cia402Startup::Cia402Startup(const JointConfig& joint, double period_s)
+Cia402Startup::Cia402Startup(const JointConfig& joint, const cia402::StateLayout& layout,
+                             double period_s)
     : node_(canopen::node_of(joint.drive.command_id)),
-      state_id_(joint.drive.reply_id),
-      link_encoder_(joint.link_encoder.present),
+      tpdos_(cia402::tpdos_of(layout)),
+      counts_per_turn_(joint.drive.counts_per_turn),
       patience_cycles_(std::max(1, static_cast<int>(std::ceil(kPatience_s / period_s)))) {
-  steps_.push_back({Kind::kPreOperational, {}, 0, 0, Number::kUnsigned});
+  steps_.push_back({Kind::kPreOperational, {}, 0, 0, Number::kUnsigned, Absence::kRefused});
   write(cia402::kControlword, cia402::kDisableVoltage);
   await(cia402::kStatusword, 0, kPowerBits);
   plan_identity(joint);
@@ -71,17 +92,25 @@ Cia402Startup::Cia402Startup(const JointConfig& joint, double period_s)
   plan_torque_loop(joint);
   plan_pdo(canopen::kRpdoCommunication, canopen::kRpdoMapping, joint.drive.command_id,
            cia402::command_objects());
-  plan_pdo(canopen::kTpdoCommunication, canopen::kTpdoMapping, joint.drive.reply_id,
-           cia402::state_objects(link_encoder_));
-  steps_.push_back({Kind::kStart, {}, 0, 0, Number::kUnsigned});
+  for (int k = 0; k < canopen::kPdos; ++k) {
+    const auto offset = static_cast<std::uint16_t>(k);
+    if (k < tpdos_)
+      plan_pdo(canopen::kTpdoCommunication + offset, canopen::kTpdoMapping + offset,
+               canopen::tpdo_id(k, node_), cia402::state_objects(layout, k));
+    else
+      switch_off_tpdo(k);
+  }
+  steps_.push_back({Kind::kStart, {}, 0, 0, Number::kUnsigned, Absence::kRefused});
 }
 
 void Cia402Startup::plan_identity(const JointConfig& joint) {
   compare(canopen::kDeviceType, kProfile, kProfileMask);
   compare(cia402::kSupportedModes, kTorqueMode, kTorqueMode);
   compare(cia402::kRatedTorque_mNm, whole(1000.0 * joint.drive.rated_torque_Nm));
-  compare(cia402::kEncoderCounts, 1U << static_cast<unsigned>(joint.drive.encoder_bits));
-  if (link_encoder_)
+  for (std::size_t i = 0; i < kCountsObjects.size(); ++i)
+    steps_.push_back({Kind::kCounts, kCountsObjects[i], static_cast<std::uint32_t>(i), 0,
+                      Number::kUnsigned, i == 0 ? Absence::kRefused : Absence::kSilent});
+  if (joint.link_encoder.present)
     compare(cia402::kLinkEncoderCounts, 1U << static_cast<unsigned>(joint.link_encoder.bits));
 }
 
@@ -90,19 +119,23 @@ void Cia402Startup::plan_settings(const JointConfig& joint, double period_s) {
   await(cia402::kModeInForce, cia402::kCyclicSynchronousTorque);
   write_and_compare(cia402::kMaxTorque, most_permille(joint));
   write_and_compare(canopen::pdo_event_timer_ms(canopen::kRpdoCommunication),
-                    std::max(1U, whole(1000.0 * joint.drive.watchdog_s)));
+                    std::max(1U, whole(1000.0 * joint.drive.watchdog_s)), Number::kUnsigned,
+                    Absence::kWarned);
   write_and_compare(cia402::kConnectionLostOption,
-                    static_cast<std::uint32_t>(cia402::Reaction::kFault), Number::kSigned);
+                    static_cast<std::uint32_t>(cia402::Reaction::kFault), Number::kSigned,
+                    Absence::kWarned);
   const bool damps = joint.drive.watchdog_reaction == NodeWatchdogReaction::kDamp;
-  write_and_compare(cia402::kFaultOption, damps ? kFaultBrakes : kFaultPowerOff, Number::kSigned);
+  write_and_compare(cia402::kFaultOption, damps ? kFaultBrakes : kFaultPowerOff, Number::kSigned,
+                    Absence::kWarned);
   const CyclePeriod period = cycle_period(period_s);
-  write_and_compare(cia402::kCyclePeriod, period.count);
+  write_and_compare(cia402::kCyclePeriod, period.count, Number::kUnsigned, Absence::kWarned);
   write_and_compare(cia402::kCyclePeriodExponent,
-                    static_cast<std::uint32_t>(period.exponent) & 0xFFU, Number::kSigned);
+                    static_cast<std::uint32_t>(period.exponent) & 0xFFU, Number::kSigned,
+                    Absence::kWarned);
 }
 
 void Cia402Startup::plan_torque_loop(const JointConfig& joint) {
-  // A drive that one can buy has no such object: it is asked for where robot.yaml tells of it.
+  // Drives off the shelf have no such object: it is read where robot.yaml describes a current loop.
   const double lag_s = joint.drive.actuator.lag_s;
   if (lag_s > 0.0) compare(cia402::kCurrentLoopLag_us, whole(1e6 * lag_s));
   if (!joint.torque_sensor.present) return;
@@ -130,21 +163,29 @@ void Cia402Startup::plan_pdo(std::uint16_t communication, std::uint16_t mapping,
   write(canopen::pdo_cob_id(communication), id);
 }
 
-void Cia402Startup::write(const Object& object, std::uint32_t value) {
-  steps_.push_back({Kind::kWrite, object, value, 0, Number::kUnsigned});
+/// As a drive is delivered, it may send TPDOs of its own.
+void Cia402Startup::switch_off_tpdo(int k) {
+  const auto record = static_cast<std::uint16_t>(canopen::kTpdoCommunication + k);
+  write(canopen::pdo_cob_id(record), canopen::tpdo_id(k, node_) | canopen::kPdoDisabled,
+        Absence::kSilent);
 }
 
-void Cia402Startup::write_and_compare(const Object& object, std::uint32_t value, Number number) {
-  write(object, value);
-  steps_.push_back({Kind::kCompare, object, value, 0xFFFFFFFF, number});
+void Cia402Startup::write(const Object& object, std::uint32_t value, Absence absence) {
+  steps_.push_back({Kind::kWrite, object, value, 0, Number::kUnsigned, absence});
+}
+
+void Cia402Startup::write_and_compare(const Object& object, std::uint32_t value, Number number,
+                                      Absence absence) {
+  write(object, value, absence);
+  steps_.push_back({Kind::kCompare, object, value, 0xFFFFFFFF, number, absence});
 }
 
 void Cia402Startup::compare(const Object& object, std::uint32_t value, std::uint32_t mask) {
-  steps_.push_back({Kind::kCompare, object, value, mask, Number::kUnsigned});
+  steps_.push_back({Kind::kCompare, object, value, mask, Number::kUnsigned, Absence::kRefused});
 }
 
 void Cia402Startup::await(const Object& object, std::uint32_t value, std::uint32_t mask) {
-  steps_.push_back({Kind::kAwait, object, value, mask, Number::kUnsigned});
+  steps_.push_back({Kind::kAwait, object, value, mask, Number::kUnsigned, Absence::kRefused});
 }
 
 // --- the dialogue --------------------------------------------------------------------------------
@@ -156,56 +197,72 @@ double Cia402Startup::value_of(const Step& step, std::uint32_t raw) noexcept {
   return static_cast<std::int32_t>(raw << unused) >> unused;
 }
 
-StartupQuestion Cia402Startup::question(int index) const noexcept {
-  const Step& asked = step(index);
-  return {asked.object.id.number(), value_of(asked, asked.value),
-          asked.kind != Kind::kPreOperational};
+StartupStep Cia402Startup::startup_step(int index) const noexcept {
+  const Step& planned = step(index);
+  const double expected =
+      planned.kind == Kind::kCounts ? counts_per_turn_ : value_of(planned, planned.value);
+  return {planned.object.id.number(), expected, planned.kind != Kind::kPreOperational};
 }
 
-CanFrame Cia402Startup::ask(int index) const noexcept {
-  const Step& asked = step(index);
-  switch (asked.kind) {
+CanFrame Cia402Startup::startup_request(int index) const noexcept {
+  const Step& planned = step(index);
+  switch (planned.kind) {
     case Kind::kPreOperational:
       return canopen::encode_nmt(canopen::NmtCommand::kPreOperational, node_);
     case Kind::kStart:
       return canopen::encode_nmt(canopen::NmtCommand::kStart, node_);
     case Kind::kWrite:
-      return canopen::encode_sdo_write(asked.object, asked.value, node_);
+      return canopen::encode_sdo_write(planned.object, planned.value, node_);
     case Kind::kCompare:
     case Kind::kAwait:
+    case Kind::kCounts:
       break;
   }
-  return canopen::encode_sdo_read(asked.object.id, node_);
+  return canopen::encode_sdo_read(planned.object.id, node_);
 }
 
-Answer Cia402Startup::judge(int index, const CanFrame& frame, double* found) const noexcept {
-  const Step& asked = step(index);
-  if (asked.kind == Kind::kStart) return judge_started(frame);
+Answer Cia402Startup::check_answer(int index, const CanFrame& frame, double* found) noexcept {
+  const Step& planned = step(index);
   SdoMessage message;
-  if (!canopen::decode_sdo_answer(frame, node_, &message) || message.object != asked.object.id)
+  if (!canopen::decode_sdo_answer(frame, node_, &message) || message.object != planned.object.id)
     return Answer::kNone;
-  if (message.kind == SdoKind::kAbort) {
-    *found = message.value;
-    return Answer::kRefused;
-  }
-  const bool writing = asked.kind == Kind::kWrite;
+  if (message.kind == SdoKind::kAbort) return check_absence(planned, message.value, found);
+  const bool writing = planned.kind == Kind::kWrite;
   if (message.kind != (writing ? SdoKind::kWrite : SdoKind::kRead)) return Answer::kNone;
   if (writing) return Answer::kRight;
-  const std::uint32_t raw = message.value & asked.mask;
-  *found = value_of(asked, raw);
-  if (raw == asked.value) return Answer::kRight;
-  return asked.kind == Kind::kAwait ? Answer::kNotYet : Answer::kWrong;
+  if (planned.kind == Kind::kCounts) return check_counts(planned, message.value, found);
+  const std::uint32_t raw = message.value & planned.mask;
+  *found = value_of(planned, raw);
+  if (raw == planned.value) return Answer::kRight;
+  return planned.kind == Kind::kAwait ? Answer::kNotYet : Answer::kWrong;
 }
 
-/// Only a node that is operational sends PDOs.
-Answer Cia402Startup::judge_started(const CanFrame& frame) const noexcept {
-  cia402::DriveState state;
-  const bool told = has_id(frame, state_id_) && cia402::decode_state(frame, link_encoder_, &state);
-  return told ? Answer::kRight : Answer::kNone;
+Answer Cia402Startup::check_absence(const Step& planned, std::uint32_t abort_code,
+                                    double* found) noexcept {
+  const auto code = static_cast<canopen::SdoAbort>(abort_code);
+  const bool absent =
+      code == canopen::SdoAbort::kNoSuchObject || code == canopen::SdoAbort::kNoSuchSub;
+  *found = abort_code;
+  if (!absent || planned.absence == Absence::kRefused) return Answer::kRefused;
+  if (planned.absence == Absence::kWarned) return Answer::kMissing;
+  return planned.kind == Kind::kCounts ? check_counts(planned, 1, found) : Answer::kRight;
+}
+
+Answer Cia402Startup::check_counts(const Step& planned, std::uint32_t value,
+                                   double* found) noexcept {
+  counts_read_[planned.value] = value;
+  if (planned.value + 1 < counts_read_.size()) return Answer::kRight;
+  const auto [counts, turns, motor_turns, joint_turns] = counts_read_;
+  *found = counts / turns * (motor_turns / joint_turns);
+  const bool right = std::abs(*found - counts_per_turn_) <= kCountsAgree * counts_per_turn_;
+  return right ? Answer::kRight : Answer::kWrong;
 }
 
 std::string Cia402Startup::describe(const StartupFailure& failure) const {
-  if (failure.reg == 0) return "sends no state (TPDO1) after the start";
+  if (failure.reg == 0)
+    return failure.answer == Answer::kNotYet
+               ? fmt::format("sends some, but not all of its {} TPDOs after the start", tpdos_)
+               : "sends no state (TPDO1) after the start";
   const std::string object =
       fmt::format("object {:04X}h:{:02X}", failure.reg >> 8U, failure.reg & 0xFFU);
   switch (failure.answer) {
@@ -215,10 +272,19 @@ std::string Cia402Startup::describe(const StartupFailure& failure) const {
     case Answer::kRefused:
       return fmt::format("{} refused: {}", object,
                          canopen::text_of(static_cast<canopen::SdoAbort>(failure.found)));
+    case Answer::kMissing:
+      for (const MissingObject& missing : kMayBeMissing) {
+        if (missing.id.number() == failure.reg)
+          return fmt::format("{} is missing: {}", object, missing.meaning);
+      }
+      break;
     case Answer::kNone:
     case Answer::kRight:
       return object + " not answered";
     case Answer::kWrong:
+      if (failure.reg == kCountsObjects.back().id.number())
+        return fmt::format("counts {:.10g} a turn of the joint (608Fh, 6091h), expected {:.10g}",
+                           failure.found, failure.expected);
       break;
   }
   return fmt::format("{} is {:.10g}, expected {:.10g}", object, failure.found, failure.expected);

@@ -1,7 +1,10 @@
 #include "drivers/families/damiao_family.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace limber {
 namespace {
@@ -32,6 +35,19 @@ DriveCondition condition_of(mit::DriveError status) noexcept {
       return DriveCondition::kDisabled;
     default:
       return DriveCondition::kFailed;
+  }
+}
+
+const char* remedy(mit::DriveError error) noexcept {
+  switch (error) {
+    case mit::DriveError::kOverVoltage:
+    case mit::DriveError::kUnderVoltage:
+      return "; check the supply";
+    case mit::DriveError::kMosOverTemperature:
+    case mit::DriveError::kRotorOverTemperature:
+      return "; let it cool";
+    default:
+      return "";
   }
 }
 
@@ -87,12 +103,14 @@ CanFrame DamiaoFamily::presence_request() const noexcept {
   return mit::encode_register_read(id(), mit::Register::kControlMode, fd_);
 }
 
-bool DamiaoFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
+StateReading DamiaoFamily::read_state(const CanFrame& frame, bool /*late*/,
+                                      DriveReport* report) noexcept {
   const CommandRange& range = drive_.range;
   mit::Reply reply;
-  if (!mit::decode_reply(frame, range, &reply)) return false;
-  if (reply.id_nibble != (drive_.command_id & 0xF)) return false;
+  if (!mit::decode_reply(frame, range, &reply)) return StateReading::kNone;
+  if (reply.id_nibble != (drive_.command_id & 0xF)) return StateReading::kNone;
   report->condition = condition_of(reply.error);
+  report->status = static_cast<std::uint16_t>(reply.error);
   report->angle_rad = reply.position_rad + mit::half_count(range.position_rad, kPositionBits);
   report->speed_rad_per_s =
       reply.velocity_rad_per_s + mit::half_count(range.velocity_rad_per_s, kBits);
@@ -101,25 +119,34 @@ bool DamiaoFamily::read_state(const CanFrame& frame, DriveReport* report) const 
   report->torque_Nm = reply.torque_Nm + mit::half_count(range.torque_Nm, kBits);
   report->current_A = report->torque_Nm / drive_.torque_constant_Nm_per_A;
   report->temperature_degC = reply.rotor_temperature_degC;
-  return true;
+  return StateReading::kWhole;
+}
+
+std::string DamiaoFamily::status_text(std::uint16_t status) const {
+  const auto error = static_cast<mit::DriveError>(status);
+  if (error == mit::DriveError::kDisabled) return "disabled, without an error";
+  if (error == mit::DriveError::kEnabled) return "enabled";
+  const std::string_view text = mit::error_text(error);
+  return fmt::format("error {:X}: {}{}", status, text.empty() ? "not in the manual" : text,
+                     remedy(error));
 }
 
 double DamiaoFamily::angle_resolution() const noexcept {
   return 2.0 * mit::half_count(drive_.range.position_rad, kPositionBits);
 }
 
-StartupQuestion DamiaoFamily::question(int index) const noexcept {
+StartupStep DamiaoFamily::startup_step(int index) const noexcept {
   const Step& step = steps_[static_cast<std::size_t>(index)];
   return {static_cast<std::uint32_t>(step.reg), value_of(step.reg, step.raw)};
 }
 
-CanFrame DamiaoFamily::ask(int index) const noexcept {
+CanFrame DamiaoFamily::startup_request(int index) const noexcept {
   const Step& step = steps_[static_cast<std::size_t>(index)];
   return step.kind == Kind::kWrite ? mit::encode_register_write(id(), step.reg, step.raw, fd_)
                                    : mit::encode_register_read(id(), step.reg, fd_);
 }
 
-Answer DamiaoFamily::judge(int index, const CanFrame& frame, double* found) const noexcept {
+Answer DamiaoFamily::check_answer(int index, const CanFrame& frame, double* found) noexcept {
   const Step& step = steps_[static_cast<std::size_t>(index)];
   std::uint32_t raw = 0;
   const std::uint8_t operation = step.kind == Kind::kWrite ? kWrite : kRead;

@@ -1,6 +1,6 @@
 // Damiao drives: MIT frames, registers for the start-up.
 //
-// Questions: PMAX, VMAX, TMAX equal robot.yaml -> CTRL_MODE := MIT, read back
+// Start-up: PMAX, VMAX, TMAX equal robot.yaml -> CTRL_MODE := MIT, read back
 //            -> TIMEOUT := watchdog_s, read back
 #pragma once
 
@@ -32,13 +32,14 @@ class DamiaoFamily final : public DriveFamily {
     return has_id(frame, drive_.reply_id);
   }
   /// Half a count is added to the fields, because drives truncate.
-  bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
+  StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
+  std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;
 
-  int questions() const noexcept override { return kQuestions; }
-  StartupQuestion question(int index) const noexcept override;
-  CanFrame ask(int index) const noexcept override;
-  Answer judge(int index, const CanFrame& frame, double* found) const noexcept override;
+  int startup_steps() const noexcept override { return kSteps; }
+  StartupStep startup_step(int index) const noexcept override;
+  CanFrame startup_request(int index) const noexcept override;
+  Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
 
  private:
   enum class Kind : std::uint8_t { kCompareRange, kWrite, kReadBack };
@@ -47,7 +48,7 @@ class DamiaoFamily final : public DriveFamily {
     mit::Register reg;
     std::uint32_t raw;  ///< expected or written
   };
-  static constexpr int kQuestions = 7;
+  static constexpr int kSteps = 7;
 
   CanFrame special(mit::Special special) noexcept;
   std::uint16_t id() const noexcept { return static_cast<std::uint16_t>(drive_.command_id); }
@@ -56,7 +57,7 @@ class DamiaoFamily final : public DriveFamily {
   bool fd_;
   double most_torque_;  ///< N m: the limit less what rounding may add
   double carry_ = 0.0;  ///< rounding error not sent yet, N m
-  std::array<Step, kQuestions> steps_;
+  std::array<Step, kSteps> steps_;
 };
 
 }  // namespace limber

@@ -12,6 +12,10 @@ bool all_finite(const DriveCommand& command) noexcept {
          std::isfinite(command.torque_Nm);
 }
 
+std::string DriveFamily::status_text(std::uint16_t status) const {
+  return fmt::format("status 0x{:04X}", status);
+}
+
 std::string DriveFamily::describe(const StartupFailure& failure) const {
   if (failure.reg == 0) return "could not be disabled, or does not answer";
   if (failure.answer == Answer::kNone) return fmt::format("register {} not answered", failure.reg);

@@ -1,5 +1,5 @@
-// The language of one motor drive: what limber says to it and hears from it, as frames. One
-// implementation a family of drives, one object a drive. Angles, speeds and torques are the
+// Encodes commands to, and decodes replies from, one type of motor drive. One implementation a
+// family of drives, one object a drive. Angles, speeds and torques are the
 // drive's own, in rad, rad/s and N m at the joint, before the joint's sign and offset.
 //
 // After construction every member is free of allocation, locks, logs and exceptions.
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "drivers/can/can_frame.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber {
 
@@ -27,7 +27,7 @@ bool all_finite(const DriveCommand& command) noexcept;
 
 enum class DriveCondition : std::uint8_t {
   kDisabled,  ///< or on its way to being enabled
-  kEnabled,   ///< obeys commands
+  kEnabled,   ///< executes commands
   kFailed,    ///< needs clear_error()
 };
 
@@ -41,28 +41,36 @@ struct DriveReport {
       0.0;  ///< on the link if the joint has a torque sensor, else the drive's estimate
   double current_A = 0.0;  ///< q axis
   double temperature_degC = 0.0;
-  std::uint16_t status = 0;  ///< the family's own word for it
+  std::uint16_t status = 0;  ///< status or error code in the family's own numbers
 };
 
-/// What is known of a drive when it is spoken to.
+/// What a frame has of a drive's state, which may come in several.
+enum class StateReading : std::uint8_t {
+  kNone,
+  kPart,   ///< more is to come in this cycle
+  kWhole,  ///< all of it is there
+};
+
+/// The drive's last report when a command is made.
 struct DriveMemory {
   DriveReport seen;     ///< the last plausible one
   bool recent = false;  ///< no older than the driver bridges: a loop may be closed on it
 };
 
-/// One thing a drive is asked, or told and asked to repeat, before it may be enabled. `reg` is the
-/// family's own numbering; CANopen: index << 8 | subindex.
-struct StartupQuestion {
+/// One register read, or written, before the drive may be enabled. `reg` is the family's own
+/// numbering; CANopen: index << 8 | subindex.
+struct StartupStep {
   std::uint32_t reg = 0;
   double expected = 0.0;
-  bool answered = true;  ///< false: nothing comes back; the next question shows if it was heard
+  bool answered = true;  ///< false: no reply exists; the next step shows if it arrived
 };
 enum class Answer : std::uint8_t {
   kNone,
   kRight,
-  kNotYet,  ///< wrong, but it may still become right: ask again
+  kNotYet,  ///< wrong, but it may still become right: request again
   kWrong,
   kRefused,  ///< `found` is the drive's reason
+  kMissing,  ///< the drive has no such thing, and need not: a warning, and the next step
 };
 
 /// What the start-up dialogue failed at.
@@ -100,32 +108,42 @@ class DriveFamily {
 
   // --- from the drive -------------------------------------------------------------------------
 
-  /// Whether the frame comes from this drive, whatever it says.
+  /// Whether the frame comes from this drive, whatever its content.
   virtual bool is_mine(const CanFrame& frame) const noexcept = 0;
-  /// True of frames that this drive sends unasked, or late, and that nobody needs to understand.
-  virtual bool is_aside(const CanFrame& frame) const noexcept {
+  /// True of frames that this drive sends without a request, or late, and that need not be decoded.
+  virtual bool is_unsolicited(const CanFrame& frame) const noexcept {
     static_cast<void>(frame);
     return false;
   }
-  /// False if the frame is no state of this drive.
-  [[nodiscard]] virtual bool read_state(const CanFrame& frame,
-                                        DriveReport* report) const noexcept = 0;
-  /// Smallest difference between two angles that it can tell, rad.
+  /// Whether the frame answers presence_request().
+  virtual bool is_presence(const CanFrame& frame) const noexcept {
+    return is_mine(frame) && !is_unsolicited(frame);
+  }
+  /// Start of a cycle: what comes from here on answers it, or, `late`, the one before.
+  virtual void begin_cycle() noexcept {}
+  /// kNone: the frame is no state of this drive, or a part that came already. `report` is set when
+  /// the state is whole.
+  [[nodiscard]] virtual StateReading read_state(const CanFrame& frame, bool late,
+                                                DriveReport* report) noexcept = 0;
+  /// DriveReport::status in words. Allocates: for messages, outside the cycle.
+  virtual std::string status_text(std::uint16_t status) const;
+  /// Smallest difference between two angles in its replies, rad.
   virtual double angle_resolution() const noexcept = 0;
 
   // --- the start-up dialogue, in this order ---------------------------------------------------
 
   /// It begins with disable(). False if a drive that was not started yet does not answer that: it
-  /// is then tried, and the questions see to it.
+  /// is then tried, and the steps repeat it.
   virtual bool disable_is_answered() const noexcept { return true; }
-  /// Cycles that an answer may take before the question is repeated.
+  /// Cycles that an answer may take before the request is repeated.
   virtual int patience_cycles() const noexcept { return 1; }
-  virtual int questions() const noexcept = 0;
-  virtual StartupQuestion question(int index) const noexcept = 0;
-  virtual CanFrame ask(int index) const noexcept = 0;
-  /// What the frame answers to the question; `found` is set unless kNone.
-  virtual Answer judge(int index, const CanFrame& frame, double* found) const noexcept = 0;
-  /// In words: "register 23 is 10, expected 28". Allocates: for messages, outside the cycle.
+  virtual int startup_steps() const noexcept = 0;
+  virtual StartupStep startup_step(int index) const noexcept = 0;
+  virtual CanFrame startup_request(int index) const noexcept = 0;
+  /// The frame as an answer to step `index`; `found` is set unless kNone.
+  virtual Answer check_answer(int index, const CanFrame& frame, double* found) noexcept = 0;
+  /// In words: "register 23 is 10, expected 28"; kMissing: what that means. Allocates: for
+  /// messages, outside the cycle.
   virtual std::string describe(const StartupFailure& failure) const;
 };
 

@@ -1,9 +1,12 @@
 #include "drivers/families/moteus_family.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace limber {
 namespace {
@@ -64,41 +67,54 @@ CanFrame MoteusFamily::enable(const DriveMemory& memory) noexcept {
   return command(nothing, memory, &frame, &sent) ? frame : state_request();
 }
 
-bool MoteusFamily::read_state(const CanFrame& frame, DriveReport* report) const noexcept {
+StateReading MoteusFamily::read_state(const CanFrame& frame, bool /*late*/,
+                                      DriveReport* report) noexcept {
   moteus::State state;
-  if (!moteus::decode_state(frame, &state)) return false;
+  if (!moteus::decode_state(frame, &state)) return StateReading::kNone;
   report->condition = condition_of(state.mode);
+  report->status =
+      static_cast<std::uint16_t>(static_cast<int>(state.mode) | (state.fault & 0xFF) << 8);
   report->angle_rad = report->link_angle_rad = state.position_turns * kTurn;
   report->speed_rad_per_s = report->link_speed_rad_per_s = state.velocity_turns_per_s * kTurn;
   report->torque_Nm = state.torque_Nm;
   report->current_A = state.current_q_A;
   report->temperature_degC = state.temperature_degC;
-  return true;
+  return StateReading::kWhole;
+}
+
+std::string MoteusFamily::status_text(std::uint16_t status) const {
+  const int mode = status & 0xFF;
+  const int fault = status >> 8;
+  if (mode == static_cast<int>(moteus::Mode::kTimeout))
+    return "mode 11: no command within the drive's time-out";
+  if (fault == 0) return fmt::format("mode {}", mode);
+  const std::string_view text = moteus::fault_text(fault);
+  return fmt::format("mode {}, fault {}: {}", mode, fault,
+                     text.empty() ? "see the maker's list" : text);
 }
 
 double MoteusFamily::angle_resolution() const noexcept {
-  const double encoder = std::ldexp(kTurn, -drive_.encoder_bits);
+  const double encoder = kTurn / drive_.counts_per_turn;
   return std::max(encoder, kTurn * static_cast<double>(std::numeric_limits<float>::epsilon()));
 }
 
-StartupQuestion MoteusFamily::question(int index) const noexcept {
+StartupStep MoteusFamily::startup_step(int index) const noexcept {
   if (index == 0)
     return {static_cast<std::uint32_t>(Register::kRegisterMap), moteus::kRegisterMapVersion};
-  // Behind a gear, a drive that only knows its rotor's angle may be off by a rotor turn.
+  // Behind a gear, a drive that has only its rotor's angle may be off by a rotor turn.
   return {static_cast<std::uint32_t>(Register::kHomeState),
           drive_.gear_ratio == 1.0 ? kHomedRotor : kHomedOutput};
 }
 
-CanFrame MoteusFamily::ask(int index) const noexcept {
-  return moteus::encode_read(static_cast<Register>(question(index).reg), drive_.command_id);
+CanFrame MoteusFamily::startup_request(int index) const noexcept {
+  return moteus::encode_read(static_cast<Register>(startup_step(index).reg), drive_.command_id);
 }
 
-Answer MoteusFamily::judge(int index, const CanFrame& frame, double* found) const noexcept {
-  const StartupQuestion asked = question(index);
-  if (!moteus::decode_register(frame, static_cast<Register>(asked.reg), found))
-    return Answer::kNone;
+Answer MoteusFamily::check_answer(int index, const CanFrame& frame, double* found) noexcept {
+  const StartupStep step = startup_step(index);
+  if (!moteus::decode_register(frame, static_cast<Register>(step.reg), found)) return Answer::kNone;
   const bool right =
-      index == 0 ? *found == asked.expected : *found >= asked.expected && *found <= kHomedOutput;
+      index == 0 ? *found == step.expected : *found >= step.expected && *found <= kHomedOutput;
   return right ? Answer::kRight : Answer::kWrong;
 }
 

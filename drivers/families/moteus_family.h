@@ -1,7 +1,7 @@
 // moteus drives: registers over CAN-FD, everything in each cycle's frame.
 //
-// Questions: is the register map the one limber knows -> does the drive know where it is.
-// The watchdog is no question: every command carries it.
+// Start-up: register map version compared -> home state compared.
+// The watchdog needs no step: every command carries it.
 #pragma once
 
 #include <array>
@@ -33,16 +33,17 @@ class MoteusFamily final : public DriveFamily {
   bool is_mine(const CanFrame& frame) const noexcept override {
     return has_id(frame, drive_.reply_id);
   }
-  bool read_state(const CanFrame& frame, DriveReport* report) const noexcept override;
+  StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
+  std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;
 
-  int questions() const noexcept override { return kQuestions; }
-  StartupQuestion question(int index) const noexcept override;
-  CanFrame ask(int index) const noexcept override;
-  Answer judge(int index, const CanFrame& frame, double* found) const noexcept override;
+  int startup_steps() const noexcept override { return kSteps; }
+  StartupStep startup_step(int index) const noexcept override;
+  CanFrame startup_request(int index) const noexcept override;
+  Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
 
  private:
-  static constexpr int kQuestions = 2;
+  static constexpr int kSteps = 2;
 
   DriveConfig drive_;
   double torque_limit_;  ///< N m

@@ -1,4 +1,4 @@
-// The last check before the bus: whose torque command is obeyed, and whether this one may be.
+// The last check before the bus: may this torque command of this controller reach the drives?
 //
 // Deny by default. A command passes all checks or changes nothing: it is never clamped into what is
 // allowed, and it leaves no trace in what the next one is compared with. Every comparison is
@@ -8,7 +8,7 @@
 
 #include <array>
 #include <cstdint>
-#include <limber/joint_torque_t.hpp>
+#include <limber/joint_command_t.hpp>
 #include <limits>
 
 #include "common/joints.h"
@@ -16,11 +16,12 @@
 
 namespace limber {
 
-/// What the gate lets pass. Fixed for a session.
+/// Limits of accepted commands. Fixed for a session.
 struct GateLimits {
   int n = 0;                 ///< joints of this arm
   std::int64_t session = 0;  ///< this run of the driver
-  int lease_cycles = 250;    ///< a controller that was not obeyed for so long has lost the arm
+  int lease_cycles =
+      250;  ///< the lease of a controller ends after so long without an accepted command
   int refusal_cycles = 100;  ///< three refusals within so many cycles are too many
   std::array<double, kMaxJoints> torque_Nm{};       ///< greatest |tau| and |tau_gravity|
   std::array<double, kMaxJoints> torque_step_Nm{};  ///< greatest |tau - torque present|
@@ -30,7 +31,7 @@ struct GateLimits {
   double power_W = std::numeric_limits<double>::infinity();  ///< greatest sum of tau v
 };
 
-/// What the driver knows at the moment a command comes in.
+/// State of the driver when a command arrives.
 struct GateSituation {
   std::int64_t state_seq = 0;  ///< seq of the JOINT_STATE last published
   bool powered = false;        ///< some drive may be enabled: there is something to hold
@@ -44,7 +45,7 @@ struct GateSituation {
 
 /// What the gate remembers of the commands it accepted.
 struct GateMemory {
-  std::int64_t controller = 0;  ///< who holds the lease; 0: nobody
+  std::int64_t controller = 0;  ///< number of the lease's holder; 0: none
   std::int64_t silent_cycles = 0;
   std::int64_t state_seq = -1;  ///< the state answered by the command accepted last
 };
@@ -61,14 +62,14 @@ inline constexpr std::int64_t kOldestAnswer = 5;
 ///   STALE       answers a state that was published, at most kOldestAnswer cycles ago
 ///   NOT_FINITE  all of tau, tau_preload and tau_gravity
 ///   REQUEST     one of REQUEST_*
-///   NOT_ON      no REQUEST_HOLD to drives that are off: what does not stand cannot be held
+///   NOT_ON      no REQUEST_HOLD to drives that are off: they cannot hold
 ///   TORQUE      |tau| and |tau_gravity| within the limit, |tau| + |tau_preload| within that of two
 ///               motors; no tau_preload for one
 ///   RATE        tau and tau_preload within their steps of what is present, where the torque is
 ///               followed
 ///   POWER       sum of tau v within the limit, where the torque is followed
 int check_command(const GateLimits& limits, const GateMemory& memory,
-                  const GateSituation& situation, const joint_torque_t& command) noexcept;
+                  const GateSituation& situation, const joint_command_t& command) noexcept;
 
 /// The judgement with memory: lease, sequence, refusals.
 class TorqueGate {
@@ -79,14 +80,15 @@ class TorqueGate {
   void next_cycle() noexcept;
 
   /// Returns VERDICT_*. An accepted command takes or renews the lease.
-  int judge(const joint_torque_t& command, const GateSituation& situation) noexcept;
+  int judge(const joint_command_t& command, const GateSituation& situation) noexcept;
 
   /// True if the command judged last was the third of the lease holder's to be refused within
-  /// refusal_cycles. Repetitions of what was obeyed already (REPLAYED) do not count: networks
+  /// refusal_cycles. Repetitions of an accepted command (REPLAYED) do not count: networks
   /// duplicate.
   bool refused_too_often() const noexcept { return too_often_; }
 
-  const GateLimits& limits() const noexcept { return limits_; }
+  /// Some controller holds the lease.
+  bool leased() const noexcept { return memory_.controller != 0; }
   const GateMemory& memory() const noexcept { return memory_; }
 
  private:

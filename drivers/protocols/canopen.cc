@@ -50,9 +50,9 @@ CanFrame encode_nmt(NmtCommand command, std::uint8_t node) noexcept {
 
 bool decode_nmt(const CanFrame& frame, std::uint8_t node, NmtCommand* command) noexcept {
   if (!is_plain(frame, kNmtId, 2)) return false;
-  const auto said = static_cast<NmtCommand>(frame.data[0]);
-  if (!exists(said) || (frame.data[1] != 0 && frame.data[1] != node)) return false;
-  *command = said;
+  const auto received = static_cast<NmtCommand>(frame.data[0]);
+  if (!exists(received) || (frame.data[1] != 0 && frame.data[1] != node)) return false;
+  *command = received;
   return true;
 }
 
@@ -64,9 +64,9 @@ CanFrame encode_heartbeat(NmtState state, std::uint8_t node) noexcept {
 
 bool decode_heartbeat(const CanFrame& frame, std::uint8_t node, NmtState* state) noexcept {
   if (!is_plain(frame, kHeartbeatCode + node, 1)) return false;
-  const auto said = static_cast<NmtState>(frame.data[0]);
-  if (!exists(said)) return false;
-  *state = said;
+  const auto received = static_cast<NmtState>(frame.data[0]);
+  if (!exists(received)) return false;
+  *state = received;
   return true;
 }
 

@@ -14,12 +14,18 @@ namespace limber::canopen {
 inline constexpr std::uint32_t kNmtId = 0x000;
 inline constexpr std::uint32_t kSyncId = 0x080;
 inline constexpr std::uint32_t kEmergencyCode = 0x080;
-inline constexpr std::uint32_t kTpdo1Code = 0x180;  ///< the next ones 0x100 apart
+inline constexpr std::uint32_t kTpdo1Code = 0x180;  ///< the next ones kPdoStep apart
 inline constexpr std::uint32_t kRpdo1Code = 0x200;  ///< likewise
+inline constexpr std::uint32_t kPdoStep = 0x100;
+inline constexpr int kPdos = 4;  ///< each way
 inline constexpr std::uint32_t kSdoAnswerCode = 0x580;
 inline constexpr std::uint32_t kSdoRequestCode = 0x600;
 inline constexpr std::uint32_t kHeartbeatCode = 0x700;
 
+/// Of TPDO k = 0 to 3.
+constexpr std::uint32_t tpdo_id(int k, std::uint8_t node) noexcept {
+  return kTpdo1Code + kPdoStep * static_cast<std::uint32_t>(k) + node;
+}
 constexpr std::uint8_t node_of(std::uint32_t id) noexcept {
   return static_cast<std::uint8_t>(id & 0x7FU);
 }
@@ -29,7 +35,7 @@ struct ObjectId {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
 
-  /// index << 8 | sub: as StartupQuestion::reg counts.
+  /// index << 8 | sub: as StartupStep::reg counts.
   constexpr std::uint32_t number() const noexcept {
     return static_cast<std::uint32_t>(index) << 8U | sub;
   }
@@ -85,7 +91,7 @@ enum class NmtCommand : std::uint8_t {
   kResetNode = 0x81,
   kResetCommunication = 0x82,
 };
-/// As a heartbeat tells it. Pre-operational: SDO, no PDO; operational: both; stopped: neither.
+/// As in a heartbeat. Pre-operational: SDO, no PDO; operational: both; stopped: neither.
 enum class NmtState : std::uint8_t {
   kBootUp = 0x00,
   kStopped = 0x04,

@@ -29,7 +29,7 @@ enum class SdoAbort : std::uint32_t {
   kCannotStore = 0x08000020,
   kWrongState = 0x08000022,
 };
-/// What the code says, for messages to people; "unknown abort code" for codes not listed.
+/// The code in words, for messages; "unknown abort code" for codes not listed.
 const char* text_of(SdoAbort code) noexcept;
 
 /// One frame of a transfer. What a kind carries besides the object:
@@ -48,7 +48,7 @@ struct SdoMessage {
   SdoKind kind = SdoKind::kUnknown;
   ObjectId object;
   std::uint32_t value = 0;
-  std::uint8_t bytes = 0;  ///< of the value or segment; 0 with a value: the sender did not say
+  std::uint8_t bytes = 0;  ///< of the value or segment; 0 with a value: not given
   bool toggle = false;
   bool last = false;
   std::array<std::uint8_t, 7> segment{};

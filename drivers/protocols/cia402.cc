@@ -7,10 +7,7 @@
 namespace limber::cia402 {
 namespace {
 
-using canopen::FieldReader;
-using canopen::FieldWriter;
-
-/// How a statusword tells a state: statusword & mask == value.
+/// Statusword of a state: statusword & mask == value.
 struct StatePattern {
   State state;
   std::uint16_t mask;
@@ -28,7 +25,7 @@ constexpr std::array<StatePattern, kStates> kPatterns = {{
     {State::kFault, 0x4F, 0x08, "fault"},
 }};
 
-/// How a controlword tells a command.
+/// Controlword of a command.
 struct CommandPattern {
   Command command;
   std::uint16_t mask;
@@ -69,11 +66,6 @@ constexpr std::array kTransitions = {
     Transition{16, State::kQuickStopActive, Command::kEnableOperation, State::kOperationEnabled},
 };
 constexpr int kAfterQuickStop = 16;
-
-constexpr std::array kCommandObjects = {kControlword, kTargetTorque};
-constexpr std::array kStateObjects = {kStatusword,    kPosition,     kVelocity,    kTorqueActual,
-                                      kCurrentActual, kLinkPosition, kLinkVelocity};
-constexpr std::size_t kLinkObjects = 2;
 
 }  // namespace
 
@@ -125,62 +117,6 @@ std::uint16_t towards_enabled(State state) noexcept {
       break;
   }
   return kShutdown;
-}
-
-// --- limber's PDOs -------------------------------------------------------------------------------
-
-std::span<const Object> command_objects() noexcept { return kCommandObjects; }
-
-std::span<const Object> state_objects(bool link_encoder) noexcept {
-  const std::span<const Object> all = kStateObjects;
-  return link_encoder ? all : all.first(all.size() - kLinkObjects);
-}
-
-CanFrame encode_command(const DriveCommand& command, std::uint32_t id, bool fd) noexcept {
-  FieldWriter fields(id, fd);
-  fields.put(command.controlword, 2);
-  fields.put(static_cast<std::uint16_t>(command.torque_permille), 2);
-  return fields.frame();
-}
-
-bool decode_command(const CanFrame& frame, DriveCommand* command) noexcept {
-  FieldReader fields(frame);
-  const std::uint32_t controlword = fields.take(2);
-  const std::int32_t torque = fields.take_signed(2);
-  if (!fields.complete() || frame.remote || frame.error) return false;
-  *command = {static_cast<std::uint16_t>(controlword), static_cast<std::int16_t>(torque)};
-  return true;
-}
-
-CanFrame encode_state(const DriveState& state, bool link_encoder, std::uint32_t id) noexcept {
-  FieldWriter fields(id, true);
-  fields.put(state.statusword, 2);
-  fields.put(static_cast<std::uint32_t>(state.position_counts), 4);
-  fields.put(static_cast<std::uint32_t>(state.velocity_counts_per_s), 4);
-  fields.put(static_cast<std::uint16_t>(state.torque_permille), 2);
-  fields.put(static_cast<std::uint16_t>(state.current_permille), 2);
-  if (link_encoder) {
-    fields.put(static_cast<std::uint32_t>(state.link_position_counts), 4);
-    fields.put(static_cast<std::uint32_t>(state.link_velocity_counts_per_s), 4);
-  }
-  return fields.frame();
-}
-
-bool decode_state(const CanFrame& frame, bool link_encoder, DriveState* state) noexcept {
-  FieldReader fields(frame);
-  DriveState read;
-  read.statusword = static_cast<std::uint16_t>(fields.take(2));
-  read.position_counts = fields.take_signed(4);
-  read.velocity_counts_per_s = fields.take_signed(4);
-  read.torque_permille = static_cast<std::int16_t>(fields.take_signed(2));
-  read.current_permille = static_cast<std::int16_t>(fields.take_signed(2));
-  if (link_encoder) {
-    read.link_position_counts = fields.take_signed(4);
-    read.link_velocity_counts_per_s = fields.take_signed(4);
-  }
-  if (!fields.complete() || frame.remote || frame.error) return false;
-  *state = read;
-  return true;
 }
 
 std::int16_t to_permille(double value, double rated) noexcept {

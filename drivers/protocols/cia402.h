@@ -1,20 +1,17 @@
-// The drive profile CiA 402 in cyclic synchronous torque mode: its objects, its state machine as
-// data, and limber's two PDOs. Pure numbers and bytes, both directions; everything is allowed in
-// the cycle. Angles, speeds and torques are the drive's own, before joint sign and offset.
-//
-// A cycle: command (RPDO1, synchronous) to each drive, one SYNC to all, state (TPDO1, synchronous)
-// from each. The torque takes effect at the SYNC, the state is that of the SYNC.
+// The drive profile CiA 402 in cyclic synchronous torque mode: its objects and its state machine as
+// data. Pure numbers; everything is allowed in the cycle. Angles, speeds and torques are the
+// drive's own, before joint sign and offset. The PDOs are in cia402_pdos.h.
 //
 //   torque [N m]   = thousandths / 1000 * rated torque, 6076h in mN m
 //   current [A]    = thousandths / 1000 * rated current, 6075h in mA
-//   angle [rad]    = 2 pi counts / counts per joint revolution (608Fh:01; link encoder 60E6h:01)
+//   angle [rad]    = 2 pi counts / counts per joint revolution
 //   speed [rad/s]  likewise, of counts/s
+//   counts per joint revolution = (608Fh:01 / 608Fh:02) * (6091h:01 / 6091h:02); link encoder
+//   60E6h:01
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "drivers/can/can_frame.h"
 #include "drivers/protocols/canopen.h"
 
 namespace limber::cia402 {
@@ -27,9 +24,11 @@ inline constexpr Object kErrorCode = {{0x603F, 0}, 2};
 inline constexpr Object kControlword = {{0x6040, 0}, 2};
 inline constexpr Object kStatusword = {{0x6041, 0}, 2};
 inline constexpr Object kQuickStopOption = {{0x605A, 0},
-                                            2};             ///< i16; 1..4 ends disabled, 5..8 stays
-inline constexpr Object kDisableOption = {{0x605C, 0}, 2};  ///< i16
-inline constexpr Object kFaultOption = {{0x605E, 0}, 2};    ///< i16
+                                            2};  ///< i16; 1..4 ends disabled, 5..8 stays
+inline constexpr Object kShutdownOption = {{0x605B, 0}, 2};        ///< i16
+inline constexpr Object kDisableOption = {{0x605C, 0}, 2};         ///< i16
+inline constexpr Object kHaltOption = {{0x605D, 0}, 2};            ///< i16
+inline constexpr Object kFaultOption = {{0x605E, 0}, 2};           ///< i16
 inline constexpr Object kConnectionLostOption = {{0x6007, 0}, 2};  ///< i16, Reaction
 inline constexpr Object kMode = {{0x6060, 0}, 1};                  ///< i8, wanted
 inline constexpr Object kModeInForce = {{0x6061, 0}, 1};           ///< i8
@@ -43,19 +42,26 @@ inline constexpr Object kRatedTorque_mNm = {{0x6076, 0}, 4};       ///< u32
 /// i16, thousandths: sensed on the link if the joint has a torque sensor, else of the current.
 inline constexpr Object kTorqueActual = {{0x6077, 0}, 2};
 inline constexpr Object kCurrentActual = {{0x6078, 0}, 2};  ///< i16, thousandths
-inline constexpr Object kEncoderCounts = {{0x608F, 1}, 4};  ///< u32, per joint revolution
-inline constexpr Object kTorqueOffset = {{0x60B2, 0}, 2};   ///< i16, added to the target
+/// u32: so many counts in so many revolutions of the motor.
+inline constexpr Object kEncoderCounts = {{0x608F, 1}, 4};
+inline constexpr Object kEncoderTurns = {{0x608F, 2}, 4};
+/// u32, optional: so many revolutions of the motor in so many of the joint.
+inline constexpr Object kGearMotorTurns = {{0x6091, 1}, 4};
+inline constexpr Object kGearJointTurns = {{0x6091, 2}, 4};
+inline constexpr Object kSupply_mV = {{0x6079, 0}, 4};     ///< u32, DC link
+inline constexpr Object kTorqueOffset = {{0x60B2, 0}, 2};  ///< i16, added to the target
 /// u8, i8: cycle time = :01 * 10^:02 s.
 inline constexpr Object kCyclePeriod = {{0x60C2, 1}, 1};
 inline constexpr Object kCyclePeriodExponent = {{0x60C2, 2}, 1};
 // Only in drives with a link encoder; CiA 402 calls it the first additional position sensor.
 inline constexpr Object kLinkPosition = {{0x60E4, 1}, 4};       ///< i32, link counts
 inline constexpr Object kLinkEncoderCounts = {{0x60E6, 1}, 4};  ///< u32, per joint revolution
+inline constexpr Object kDigitalInputs = {{0x60FD, 0}, 4};      ///< u32
 inline constexpr Object kSupportedModes = {{0x6502, 0}, 4};     ///< u32, bit mode - 1
 
 // limber's own (manufacturer area). Joint torque loop with ratio rho of motor inertia to apparent
 // inertia, tau_m = rho u + (1 - rho)(tau + D_J / K_J tau'). Drives without a torque sensor have
-// rho = 1, and refuse to be told anything else.
+// rho = 1, and refuse any other value.
 inline constexpr Object kInertiaRatio = {{0x2010, 1}, 4};                ///< float32, rho
 inline constexpr Object kSpringStiffness_Nm_per_rad = {{0x2010, 2}, 4};  ///< float32, K_J
 inline constexpr Object kSpringDamping_Nms_per_rad = {{0x2010, 3}, 4};   ///< float32, D_J
@@ -99,7 +105,6 @@ enum class Command : std::uint8_t {
   kQuickStop,
   kFaultReset,
 };
-inline constexpr int kCommands = 7;
 
 // Controlwords that give the commands.
 inline constexpr std::uint16_t kShutdown = 0x0006;
@@ -111,7 +116,6 @@ inline constexpr std::uint16_t kFaultReset = 0x0080;
 
 // Bits of a statusword beside the state.
 inline constexpr std::uint16_t kVoltagePresent = 1U << 4U;
-inline constexpr std::uint16_t kWarning = 1U << 7U;
 inline constexpr std::uint16_t kRemote = 1U << 9U;
 inline constexpr std::uint16_t kTargetReached = 1U << 10U;
 inline constexpr std::uint16_t kLimitActive = 1U << 11U;
@@ -121,7 +125,7 @@ inline constexpr std::uint16_t kFollowing = 1U << 12U;
 State state_of(std::uint16_t statusword) noexcept;
 /// The state's own bits of a statusword.
 std::uint16_t statusword_of(State state) noexcept;
-/// What a controlword says after `previous`.
+/// The command of a controlword that follows `previous`.
 Command command_of(std::uint16_t controlword, std::uint16_t previous) noexcept;
 /// The state a command leads to; the present one if the command is none for it. With
 /// `enable_after_quick_stop` (605Ah 5 to 8) a quick stop can be left towards enabled.
@@ -131,38 +135,7 @@ State next_state(State state, Command command, bool enable_after_quick_stop) noe
 std::uint16_t towards_enabled(State state) noexcept;
 const char* name_of(State state) noexcept;
 
-// --- limber's PDOs -------------------------------------------------------------------------------
-
-/// What RPDO1 and TPDO1 carry, in their order.
-std::span<const Object> command_objects() noexcept;
-std::span<const Object> state_objects(bool link_encoder) noexcept;
-/// Bytes on the bus, padded as FD wants it.
-inline constexpr int kCommandBytes = 4;
-constexpr int state_bytes(bool link_encoder) noexcept { return link_encoder ? 24 : 16; }
-
-struct DriveCommand {
-  std::uint16_t controlword = 0;
-  std::int16_t torque_permille = 0;
-};
-
-struct DriveState {
-  std::uint16_t statusword = 0;
-  std::int32_t position_counts = 0;
-  std::int32_t velocity_counts_per_s = 0;
-  std::int16_t torque_permille = 0;
-  std::int16_t current_permille = 0;
-  std::int32_t link_position_counts = 0;  ///< these two with a link encoder only
-  std::int32_t link_velocity_counts_per_s = 0;
-};
-
-/// `id`: RPDO1's, 0x200 + node.
-CanFrame encode_command(const DriveCommand& command, std::uint32_t id, bool fd) noexcept;
-/// The caller has matched the identifier. False if the frame is too short.
-[[nodiscard]] bool decode_command(const CanFrame& frame, DriveCommand* command) noexcept;
-CanFrame encode_state(const DriveState& state, bool link_encoder, std::uint32_t id) noexcept;
-/// Likewise.
-[[nodiscard]] bool decode_state(const CanFrame& frame, bool link_encoder,
-                                DriveState* state) noexcept;
+// --- units ---------------------------------------------------------------------------------------
 
 /// Nearest thousandth of `rated`, within what 16 bits hold (NaN: 0).
 std::int16_t to_permille(double value, double rated) noexcept;

@@ -97,6 +97,30 @@ bool is_usable(const CommandRange& range) noexcept {
 
 }  // namespace
 
+const char* error_text(DriveError error) noexcept {
+  switch (error) {
+    case DriveError::kDisabled:
+      return "disabled";
+    case DriveError::kEnabled:
+      return "enabled";
+    case DriveError::kOverVoltage:
+      return "over-voltage";
+    case DriveError::kUnderVoltage:
+      return "under-voltage";
+    case DriveError::kOverCurrent:
+      return "over-current";
+    case DriveError::kMosOverTemperature:
+      return "power stage too hot";
+    case DriveError::kRotorOverTemperature:
+      return "motor too hot";
+    case DriveError::kCommunicationLost:
+      return "no command within the drive's time-out";
+    case DriveError::kOverload:
+      return "overload";
+  }
+  return "";
+}
+
 double half_count(double range, int bits) noexcept { return range / top_count(bits); }
 
 bool encode_command(const Command& command, const CommandRange& range, std::uint32_t id, bool fd,

@@ -1,11 +1,11 @@
-// MIT mini-cheetah framing as Damiao drives speak it: bytes only, both directions, no I/O, no
+// MIT mini-cheetah framing as Damiao drives use it: bytes only, both directions, no I/O, no
 // state. All angles, speeds and torques here are the drive's own (before joint sign and offset).
 #pragma once
 
 #include <cstdint>
 
 #include "drivers/can/can_frame.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber::mit {
 
@@ -32,6 +32,8 @@ enum class DriveError : std::uint8_t {
   kCommunicationLost = 0xD,
   kOverload = 0xE,
 };
+/// "over-voltage"; empty for a nibble that the maker's manual does not list.
+const char* error_text(DriveError error) noexcept;
 
 struct Reply {
   std::uint8_t id_nibble = 0;

@@ -1,4 +1,4 @@
-// What limber says to a moteus drive and hears from it, one frame each way a cycle. Angles, speeds
+// The cycle's frames to and from a moteus drive, one each way. Angles, speeds
 // and torques are the drive's own: turns of its output, before joint sign and offset.
 //
 //   tau = kp kp_scale (position - angle) + kd kd_scale (velocity - speed) + torque
@@ -37,7 +37,7 @@ struct State {
 std::uint32_t command_id(std::uint8_t id) noexcept;
 std::uint32_t reply_id(std::uint8_t id) noexcept;
 
-// Each of the three asks for the state, too. `id` is the identifier on the bus: command_id().
+// Each of the three requests the state, too. `id` is the identifier on the bus: command_id().
 /// Position mode with all of the command in float32. What is not finite is sent as it is.
 CanFrame encode_command(const Command& command, std::uint32_t id) noexcept;
 /// Mode 0: power stage off. Also leaves a fault and a time-out.

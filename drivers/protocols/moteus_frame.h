@@ -13,7 +13,7 @@
 
 namespace limber::moteus {
 
-/// Who speaks to whom: seven bits each, the host is 0, destination 0x7F is everybody.
+/// Source and destination: seven bits each, the host is 0, destination 0x7F is everybody.
 struct Address {
   std::uint8_t source = 0;
   std::uint8_t destination = 0;
@@ -63,7 +63,7 @@ struct Subframe {
   std::uint8_t error = 0;
   const std::uint8_t* data = nullptr;  ///< of writes and replies; lives as long as the frame
 
-  /// Value of register first + i, in the register's unit; NaN where the format says so.
+  /// Value of register first + i, in the register's unit; NaN where the format has it.
   double value(unsigned i) const noexcept;
 };
 

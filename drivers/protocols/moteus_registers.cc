@@ -1,6 +1,7 @@
 #include "drivers/protocols/moteus_registers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -67,6 +68,25 @@ constexpr std::int32_t greatest(Type type) noexcept {
 }
 
 }  // namespace
+
+const char* fault_text(int fault) noexcept {
+  constexpr int kFirst = 32;
+  constexpr std::array kTexts = {
+      "calibration",          "motor driver",
+      "over-voltage",         "encoder",
+      "motor not configured", "PWM cycle overrun",
+      "over-temperature",     "outside the position limits",
+      "under-voltage",        "configuration changed",
+      "no valid angle",       "no valid position",
+      "driver enabling",      "stop position deprecated",
+      "timing violation",     "back-EMF feed-forward without an acceleration limit",
+      "invalid limits",       "position error",
+      "velocity error"};
+  const int index = fault - kFirst;
+  if (fault == 0) return "none";
+  const bool known = index >= 0 && index < static_cast<int>(kTexts.size());
+  return known ? kTexts[static_cast<std::size_t>(index)] : "";
+}
 
 double lsb(std::uint16_t reg, Type type) noexcept {
   return type == Type::kFloat ? 1.0 : scale_of(reg).lsb[static_cast<int>(type)];

@@ -58,6 +58,8 @@ enum class Mode : std::uint8_t {
   kBrake = 15,
 };
 inline constexpr int kLastMode = 15;
+/// "over-voltage" for a value of Register::kFault; empty for one that the maker does not list.
+const char* fault_text(int fault) noexcept;
 
 /// Number formats, in the order of the two bits of an opcode.
 enum class Type : std::uint8_t { kInt8 = 0, kInt16 = 1, kInt32 = 2, kFloat = 3 };

@@ -9,7 +9,7 @@
 // Identifiers as delivered: request 100, replies 1 and 2; 1 Mbit/s. Sources: Robotous, RFT Series
 // Installation and Operation Manual, rev. 1.8, sections 3.2 to 3.4 (commands, packets,
 // identifiers); the vendor's sample code for the CAN interface, rev. 1.2 (byte order, divisors,
-// overload bits). The series also streams by itself (0x0B); limber asks, so that a measurement
+// overload bits). The series also streams by itself (0x0B); limber sends, so that a measurement
 // belongs to its cycle.
 #pragma once
 

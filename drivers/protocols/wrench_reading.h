@@ -1,9 +1,9 @@
-// What a six-axis force/torque sensor says in one reply, whatever the protocol.
+// One reading of a six-axis force/torque sensor, whatever the protocol.
 #pragma once
 
 #include <cstdint>
 
-#include "robots/tip_sensor_config.h"
+#include "robots/loader/tip_sensor_config.h"
 
 namespace limber {
 

@@ -1,15 +1,13 @@
 """How far the hand goes under forces and moments, and whether the way back gives all of it back."""
 
-from typing import Any
-
 import numpy as np
-from scipy.spatial.transform import Rotation
+from numpy.linalg import norm
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE
-from limber.experiments.truth import motion, status
-from limber.logs import Log
+from limber.experiments.context import Comparison, Context, near_zero
+from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE, Axes, name_axes
+from limber.experiments.timeline import UNBOUNDED, in_turn, tip_gains
+from limber.experiments.truth import Log, motion, status
+from limber.model.rotations import rotation_error
 
 from . import turn
 
@@ -36,9 +34,9 @@ ANGLES = {
 }
 
 
-def run(context: Context) -> list[Check]:
-    logs = {mode: context.lab(scenario(mode), mode) for mode in ANGLES}
-    works = turn.run_turns(context, START_Q, list(ANGLES))
+def run(context: Context) -> list[Comparison]:
+    logs = {mode: pushed(context, mode) for mode in ANGLES}
+    works = {mode: turn.net_work(context, START_Q, mode) for mode in ANGLES}
     with context.picture(TITLE, columns=3, size=(14.5, 4.9)) as (left, middle, right):
         draw_forces(left, logs["log"])
         draw_moments(middle, logs)
@@ -46,33 +44,14 @@ def run(context: Context) -> list[Check]:
     return [*forces(logs["log"]), *moments(logs), *turn.checks(works)]
 
 
-def scenario(mode: str) -> dict[str, Any]:
+def pushed(context: Context, mode: str) -> Log:
     """Three forces, then three moments, each until the arm rests."""
-    pushes = [{"force_N": (share * FORCE).tolist()} for share in SHARES]
-    pushes += [{"torque_Nm": (share * MOMENT * AXIS).tolist()} for share in SHARES]
-    gains = {
-        "law": "cartesian_impedance",
-        "orientation": mode,
-        "K_x_translation_N_per_m": K,
-        "K_x_rotation_Nm_per_rad": K_TURN,
-        "spring_force_N": 1000.0,
-        "spring_moment_Nm": 1000.0,
-    }
-    return {
-        "robot": "ideal7",
-        "duration_s": FIRST_AT + EACH_S * len(pushes),
-        "integrator": "reference",
-        "start_q": START_Q,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            *(
-                {"at_s": FIRST_AT + EACH_S * i, "push": {**push, "ramp_s": 0.3, "for_s": EACH_S}}
-                for i, push in enumerate(pushes)
-            ),
-        ],
-    }
+    pushes = [{"force_N": share * FORCE} for share in SHARES]
+    pushes += [{"torque_Nm": share * MOMENT * AXIS} for share in SHARES]
+    gains = tip_gains(K, K_TURN, orientation=mode, **UNBOUNDED)
+    entries = in_turn(FIRST_AT, EACH_S, pushes, ramp_s=0.3, for_s=EACH_S)
+    end = FIRST_AT + EACH_S * len(pushes)
+    return context.run_law(mode, "ideal7", gains, entries, end, start_q=START_Q)
 
 
 def rest(log: Log, push: int) -> tuple[np.ndarray, np.ndarray]:
@@ -80,71 +59,65 @@ def rest(log: Log, push: int) -> tuple[np.ndarray, np.ndarray]:
     end = FIRST_AT + EACH_S * (push + 1) - 0.3
     goal = status(log, end - 1.0, end)[-1]
     last = motion(log, end - 0.02, end)[-1]
-    R, R_d = (Rotation.from_quat(row[key], scalar_first=True)
-              for row, key in ((last, "quat_BT"), (goal, "quat_BD")))  # fmt: skip
-    return last["p_BT"] - goal["p_BD"], (R * R_d.inv()).as_rotvec()
+    turned = rotation_error(last["quat_BT"][None], goal["quat_BD"][None])[0]
+    return last["p_BT"] - goal["p_BD"], turned
 
 
-def forces(log: Log) -> list[Check]:
+def forces(log: Log) -> list[Comparison]:
     moved, turned = rest(log, SHARES.index(1.0))
     found = [
-        Check(f"tip moved along {axis}", FORCE[i] / K * 1e3, moved[i] * 1e3, "mm", 0.01)
+        Comparison(f"tip moved along {axis}", FORCE[i] / K * 1e3, moved[i] * 1e3, "mm", 0.01)
         for i, axis in enumerate("xyz")
     ]
-    off = float(np.linalg.norm(turned)) * 1e3
-    return [*found, Check("tip turned by a force", 0.0, off, "mrad", 0.1, "absolute")]
+    return [*found, near_zero("tip turned by a force", norm(turned) * 1e3, "mrad", 0.1)]
 
 
-def moments(logs: dict[str, Log]) -> list[Check]:
+def moments(logs: dict[str, Log]) -> list[Comparison]:
     found = []
     for mode, log in logs.items():
         for i, share in enumerate(SHARES):
             moment = share * MOMENT
             moved, turned = rest(log, len(SHARES) + i)
-            angle = float(ANGLES[mode](moment / K_TURN))
             name = f"tip turned by {moment:g} N m, {mode}"
-            found.append(Check(name, angle, float(turned @ AXIS), "rad", 0.01))
-        off = float(np.linalg.norm(moved)) * 1e3
-        found.append(Check(f"tip moved by a moment, {mode}", 0.0, off, "mm", 0.1, "absolute"))
+            angle = ANGLES[mode](moment / K_TURN)
+            found.append(Comparison(name, angle, turned @ AXIS, "rad", 0.01))
+        found.append(near_zero(f"tip moved by a moment, {mode}", norm(moved) * 1e3, "mm", 0.1))
     return found
 
 
-def draw_forces(ax: Any, log: Log) -> None:
+def draw_forces(ax: Axes, log: Log) -> None:
     for i, (axis, color) in enumerate(zip("xyz", (BLUE, ORANGE, GREEN), strict=True)):
         applied = FORCE[i] * np.array([0.0, *SHARES])
         moved = [0.0] + [rest(log, k)[0][i] * 1e3 for k in range(len(SHARES))]
         ax.plot(applied, applied / K * 1e3, color=color, label=f"along {axis}: force / stiffness")
         ax.plot(applied, moved, **MEASURED, color=color)
     ax.set_title("Pushed (circles: measured)")
-    ax.set_xlabel("force (N)")
-    ax.set_ylabel("tip moved (mm)")
-    ax.legend(loc="upper left")
+    name_axes(ax, "force (N)", "tip moved (mm)", "upper left")
 
 
-def draw_moments(ax: Any, logs: dict[str, Log]) -> None:
+def draw_moments(ax: Axes, logs: dict[str, Log]) -> None:
     fine = np.linspace(0.0, max(SHARES) * MOMENT, 60)
     applied = MOMENT * np.array(SHARES)
-    names = {"log": "angle: μ/k", "quat_simple": "half angle: 2 asin(μ/2k)",
-             "quat": "sine: asin(μ/k)"}  # fmt: skip
-    for (mode, name), color in zip(names.items(), (BLUE, GREEN, ORANGE), strict=True):
+    for mode, name, color in (
+        ("log", "angle: μ/k", BLUE),
+        ("quat_simple", "half angle: 2 asin(μ/2k)", GREEN),
+        ("quat", "sine: asin(μ/k)", ORANGE),
+    ):
         turned = [rest(logs[mode], len(SHARES) + i)[1] @ AXIS for i in range(len(SHARES))]
         ax.plot(fine, ANGLES[mode](fine / K_TURN), color=color, label=name)
         ax.plot(applied, turned, **MEASURED, color=color)
     ax.set_title("Turned: three ways to measure the error")
-    ax.set_xlabel("moment μ (N m)")
-    ax.set_ylabel("tip turned (rad)")
-    ax.legend(loc="upper left")
+    name_axes(ax, "moment μ (N m)", "tip turned (rad)", "upper left")
 
 
-def draw_works(ax: Any, works: dict[str, float]) -> None:
-    names = {"log": "angle", "quat": "sine", "log_simple": "angle, its rate\nleft out",
-             "quat_simple": "half angle, its\nrate left out"}  # fmt: skip
+def draw_works(ax: Axes, works: dict[str, float]) -> None:
+    modes = ("log", "quat", "log_simple", "quat_simple")
+    names = ["angle", "sine", "angle, its rate\nleft out", "half angle, its\nrate left out"]
     colors = (BLUE, BLUE, ORANGE, ORANGE)
-    bars = ax.bar(list(names.values()), [-turn.turn_work(mode) for mode in names], width=0.5,
-                  color=colors, alpha=0.6)  # fmt: skip
-    ax.bar_label(bars, [f"{-works[mode]:.2f} J" for mode in names], padding=8)
-    measured = [-works[mode] for mode in names]
-    ax.plot(list(names.values()), measured, **MEASURED, color=BLACK, clip_on=False)
+    heights, measured = [-turn.turn_work(mode) for mode in modes], [-works[mode] for mode in modes]
+    bars = ax.bar(names, heights, width=0.5, color=colors, alpha=0.6)
+    ax.bar_label(bars, [f"{work:.2f} J" for work in measured], padding=8)
+    ax.plot(names, measured, **MEASURED, color=BLACK, clip_on=False)
     ax.set_title("Work that a closed turn gains from the spring")
     ax.set_ylabel("energy from nowhere (J)")
     ax.set_ylim(0, 1.2 * max(measured))

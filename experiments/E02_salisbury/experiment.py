@@ -6,11 +6,10 @@ import numpy as np
 from scipy.optimize import fsolve
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE
-from limber.experiments.truth import joints, motion, status
-from limber.logs import Log
+from limber.experiments.context import Comparison, Context, near_zero
+from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE, Axes
+from limber.experiments.timeline import joint_damping
+from limber.experiments.truth import Log, joints, motion, status
 
 TITLE = "Stiffness control gives way to everything, by force over stiffness"
 CLAIM = "Stiffness control makes the tip a spring for small displacements; it rejects disturbances"
@@ -29,49 +28,30 @@ FORCE = 4.0  # N on the tip
 HELD, PUSHED, TIP_X, TIP_Y, SAGGED = 3.0, 5.0, 7.0, 9.0, 12.0
 
 
-def scenario(law: dict[str, Any]) -> dict[str, Any]:
+def run(context: Context) -> list[Comparison]:
+    salisbury = {"law": "salisbury", "K_x_translation_N_per_m": K[0, 0], **joint_damping(K_V)}
+    joint_pd = {"law": "joint_pd", "K_q_Nm_per_rad": STIFF, "joint_damping_ratio": 0.7}
+    soft, stiff = pushed(context, salisbury), pushed(context, joint_pd)
+    draw(context, soft, stiff)
+    return [*disturbances(soft, stiff), *tip_spring(soft), *gravity(soft, stiff)]
+
+
+def pushed(context: Context, law: dict[str, Any]) -> Log:
     """Gravity compensated at first, with a push in each part, and in the end not."""
 
     def push(rests_at: float, **wrench: Any) -> dict[str, Any]:
         return {"at_s": rests_at - 1.4, "push": {**wrench, "ramp_s": 0.2, "for_s": 1.6}}
 
-    return {
-        "robot": "planar2r",
-        "duration_s": SAGGED + 0.1,
-        "integrator": "reference",
-        "start_q": Q_D.tolist(),
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": {**law, "bias": "gravity"}},
-            {"at_s": 1.1, "goal": {"joints_rad": Q_D.tolist(), "duration_s": 0.2}},
-            # a moment on the first link turns no joint but the shoulder
-            push(PUSHED, link="link1", torque_Nm=[0.0, 0.0, TORQUE]),
-            push(TIP_X, force_N=[FORCE, 0.0, 0.0]),
-            push(TIP_Y, force_N=[0.0, FORCE, 0.0]),
-            {"at_s": 9.5, "gains": {"bias": "none"}},
-        ],
-    }
-
-
-def run(context: Context) -> list[Check]:
-    soft = context.lab(
-        scenario(
-            {
-                "law": "salisbury",
-                "K_x_translation_N_per_m": float(K[0, 0]),
-                "joint_damping": "given",
-                "D_q_Nms_per_rad": K_V,
-            }
-        ),
-        "salisbury",
-    )
-    stiff = context.lab(
-        scenario({"law": "joint_pd", "K_q_Nm_per_rad": STIFF, "joint_damping_ratio": 0.7}),
-        "joint_pd",
-    )
-    draw(context, soft, stiff)
-    return [*disturbances(soft, stiff), *tip_spring(soft), *gravity(soft, stiff)]
+    gains = {**law, "model_compensation": "gravity"}
+    entries = [
+        {"at_s": 1.1, "goal": {"joints_rad": Q_D, "duration_s": 0.2}},
+        # a moment on the first link turns no joint but the shoulder
+        push(PUSHED, link="link1", torque_Nm=[0.0, 0.0, TORQUE]),
+        push(TIP_X, force_N=[FORCE, 0.0, 0.0]),
+        push(TIP_Y, force_N=[0.0, FORCE, 0.0]),
+        {"at_s": 9.5, "gains": {"model_compensation": "none"}},
+    ]
+    return context.run_law(law["law"], arm.ROBOT, gains, entries, SAGGED, start_q=Q_D)
 
 
 def rest(log: Log, at_s: float) -> np.ndarray:
@@ -100,47 +80,42 @@ def sag() -> np.ndarray:
     return fsolve(torque, np.zeros(2), xtol=1e-12)
 
 
-def disturbances(soft: Log, stiff: Log) -> list[Check]:
-    predicted, small = yields(), TORQUE / STIFF
-    measured, held = rest(soft, PUSHED) - rest(soft, HELD), rest(stiff, PUSHED) - rest(stiff, HELD)
+def disturbances(soft: Log, stiff: Log) -> list[Comparison]:
+    predicted, small = yields() * 1e3, TORQUE / STIFF * 1e3
+    measured, held = ((rest(log, PUSHED) - rest(log, HELD)) * 1e3 for log in (soft, stiff))
+    ratios = predicted[0] / small, measured[0] / held[0]
     return [
-        Check("disturbance of 2 N m, soft over stiff", predicted[0] / small,
-              float(measured[0] / held[0]), "", 0.05),
-        Check("shoulder gives way, Salisbury", predicted[0] * 1e3, measured[0] * 1e3, "mrad", 0.05),
-        Check("elbow gives way, Salisbury", predicted[1] * 1e3, measured[1] * 1e3, "mrad", 0.05),
-        Check("shoulder gives way, joint PD", small * 1e3, held[0] * 1e3, "mrad", 0.05),
-        Check("elbow gives way, joint PD", 0.0, held[1] * 1e3, "mrad", 0.05 * small * 1e3,
-              "absolute"),
-    ]  # fmt: skip
+        Comparison("disturbance of 2 N m, soft over stiff", *ratios, "", 0.05),
+        Comparison("shoulder gives way, Salisbury", predicted[0], measured[0], "mrad", 0.05),
+        Comparison("elbow gives way, Salisbury", predicted[1], measured[1], "mrad", 0.05),
+        Comparison("shoulder gives way, joint PD", small, held[0], "mrad", 0.05),
+        near_zero("elbow gives way, joint PD", held[1], "mrad", 0.05 * small),
+    ]
 
 
-def tip_spring(soft: Log) -> list[Check]:
+def tip_spring(soft: Log) -> list[Comparison]:
     """A small force moves the tip by K⁻¹ f, and not across."""
     moved = FORCE / K[0, 0] * 1e3
     found = []
     for name, at_s, along in (("x", TIP_X, 0), ("y", TIP_Y, 1)):
         off = (arm.tip(Q_D + rest(soft, at_s)) - arm.tip(Q_D)) * 1e3
         title = f"small displacement: tip under {FORCE:g} N along {name}"
-        found.append(Check(title, moved, float(off[along]), "mm", 0.01))
-        found.append(
-            Check(f"{title}, across", 0.0, float(off[1 - along]), "mm", 0.01 * moved, "absolute")
-        )
+        found.append(Comparison(title, moved, off[along], "mm", 0.01))
+        found.append(near_zero(f"{title}, across", off[1 - along], "mm", 0.01 * moved))
     return found
 
 
-def gravity(soft: Log, stiff: Log) -> list[Check]:
-    found = []
-    measured, predicted = rest(soft, SAGGED), sag()
-    for i, name in enumerate(("shoulder", "elbow")):
-        title = f"{name} sags without model term, Salisbury"
-        found.append(Check(title, predicted[i] * 1e3, measured[i] * 1e3, "mrad", 0.01))
-    title = "gravity error with the model term, Salisbury"
-    left = float(np.abs(rest(soft, HELD)).max()) * 1e6
-    found.append(Check(title, 0.0, left, "µrad", 1.0, "absolute"))
-    held = rest(stiff, SAGGED)
-    title = "shoulder sags without model term, joint PD"
-    pd = -arm.weight(Q_D)[0] / STIFF
-    return [*found, Check(title, pd * 1e3, held[0] * 1e3, "mrad", 0.01)]
+def gravity(soft: Log, stiff: Log) -> list[Comparison]:
+    fallen, predicted = rest(soft, SAGGED) * 1e3, sag() * 1e3
+    left = np.abs(rest(soft, HELD)).max() * 1e6
+    pd, held = -arm.weight(Q_D)[0] / STIFF * 1e3, rest(stiff, SAGGED)[0] * 1e3
+    without = "sags without model term"
+    return [
+        Comparison(f"shoulder {without}, Salisbury", predicted[0], fallen[0], "mrad", 0.01),
+        Comparison(f"elbow {without}, Salisbury", predicted[1], fallen[1], "mrad", 0.01),
+        near_zero("gravity error with the model term, Salisbury", left, "µrad", 1.0),
+        Comparison(f"shoulder {without}, joint PD", pd, held, "mrad", 0.01),
+    ]
 
 
 def draw(context: Context, soft: Log, stiff: Log) -> None:
@@ -158,7 +133,7 @@ def draw(context: Context, soft: Log, stiff: Log) -> None:
 
 
 def bars(
-    ax: Any,
+    ax: Axes,
     names: list[str],
     formula: list[float],
     measured: list[np.ndarray],

@@ -6,8 +6,8 @@ A form is (which terms of Eq. 4, at which pose); DIRECT is the law -JᵀK x̃ th
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Context, case
+from limber.experiments.pictures import BLACK, COLORS
 
 Form = tuple[str, str]
 DIRECT: Form = ("direct", "current")
@@ -19,9 +19,8 @@ ORDERS: dict[Form, int] = {
     ("full", "mid"): 2,
     ("full", "mean"): 2,
 }
-CONSERVATIVE: list[Form] = [
-    ("first", "desired"), ("full", "current"), ("full", "mid"), ("full", "mean"), DIRECT,
-]  # fmt: skip
+WITH_CURL: list[Form] = [("first", "current"), ("first", "mid")]
+COLOR = dict(zip([*ORDERS, DIRECT], [*COLORS[:6], BLACK], strict=True))
 Q_D = np.radians([20.0, 80.0])
 P_D = arm.tip(Q_D)
 K = 300.0 * np.eye(2)
@@ -34,15 +33,14 @@ def name(form: Form) -> str:
 
 def asked(context: Context, pairs: list[tuple[Form, np.ndarray]]) -> np.ndarray:
     """Torques of the controller's laws, one row a pair of form and pose."""
-    rest = {"v": [0.0, 0.0], "p_d": P_D, "Kx": K, "Dx": np.eye(2), "bias": "none"}
     cases = []
     for form, q in pairs:
         if form == DIRECT:
-            more = {"mode": "log", "F_ff": [0.0, 0.0]}
-            cases.append(case("cartesian_impedance", arm.ROBOT, q=q, **rest, **more))
+            cases.append(arm.direct_law(q, np.zeros(2), P_D, K, np.eye(2)))
         else:
-            more = {"q_d": Q_D, "v_d": [0.0, 0.0], "which": form[0], "pose": form[1]}
-            cases.append(case("eq7", arm.ROBOT, q=q, **rest, **more, use_vd=False))
+            spring = {"p_d": P_D, "q_d": Q_D, "Kx": K, "which": form[0], "pose": form[1]}
+            damper = {"v": np.zeros(2), "v_d": np.zeros(2), "Dx": np.eye(2), "use_vd": False}
+            cases.append(case("eq7", arm.ROBOT, q=q, **spring, **damper, bias="none"))
     return np.array([answer["tau"] for answer in context.eval(cases)])
 
 

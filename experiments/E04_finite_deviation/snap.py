@@ -1,18 +1,17 @@
 """The arm itself under a force that grows slowly along the deviation: where its elbow snaps."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, ORANGE
+from limber.experiments.context import Comparison, Context, at_most
+from limber.experiments.pictures import Axes, level, name_axes, note
+from limber.experiments.timeline import tip_gains
 from limber.experiments.truth import joints, motion, status
 
 from .equilibria import closed_curve
-from .laws import ALONG, DIRECT, P_D, Q_D, Form, K, name
+from .laws import ALONG, COLOR, DIRECT, P_D, Q_D, Form, K, name
 
 # The load grows to a share of the limit, then slowly past it: an arm takes its time to leave the
 # place where it could just rest
@@ -37,33 +36,18 @@ class Pushed:
 
 
 def pushed(context: Context, form: Form, limit_N: float) -> Pushed:
-    law = {"law": "cartesian_impedance"}
+    gains = tip_gains([*np.diag(K), 0.0], damping_ratio=0.3)
     if form != DIRECT:
-        law = {"law": "eq7", "stiffness_terms": form[0], "stiffness_pose": form[1]}
-    gains = {
-        **law,
-        "K_x_translation_N_per_m": [*np.diag(K).tolist(), 0.0],
-        "K_x_rotation_Nm_per_rad": 0.0,
-        "damping_ratio": 0.3,
-    }
-    first, second = (
-        {"id": 1, "force_N": [*(share * limit_N * ALONG).tolist(), 0.0]} for share in SHARES
-    )
+        terms, pose = form
+        gains |= {"law": "mapped_joint_impedance", "stiffness_terms": terms, "stiffness_pose": pose}
+    first, second = ({"id": 1, "force_N": [*(share * limit_N * ALONG), 0.0]} for share in SHARES)
+    entries = [
+        {"at_s": START_S, "push": {**first, "ramp_s": SLOW_S - START_S, "for_s": 60.0}},
+        {"at_s": SLOW_S, "push": {**second, "ramp_s": LONG_S, "for_s": 60.0}},
+    ]
     end = SLOW_S + LONG_S
-    scenario = {
-        "robot": arm.ROBOT,
-        "integrator": "reference",
-        "start_q": Q_D.tolist(),
-        "duration_s": end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            {"at_s": START_S, "push": {**first, "ramp_s": SLOW_S - START_S, "for_s": 60.0}},
-            {"at_s": SLOW_S, "push": {**second, "ramp_s": LONG_S, "for_s": 60.0}},
-        ],
-    }
-    log = context.lab(scenario, f"push_{'direct' if form == DIRECT else '_'.join(form)}")
+    name = f"push_{'direct' if form == DIRECT else '_'.join(form)}"
+    log = context.run_law(name, arm.ROBOT, gains, entries, end, start_q=Q_D)
     status(log, START_S, end)
     rows = motion(log, START_S, end)
     along = (rows["p_BT"][:, :2] - P_D) @ ALONG
@@ -79,33 +63,23 @@ def runs(context: Context) -> dict[Form, Pushed]:
     return {form: pushed(context, form, limit()) for form in (SNAPS, DIRECT)}
 
 
-def checks(found: dict[Form, Pushed]) -> list[Check]:
+def checks(found: dict[Form, Pushed]) -> list[Comparison]:
     snapping, direct = found[SNAPS], found[DIRECT]
-    stays = float(direct.load[-1] / K[0, 0])
+    stays = direct.load[-1] / K[0, 0], direct.deviation[-1]
     return [
-        Check("the arm snaps to the other elbow at", limit(), snapping.snapped_at, "N", 0.05),
-        Check("elbow afterwards", 0.0, float(snapping.elbow[-1]), "rad", 0.0, "at_most"),
-        Check("direct law, deviation under 1.15 of that", stays, direct.deviation[-1], "m", 0.01),
+        Comparison("the arm snaps to the other elbow at", limit(), snapping.snapped_at, "N", 0.05),
+        at_most("elbow afterwards", 0.0, snapping.elbow[-1], "rad"),
+        Comparison("direct law, deviation under 1.15 of that", *stays, "m", 0.01),
     ]
 
 
-def draw(found: dict[Form, Pushed], ax: Any) -> None:
+def draw(found: dict[Form, Pushed], ax: Axes) -> None:
     """The elbow's angle over the load; the arm's motion is what is measured."""
-    for form, color in ((SNAPS, ORANGE), (DIRECT, BLACK)):
-        run = found[form]
-        ax.plot(run.load, np.degrees(run.elbow), color=color, label=f"{name(form)}, the arm")
-    limit_N = limit()
-    ax.axvline(limit_N, color="0.5", ls=":", lw=1)
-    ax.annotate(
-        "predicted:\nbeyond this it\ncannot rest",
-        (limit_N, 20),
-        xytext=(-8, 0),
-        textcoords="offset points",
-        ha="right",
-    )
+    for form, run in found.items():
+        ax.plot(run.load, np.degrees(run.elbow), color=COLOR[form], label=f"{name(form)}, the arm")
+    bound = "predicted:\nbeyond this it\ncannot rest"
+    level(ax, bound, (limit(), 20), (-8, 0), upright=True, ha="right")
     ax.axhline(0, color="0.5", lw=0.8)
-    ax.annotate("stretched", (0.3, 2), color="0.35")
+    note(ax, "stretched", (0.3, 2))
     ax.set_title("The arm itself, pushed harder and harder")
-    ax.set_xlabel("load (N)")
-    ax.set_ylabel("angle of the elbow (°)")
-    ax.legend(loc="lower left")
+    name_axes(ax, "load (N)", "angle of the elbow (°)", "lower left")

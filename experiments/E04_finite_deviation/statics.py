@@ -3,24 +3,24 @@
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, near_zero
+from limber.experiments.search import order
 
 from .equilibria import Task, carried, closed_curve, rests
-from .laws import ALONG, CONSERVATIVE, DIRECT, ORDERS, P_D, Form, K, asked, closed, force_at, name
+from .laws import ALONG, DIRECT, ORDERS, P_D, WITH_CURL, Form, K, asked, closed, force_at, name
 
 PUSH_N = 0.05
 FORMS = [*ORDERS, DIRECT]
 
 
-def checks(context: Context) -> list[Check]:
-    context.say("force errors")
+def checks(context: Context) -> list[Comparison]:
+    context.progress("force errors")
     found = error_orders(context)
-    context.say("incremental stiffness")
+    context.progress("incremental stiffness")
     found += incremental(context)
-    context.say("work around a circle")
+    context.progress("work around a circle")
     found += circle_work(context)
-    context.say("limit load")
+    context.progress("limit load")
     return [*found, *limit_load(context)]
 
 
@@ -33,19 +33,19 @@ def force_errors(context: Context, form: Form, away_m: np.ndarray) -> np.ndarray
     return np.linalg.norm(forces - right, axis=1) / np.linalg.norm(right, axis=1)
 
 
-def error_orders(context: Context) -> list[Check]:
+def error_orders(context: Context) -> list[Comparison]:
     away = np.geomspace(0.002, 0.02, 6)
     found = []
-    for form, order in ORDERS.items():
-        slope = np.polyfit(np.log(away), np.log(force_errors(context, form, away)), 1)[0]
+    for form, predicted in ORDERS.items():
+        measured = order(away, force_errors(context, form, away))
         title = f"order of the force error in the deviation, {name(form)}"
-        found.append(Check(title, float(order), float(slope), "", 0.1, "absolute"))
-    worst = float(force_errors(context, DIRECT, np.linspace(0.005, 0.15, 6)).max())
-    found.append(Check("force error of the direct law", 0.0, worst, "", 1e-9, "absolute"))
+        found.append(Comparison(title, predicted, measured, "", 0.1, "absolute"))
+    worst = force_errors(context, DIRECT, np.linspace(0.005, 0.15, 6)).max()
+    found.append(near_zero("force error of the direct law", worst, "", 1e-9))
     small = np.array([0.005])
     for form, predicted in leading_errors(small[0]).items():
         title = f"force error at 5 mm, {name(form)}"
-        found.append(Check(title, predicted, float(force_errors(context, form, small)[0]), "", 0.1))
+        found.append(Comparison(title, predicted, force_errors(context, form, small)[0], "", 0.1))
     return found
 
 
@@ -64,7 +64,7 @@ def leading_errors(away: float) -> dict[Form, float]:
     }
 
 
-def incremental(context: Context) -> list[Check]:
+def incremental(context: Context) -> list[Comparison]:
     """At 10 cm: J⁻ᵀ(K_q - K_G)J⁻¹, K_q the tangent of the form, against ±0.05 N put on top."""
     q = arm.inverse(P_D + 0.1 * ALONG)
     inverse = np.linalg.inv(arm.jacobian(q))
@@ -76,7 +76,7 @@ def incremental(context: Context) -> list[Check]:
         felt = inverse.T @ (tangent - arm.geometric(q, external[form])) @ inverse
         title = f"stiffness felt at 10 cm along the deviation, {name(form)}"
         along = float(ALONG @ felt @ ALONG), float(ALONG @ measured[form] @ ALONG)
-        found.append(Check(title, *along, "N/m", 0.02))
+        found.append(Comparison(title, *along, "N/m", 0.02))
     return found
 
 
@@ -91,7 +91,7 @@ def felt_stiffness(
     return {form: np.linalg.inv(m.T) for form, m in zip(external, moved, strict=True)}
 
 
-def circle_work(context: Context) -> list[Check]:
+def circle_work(context: Context) -> list[Comparison]:
     """Work of the spring while the tip is led once around 4 cm, centred 6 cm from the target."""
     angles = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
     around = np.column_stack([np.cos(angles), np.sin(angles)])
@@ -105,10 +105,10 @@ def circle_work(context: Context) -> list[Check]:
         torques = asked(context, [(form, q) for q in poses])
         work = float(np.sum(torques * steps)) * 2 * np.pi / len(angles)
         title = f"work of a turn, {name(form)}"
-        if form in CONSERVATIVE:
-            found.append(Check(title, 0.0, work * 1e3, "mJ", 1e-3, "absolute"))
+        if form in WITH_CURL:
+            found.append(Comparison(title, enclosed_curl(form) * 1e3, work * 1e3, "mJ", 0.01))
         else:
-            found.append(Check(title, enclosed_curl(form) * 1e3, work * 1e3, "mJ", 0.01))
+            found.append(near_zero(title, work * 1e3, "mJ", 1e-3))
     return found
 
 
@@ -128,15 +128,15 @@ def enclosed_curl(form: Form) -> float:
     return float(total)
 
 
-def limit_load(context: Context) -> list[Check]:
+def limit_load(context: Context) -> list[Comparison]:
     """Greatest force along the deviation that a form can still rest under."""
     form = ("full", "current")
     predicted = float(closed_curve(form, 0.15)[:, 1].max())
     measured = float(carried(context, form, 1.2 * predicted)[-1, 1])
     twice = 2 * predicted
     (pose,) = rests(context, [Task(DIRECT, twice * ALONG, arm.inverse(P_D + 0.1 * ALONG))])
-    away = float(np.linalg.norm(arm.tip(pose) - P_D))
+    away = twice / K[0, 0], np.linalg.norm(arm.tip(pose) - P_D)
     return [
-        Check("limit load of full at current", predicted, measured, "N", 0.05),
-        Check("deviation of the direct law under twice that", twice / K[0, 0], away, "m", 1e-6),
+        Comparison("limit load of full at current", predicted, measured, "N", 0.05),
+        Comparison("deviation of the direct law under twice that", *away, "m", 1e-6),
     ]

@@ -4,10 +4,9 @@ import numpy as np
 from scipy.linalg import eigh
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, at_most, case, near_zero
+from limber.experiments.pictures import GREEN, MEASURED, ORANGE, level, name_axes, note
+from limber.experiments.search import limit_by_combs
 
 TITLE = "The extra term of Eq. 6 is no damping: it feeds energy in when the tip moves out fast"
 CLAIM = "The damping in joint coordinates is JᵀDJ (Eq. 3), and the derivative of the damping term"
@@ -23,26 +22,21 @@ STEP = 1e-5
 OUTWARD = arm.tip(Q) / np.linalg.norm(arm.tip(Q))
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     by_v, by_q = measured_partials(context)
     J, rate = arm.jacobian(Q), arm.jacobian_rate(Q, V)
     third = arm.geometric(Q, D @ J @ V)
-    difference = [
-        ("damping matrix ∂τ/∂q̇ differs from JᵀDJ by", by_v - J.T @ D @ J, "N m s/rad"),
-        (
-            "∂τ/∂q differs from third term + JᵀD ∂(Jq̇)/∂q by",
-            by_q - third - J.T @ D @ rate,
-            "N m/rad",
-        ),
-    ]
+    eq6 = J.T @ D @ rate
     checks = [
-        Check(name, 0.0, float(np.abs(off).max()), unit, 1e-5, "absolute")
-        for name, off, unit in difference
+        near_zero(f"{name} by", np.abs(off).max(), unit, 1e-5)
+        for name, off, unit in (
+            ("damping matrix ∂τ/∂q̇ differs from JᵀDJ", by_v - J.T @ D @ J, "N m s/rad"),
+            ("∂τ/∂q differs from third term + JᵀD ∂(Jq̇)/∂q", by_q - third - eq6, "N m/rad"),
+        )
     ]
-    missing = float(np.abs(by_q - third).max())
     name = "∂τ/∂q without the term that Eq. 5 leaves out, off by"
-    checks.append(Check(name, float(np.abs(J.T @ D @ rate).max()), missing, "N m/rad", 1e-5))
-    checks += printed_law(context)
+    missing = np.abs(eq6).max(), np.abs(by_q - third).max()
+    checks += [Comparison(name, *missing, "N m/rad", 1e-5), *printed_law(context)]
     draw(context)
     return checks
 
@@ -51,24 +45,8 @@ def measured_partials(context: Context) -> tuple[np.ndarray, np.ndarray]:
     """Central differences of the damping torque JᵀD J q̇ that the Cartesian law commands."""
     axes = np.vstack([np.eye(2), -np.eye(2)]) * STEP
     points = [(Q, V + axis) for axis in axes] + [(Q + axis, V) for axis in axes]
-    answers = context.eval(
-        [
-            case(
-                "cartesian_impedance",
-                arm.ROBOT,
-                q=q,
-                v=v,
-                p_d=arm.tip(Q),
-                Kx=np.zeros((2, 2)),
-                Dx=D,
-                bias="none",
-                mode="log",
-                F_ff=[0.0, 0.0],
-            )
-            for q, v in points
-        ]
-    )
-    tau = -np.array([answer["tau"] for answer in answers])
+    cases = [arm.direct_law(q, v, arm.tip(Q), np.zeros((2, 2)), D) for q, v in points]
+    tau = -np.array([answer["tau"] for answer in context.eval(cases)])
     return ((tau[0:2] - tau[2:4]) / (2 * STEP)).T, ((tau[4:6] - tau[6:8]) / (2 * STEP)).T
 
 
@@ -78,19 +56,11 @@ def printed(context: Context, speeds: np.ndarray, gain: float = 30.0, unit: floa
     It is Eq. 4 with D in the place of the stiffness and ẋ in the place of the deviation. `unit`: of
     time, as a part of a second: D becomes D/unit and ẋ becomes ẋ unit.
     """
-    answers = context.eval(
-        [
-            case(
-                "eq4",
-                arm.ROBOT,
-                q=Q,
-                p_d=arm.tip(Q) - unit * speed * OUTWARD,
-                Kx=gain / unit * np.eye(2),
-                mode="log",
-            )
-            for speed in speeds
-        ]
-    )
+    asked = [
+        {"p_d": arm.tip(Q) - unit * speed * OUTWARD, "Kx": gain / unit * np.eye(2)}
+        for speed in speeds
+    ]
+    answers = context.eval([case("eq4", arm.ROBOT, q=Q, mode="log", **wish) for wish in asked])
     return [answer["first"] + answer["geometric_fixed_wrench"] for answer in answers]
 
 
@@ -100,7 +70,7 @@ def critical_speed() -> float:
     return 1 / float(eigh(-arm.geometric(Q, OUTWARD), J.T @ J, eigvals_only=True)[-1])
 
 
-def printed_law(context: Context) -> list[Check]:
+def printed_law(context: Context) -> list[Comparison]:
     speed = critical_speed()
     checks = []
     for name, gain, unit in (
@@ -109,25 +79,19 @@ def printed_law(context: Context) -> list[Check]:
         (", the same in milliseconds", 30.0, 1e-3),
     ):
         found = loses_definiteness(context, speed / unit, gain, unit)
-        checks.append(
-            Check(f"speed at which Eq. 6 is no damping{name}", speed / unit, found, "m/s", 1e-3)
-        )
+        title = f"speed at which Eq. 6 is no damping{name}"
+        checks.append(Comparison(title, speed / unit, found, "m/s", 1e-3))
     (K_v,) = printed(context, np.array([2 * speed]))
     q_dot = np.linalg.eigh(K_v)[1][:, 0]
-    power = float(q_dot @ K_v @ q_dot)
     name = "power it takes out at twice that speed, for 1 rad/s"
-    return [*checks, Check(name, 0.0, power, "W", 0.0, "at_most")]
+    return [*checks, at_most(name, 0.0, q_dot @ K_v @ q_dot, "W")]
 
 
 def loses_definiteness(context: Context, about: float, gain: float, unit: float) -> float:
-    """By a comb, then a finer one."""
-    low, high = 0.2 * about, 5.0 * about
-    for _ in range(4):
-        speeds = np.linspace(low, high, 21)
-        lowest = [np.linalg.eigvalsh(K)[0] for K in printed(context, speeds, gain, unit)]
-        last = int(np.argmax(np.array(lowest) <= 0)) - 1
-        low, high = speeds[last], speeds[last + 1]
-    return (low + high) / 2
+    def damp(speeds: np.ndarray) -> list[bool]:
+        return [np.linalg.eigvalsh(K)[0] > 0 for K in printed(context, speeds, gain, unit)]
+
+    return limit_by_combs(damp, 0.2 * about, 5.0 * about, 21)
 
 
 def draw(context: Context) -> None:
@@ -144,16 +108,8 @@ def draw(context: Context) -> None:
         law = [np.linalg.eigvalsh(K) for K in printed(context, speeds[::6])]
         ax.plot(speeds[::6], law, **MEASURED, color=ORANGE, label=["the controller's terms", None])
         ax.axhspan(-12, 0, color=ORANGE, alpha=0.12, lw=0)
-        ax.annotate("feeds energy in", (speeds[3], -6), color=ORANGE)
-        ax.axvline(critical_speed(), color="0.5", ls=":", lw=1)
-        ax.annotate(
-            "predicted: 1/λ",
-            (critical_speed(), 22),
-            xytext=(6, 0),
-            color="0.35",
-            textcoords="offset points",
-        )
+        note(ax, "feeds energy in", (speeds[3], -6), color=ORANGE)
+        level(ax, "predicted: 1/λ", (critical_speed(), 22), (6, 0), upright=True)
         ax.set_ylim(bottom=-12)
-        ax.set_xlabel("speed of the tip outward (m/s)")
-        ax.set_ylabel("eigenvalues of the damping matrix (N m s/rad)")
-        ax.legend(loc="upper right")
+        y_name = "eigenvalues of the damping matrix (N m s/rad)"
+        name_axes(ax, "speed of the tip outward (m/s)", y_name, "upper right")

@@ -1,23 +1,20 @@
 """How wrong the stiffness gets while the arm moves on between two evaluations of its gains."""
 
 import math
-from typing import Any
 
 import numpy as np
+from numpy.linalg import norm
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import AMBER, BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, case
+from limber.experiments.pictures import AMBER, BLUE, GREEN, MEASURED, ORANGE, Axes, level, name_axes
+from limber.experiments.search import order
 
 from . import times
 
 TITLE = "Gains evaluated too rarely: the stiffness errs by what the arm has moved since"
-CLAIM = (
-    "K_p and K_v have to be re-evaluated at the present pose all the time, and there are schemes"
-)
-CLAIM += " that play with the rates"
+CLAIM = "K_p and K_v have to be re-evaluated at the present pose all the time, and there are"
+CLAIM += " schemes that play with the rates"
 SECTION = "2"
 PLANT = "the controller's laws on planar2r"
 FAST = True
@@ -29,24 +26,22 @@ TARGET = arm.tip(Q) - np.array([0.03, 0.02])  # so that the spring carries a for
 MOTION = np.array([1.0, -1.5])  # rad/s
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     checks = []
     for ms in (1.0, 10.0, 50.0):
         moved = np.array([SHOULDER_RAD_PER_S * ms * 1e-3, 0.0])
         (off,) = held_errors(context, [moved])
         name = f"shoulder at 2 rad/s, J held {ms:g} ms: stiffness off by"
-        checks.append(Check(name, shoulder_error(ms * 1e-3), off, "N/m", 1e-3))
+        checks.append(Comparison(name, shoulder_error(ms * 1e-3), off, "N/m", 1e-3))
     for ms in (1.0, 4.0):
         (off,) = held_errors(context, [np.array([0.0, ELBOW_RAD_PER_S * ms * 1e-3])])
         name = f"elbow at 2 rad/s, J held {ms:g} ms: stiffness off by"
-        checks.append(Check(name, elbow_error(ms * 1e-3), off, "N/m", 0.05))
+        checks.append(Comparison(name, elbow_error(ms * 1e-3), off, "N/m", 0.05))
     holds = np.geomspace(1e-3, 16e-3, 5)
     full, first = torque_errors(context, holds)
-    for name, errors, order in (("full tangent", full, 2.0), ("first term only", first, 1.0)):
-        slope = float(np.polyfit(np.log(holds), np.log(errors), 1)[0])
-        checks.append(
-            Check(f"order of the torque error in time, {name}", order, slope, "", 0.1, "absolute")
-        )
+    for name, errors, power in (("full tangent", full, 2.0), ("first term only", first, 1.0)):
+        name = f"order of the torque error in time, {name}"
+        checks.append(Comparison(name, power, order(holds, errors), "", 0.1, "absolute"))
     found = times.measure(context)
     draw(context, found)
     return [*checks, *times.checks(found)]
@@ -61,7 +56,7 @@ def elbow_error(T: float) -> float:
     """‖EᵀK + K E‖ with E = (∂J/∂q₂) J⁻¹ ω T, first order in what the elbow has moved."""
     rate = arm.jacobian_rate(Q, np.array([0.0, ELBOW_RAD_PER_S]))
     E = rate @ np.linalg.inv(arm.jacobian(Q)) * T
-    return float(np.linalg.norm(E.T @ K + K @ E, 2))
+    return norm(E.T @ K + K @ E, 2)
 
 
 def held_errors(context: Context, moves: list[np.ndarray]) -> list[float]:
@@ -72,7 +67,7 @@ def held_errors(context: Context, moves: list[np.ndarray]) -> list[float]:
     errors = []
     for pose in poses:
         inverse = np.linalg.inv(pose["J"])
-        errors.append(float(np.linalg.norm(inverse.T @ first["first"] @ inverse - K, 2)))
+        errors.append(norm(inverse.T @ first["first"] @ inverse - K, 2))
     return errors
 
 
@@ -80,28 +75,13 @@ def torque_errors(context: Context, holds: np.ndarray) -> tuple[list[float], lis
     """|τ - (τ_k - K_k Δq)| for K_k the full tangent, and for its first term JᵀKJ alone."""
     poses = [Q, *(Q + MOTION * hold for hold in holds)]
     tangent = case("eq4", arm.ROBOT, q=Q, p_d=TARGET, Kx=K, mode="log")
-    laws = [
-        case(
-            "cartesian_impedance",
-            arm.ROBOT,
-            q=q,
-            v=[0.0, 0.0],
-            p_d=TARGET,
-            Kx=K,
-            Dx=np.eye(2),
-            bias="none",
-            mode="log",
-            F_ff=[0.0, 0.0],
-        )
-        for q in poses
-    ]
+    at_rest = np.zeros(2), TARGET, K, np.eye(2)
+    laws = [arm.direct_law(q, *at_rest) for q in poses]
     slow, start, *exact = context.eval([tangent, *laws])
     errors = []
     for name in ("full", "first"):
         held = [start["tau"] - slow[name] @ (q - Q) for q in poses[1:]]
-        errors.append(
-            [float(np.linalg.norm(law["tau"] - tau)) for law, tau in zip(exact, held, strict=True)]
-        )
+        errors.append([norm(law["tau"] - tau) for law, tau in zip(exact, held, strict=True)])
     return errors[0], errors[1]
 
 
@@ -119,12 +99,10 @@ def draw(context: Context, found: dict[str, float]) -> None:
         right.loglog(holds * 1e3, first[2] * holds / some[2], color=AMBER, label="slope 1")
         right.loglog(holds * 1e3, full[2] * (holds / some[2]) ** 2, color=GREEN, label="slope 2")
         right.set_title("Torque from a tangent that is renewed slowly")
-        right.set_xlabel("time since the last evaluation (ms)")
-        right.set_ylabel("torque error (N m)")
-        right.legend(loc="upper left")
+        name_axes(right, "time since the last evaluation (ms)", "torque error (N m)", "upper left")
 
 
-def draw_stiffness(context: Context, ax: Any, holds: np.ndarray, some: np.ndarray) -> None:
+def draw_stiffness(context: Context, ax: Axes, holds: np.ndarray, some: np.ndarray) -> None:
     for speed, formula, color, name in (
         ([SHOULDER_RAD_PER_S, 0.0], shoulder_error, BLUE, "shoulder turns: |k₁ - k₂| sin ωt"),
         ([0.0, ELBOW_RAD_PER_S], elbow_error, ORANGE, "elbow turns: ‖EᵀK + KE‖"),
@@ -133,9 +111,8 @@ def draw_stiffness(context: Context, ax: Any, holds: np.ndarray, some: np.ndarra
         found = held_errors(context, [np.array(speed) * T for T in some])
         ax.loglog(some * 1e3, found, **MEASURED, color=color)
     ax.loglog([], [], **MEASURED, color="0.3", label="from the controller's terms")
-    ax.axhline(0.01 * K[0, 0], color="0.5", ls=":", lw=1)
-    ax.annotate("1 % of the greater stiffness", (0.5, 11), color="0.35")
+    level(ax, "1 % of the greater stiffness", (0.5, 0.01 * K[0, 0]), (0, 3))
     ax.set_title("J held while a joint turns at 2 rad/s")
-    ax.set_xlabel("time since the last evaluation (ms)")
-    ax.set_ylabel("error of the stiffness (N/m)")
-    ax.legend(loc="upper left")
+    name_axes(
+        ax, "time since the last evaluation (ms)", "error of the stiffness (N/m)", "upper left"
+    )

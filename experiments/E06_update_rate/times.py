@@ -7,13 +7,11 @@ benchmarks have been built (`limber bench` does).
 import json
 import os
 import subprocess
-from typing import Any
 
-from limber.bench import RELEASE
 from limber.errors import RunError
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, ORANGE
+from limber.experiments.context import Comparison, Context, at_most
+from limber.experiments.pictures import BLUE, ORANGE, Axes
+from limber.paths import RELEASE
 
 PROGRAM = "limber-bench"
 TERMS = {
@@ -30,7 +28,7 @@ def measure(context: Context) -> dict[str, float]:
     """Median of the processor's time in µs, by the benchmark's name; empty if not built."""
     path = RELEASE / PROGRAM
     if not os.access(path, os.X_OK):
-        context.say(f"{PROGRAM} is not built: no times of single terms")
+        context.progress(f"{PROGRAM} is not built: no times of single terms")
         return {}
     chosen = "|".join(f"{name}$" for name in (*TERMS, CYCLE))
     options = ["--benchmark_format=json", "--benchmark_min_time=0.05", "--benchmark_repetitions=7"]
@@ -52,17 +50,23 @@ def measure(context: Context) -> dict[str, float]:
     return found
 
 
-def checks(found: dict[str, float]) -> list[Check]:
+def checks(found: dict[str, float]) -> list[Comparison]:
     """Nothing that is done in a cycle can take longer than the cycle."""
+    if not found:
+        return []
+    whole = found[CYCLE]
     return [
-        Check(f"time of {' '.join(label.split())} over a whole cycle of computed_torque",
-              1.0, found[name] / found[CYCLE], "", 0.0, "at_most")
-        for name, label in TERMS.items()
-        if found and name != "term_stiffness"
-    ]  # fmt: skip
+        at_most(
+            f"time of {' '.join(word.split())} over a whole cycle of computed_torque",
+            1.0,
+            found[name] / whole,
+        )
+        for name, word in TERMS.items()
+        if name != "term_stiffness"
+    ]
 
 
-def draw(found: dict[str, float], ax: Any) -> None:
+def draw(found: dict[str, float], ax: Axes) -> None:
     names = [*TERMS, CYCLE]
     labels = [*TERMS.values(), "whole cycle\n(computed torque)"]
     colors = [*[BLUE] * len(TERMS), ORANGE]

@@ -4,28 +4,23 @@ Torques come a cycle late and are held for one, which the formulas leave out: th
 larger than predicted.
 """
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE
-from limber.experiments.truth import joints, motion, seconds, status
-from limber.logs import Log
+from limber.experiments.context import Comparison, Context, at_least, at_most
+from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE, Axes, name_axes
+from limber.experiments.truth import Log, joints, motion, status, time_s
 
 from . import scenarios as s
 from .planar import move, resting
 
-TITLE = (
-    "A model in the loop (Eq. 9) keeps the joints apart and on their path; a PD (Eq. 8) does not"
-)
+TITLE = "A model in the loop (Eq. 9) keeps the joints apart and on their path; a PD (Eq. 8) does"
+TITLE += " not"
 CLAIM = "Eq. 7 alone is a joint PD with low gains and all its problems, which Eq. 9 cures; the"
 CLAIM += " desired joint velocity can be left out"
 SECTION = "3"
-PLANT = "planar2r with its controller, driver and simulator, exact equations; joint_pd, eq7,"
-PLANT += " computed_torque"
+PLANT = "planar2r with its controller, driver and simulator, exact equations; joint_pd,"
+PLANT += " mapped_joint_impedance, computed_torque"
 FAST = False
 
 CIRCLES = {
@@ -37,19 +32,19 @@ CIRCLES = {
 }
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     off = np.array([-s.STEP, 0.0])
     steps = {
-        "Eq. 9": context.lab(s.step(s.EQ_9, s.M @ (s.K_ACC * off)), "step_eq9"),
-        "Eq. 8": context.lab(s.step(s.EQ_8, s.K_Q * off), "step_eq8"),
+        "Eq. 9": s.step(context, "step_eq9", s.EQ_9, s.M @ (s.K_ACC * off)),
+        "Eq. 8": s.step(context, "step_eq8", s.EQ_8, s.K_Q * off),
     }
     circles = {
-        name: context.lab(s.circle(gains), f"circle_{i}")
+        name: s.circle(context, f"circle_{i}", gains)
         for i, (name, gains) in enumerate(CIRCLES.items())
     }
     contacts = {
-        "Eq. 9": context.lab(s.contact(s.EQ_9), "contact_eq9"),
-        "Eq. 9 with JᵀKJ": context.lab(s.contact(s.EQ_9_LITERAL), "contact_literal"),
+        "Eq. 9": s.contact(context, "contact_eq9", s.EQ_9),
+        "Eq. 9 with JᵀKJ": s.contact(context, "contact_literal", s.EQ_9_LITERAL),
     }
     draw(context, steps, circles)
     return [*step_checks(steps), *circle_checks(circles), *contact_checks(contacts)]
@@ -59,7 +54,7 @@ def let_go(log: Log) -> tuple[np.ndarray, np.ndarray]:
     """Time since, and q - q_d from then on, rad."""
     status(log, s.LET_GO_AT, s.LET_GO_AT + 3.0)
     rows = motion(log, s.LET_GO_AT, s.LET_GO_AT + 3.0)
-    return seconds(rows) - s.LET_GO_AT, joints(rows) - s.Q_D
+    return time_s(rows) - s.LET_GO_AT, joints(rows) - s.Q_D
 
 
 def pd_let_go(times: np.ndarray) -> np.ndarray:
@@ -68,17 +63,16 @@ def pd_let_go(times: np.ndarray) -> np.ndarray:
     return move(s.K_Q, s.D_Q, resting(s.Q_D), start, times)[:, :2] - s.Q_D
 
 
-def step_checks(steps: dict[str, Log]) -> list[Check]:
+def step_checks(steps: dict[str, Log]) -> list[Comparison]:
     t, eq9 = let_go(steps["Eq. 9"])
     _, eq8 = let_go(steps["Eq. 8"])
-    overshoot = float(np.exp(-np.pi * s.ZETA / np.sqrt(1 - s.ZETA**2)))
-    dragged = float(np.abs(pd_let_go(t)[:, 1]).max()) * 1e3
-    elbows = [float(np.abs(off[:, 1]).max()) * 1e3 for off in (eq8, eq9)]
+    overshoot = np.exp(-np.pi * s.ZETA / np.sqrt(1 - s.ZETA**2))
+    dragged, eq8_off, eq9_off = (np.abs(q[:, 1]).max() * 1e3 for q in (pd_let_go(t), eq8, eq9))
     return [
-        Check("elbow dragged along, Eq. 8", dragged, elbows[0], "mrad", 0.05),
-        Check("elbow dragged along, Eq. 9", 2.0, elbows[1], "mrad", 0.0, "at_most"),
-        Check("held away by", s.STEP, float(-eq9[0, 0]), "rad", 1e-3),
-        Check("overshoot, Eq. 9", overshoot, float(eq9[:, 0].max()) / s.STEP, "", 0.04),
+        Comparison("elbow dragged along, Eq. 8", dragged, eq8_off, "mrad", 0.05),
+        at_most("elbow dragged along, Eq. 9", 2.0, eq9_off, "mrad"),
+        Comparison("held away by", s.STEP, -eq9[0, 0], "rad", 1e-3),
+        Comparison("overshoot, Eq. 9", overshoot, eq9[:, 0].max() / s.STEP, "", 0.04),
     ]
 
 
@@ -115,21 +109,20 @@ def target(t: float) -> tuple[np.ndarray, np.ndarray]:
     return q, np.linalg.solve(arm.jacobian(q), v)
 
 
-def circle_checks(circles: dict[str, Log]) -> list[Check]:
+def circle_checks(circles: dict[str, Log]) -> list[Comparison]:
     errors = {name: path_error(log) * 1e3 for name, log in circles.items()}
     worse = errors["Eq. 8"] / errors["Eq. 9"]
     rest = errors["Eq. 7 without q̇_d"] / errors["Eq. 7"]
     printed = errors["Eq. 8 as printed"] / errors["Eq. 8"]
     return [
-        Check("path error, Eq. 8", pd_path_error() * 1e3, errors["Eq. 8"], "mm", 0.03),
-        Check("path error, Eq. 8 over Eq. 9", 20.0, worse, "", 0.0, "at_least"),
-        Check("path error without over with gravity term, Eq. 8", 1.0, printed, "", 0.0,
-              "at_least"),
-        Check("path error without over with q̇_d, Eq. 7", 1.0, rest, "", 0.0, "at_least"),
-    ]  # fmt: skip
+        Comparison("path error, Eq. 8", pd_path_error() * 1e3, errors["Eq. 8"], "mm", 0.03),
+        at_least("path error, Eq. 8 over Eq. 9", 20.0, worse),
+        at_least("path error without over with gravity term, Eq. 8", 1.0, printed),
+        at_least("path error without over with q̇_d, Eq. 7", 1.0, rest),
+    ]
 
 
-def contact_checks(contacts: dict[str, Log]) -> list[Check]:
+def contact_checks(contacts: dict[str, Log]) -> list[Comparison]:
     """J⁻ᵀ M K J⁻¹, entry by entry; not symmetric with K = JᵀK_x J."""
     J = arm.jacobian(s.Q_D)
     inverse = np.linalg.inv(J)
@@ -141,8 +134,8 @@ def contact_checks(contacts: dict[str, Log]) -> list[Check]:
         tolerance = 0.03 * float(np.abs(predicted).max())
         for i, j in np.ndindex(2, 2):
             title = f"contact stiffness {'xy'[i]}{'xy'[j]}, {name}"
-            values = float(predicted[i, j]), float(measured[i, j])
-            found.append(Check(title, *values, "N/m", tolerance, "absolute"))
+            values = predicted[i, j], measured[i, j]
+            found.append(Comparison(title, *values, "N/m", tolerance, "absolute"))
     return found
 
 
@@ -152,27 +145,27 @@ def draw(context: Context, steps: dict[str, Log], circles: dict[str, Log]) -> No
         draw_circles(right, circles)
 
 
-def draw_steps(ax: Any, steps: dict[str, Log]) -> None:
+def draw_steps(ax: Axes, steps: dict[str, Log]) -> None:
     t, eq8 = let_go(steps["Eq. 8"])
     _, eq9 = let_go(steps["Eq. 9"])
     omega = np.sqrt(s.K_ACC * (1 - s.ZETA**2))
     decay = -s.ZETA * np.sqrt(s.K_ACC)
     swing = np.cos(omega * t) - decay / omega * np.sin(omega * t)
-    curves = (("Eq. 9", BLUE, np.column_stack([-s.STEP * np.exp(decay * t) * swing, 0 * t]), eq9),
-              ("Eq. 8", ORANGE, pd_let_go(t), eq8))  # fmt: skip
-    for name, color, formula, measured in curves:
+    eq9_formula = np.column_stack([-s.STEP * np.exp(decay * t) * swing, 0 * t])
+    for name, color, formula, measured in (
+        ("Eq. 9", BLUE, eq9_formula, eq9),
+        ("Eq. 8", ORANGE, pd_let_go(t), eq8),
+    ):
         for joint, style in enumerate(("-", "--")):
-            label = f"{name}, {('shoulder', 'elbow')[joint]}"
-            ax.plot(t, formula[:, joint], style, color=color, label=label)
+            name_of_joint = f"{name}, {('shoulder', 'elbow')[joint]}"
+            ax.plot(t, formula[:, joint], style, color=color, label=name_of_joint)
             ax.plot(t[::40], measured[::40, joint], **{**MEASURED, "ms": 4}, color=color)
     ax.set_xlim(0, 1.2)
     ax.set_title("Only the shoulder was held away; let go at 0 (circles: measured)")
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel("joint off its target (rad)")
-    ax.legend(loc="lower right")
+    name_axes(ax, "time (s)", "joint off its target (rad)", "lower right")
 
 
-def draw_circles(ax: Any, circles: dict[str, Log]) -> None:
+def draw_circles(ax: Axes, circles: dict[str, Log]) -> None:
     around = np.linspace(0.0, 1.0, 100)
     ax.plot(*np.array([circle_at(t) for t in around]).T, color=BLACK, ls="--", lw=3, label="asked")
     for name, color in (("Eq. 9", BLUE), ("Eq. 8", ORANGE)):
@@ -181,7 +174,5 @@ def draw_circles(ax: Any, circles: dict[str, Log]) -> None:
         ax.plot(*rows["p_BT"][:, :2].T, color=color, label=f"{name}: {off:.2g} mm off")
     ax.set_aspect("equal")
     ax.set_title("A circle of 10 cm, one turn a second")
-    ax.set_xlabel("x (m)")
-    ax.set_ylabel("y (m)")
     ax.set_ylim(0.38, 0.78)
-    ax.legend(loc="upper left")
+    name_axes(ax, "x (m)", "y (m)", "upper left")

@@ -6,13 +6,13 @@ import numpy as np
 from scipy.linalg import eigh
 
 from limber.experiments import planar2r
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 from limber.experiments.inertia import gravity_gradient, joint_inertia, tip_inertia
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE, Axes, level, name_axes
 from limber.experiments.ringdown import DELAY_S, Mode, modes_of, modes_seen
+from limber.experiments.timeline import in_turn, tip_gains
 from limber.experiments.truth import joints, motion, status
-from limber.robot import load_robot
+from limber.model.robot import load_robot
 
 ZETA = 0.12
 FIRST_S, PUSH_S, RING_S = 2.0, 1.0, 2.5  # one push after the other, each let go at once
@@ -25,27 +25,25 @@ NULL_SPACE = {"K_null_Nm_per_rad": 0.0, "D_null_Nms_per_rad": D_NULL}
 PUSH_M, PUSH_RAD = 4e-3, 8e-3  # how far a push moves the tip
 
 
-def push_all(axes: list[np.ndarray]) -> list[dict[str, Any]]:
-    """Timeline with one push an axis; wrenches in N and N m."""
-    pushes = []
-    for i, wrench in enumerate(axes):
-        push = {"force_N": wrench[:3].tolist(), "torque_Nm": wrench[3:].tolist(), "for_s": PUSH_S}
-        pushes.append({"at_s": FIRST_S + i * (PUSH_S + RING_S), "push": push})
-    return pushes
-
-
 def rung(
-    context: Context, name: str, scenario: dict[str, Any], axes: list[np.ndarray], modes: int
+    context: Context,
+    name: str,
+    robot: str,
+    gains: dict[str, Any],
+    wrenches: list[np.ndarray],
+    modes: int,
+    **head: Any,
 ) -> tuple[np.ndarray, list[Mode]]:
-    """Pose at rest, and the modes that the joints' free motions have."""
+    """Pushed by each wrench and let go: the pose at rest, and the modes of the free motions."""
     cycle_s = PUSH_S + RING_S
-    end = FIRST_S + len(axes) * cycle_s
-    timeline = [*scenario.pop("timeline"), *push_all(axes)]
-    log = context.lab({**scenario, "duration_s": end + 0.1, "timeline": timeline}, name)
+    end = FIRST_S + len(wrenches) * cycle_s
+    pushes = [{"force_N": wrench[:3], "torque_Nm": wrench[3:]} for wrench in wrenches]
+    entries = in_turn(FIRST_S, cycle_s, pushes, for_s=PUSH_S)
+    log = context.run_law(name, robot, gains, entries, end, **head)
     status(log, FIRST_S, end)
     tracks = []
-    for i in range(len(axes)):
-        free = FIRST_S + i * cycle_s + PUSH_S
+    for push in entries:
+        free = push["at_s"] + PUSH_S
         rows = motion(log, free + 0.01, free + RING_S)[::EVERY]
         tracks.append(np.hstack([joints(rows), joints(rows, "v")]))
     rest = joints(motion(log, FIRST_S - 0.1, FIRST_S))[-1]
@@ -57,21 +55,10 @@ def cartesian(context: Context, arm: str) -> tuple[list[Mode], list[Mode]]:
     K = STIFFNESS[arm]
     robot, name = (planar2r.ROBOT, "planar") if arm == PLANAR else ("ideal7", "seven")
     stiffness = np.pad(K, (0, 6 - len(K)))
-    gains = {
-        "law": "cartesian_impedance",
-        "bias": "gravity",
-        "K_x_translation_N_per_m": stiffness[:3].tolist(),
-        "K_x_rotation_Nm_per_rad": stiffness[3:].tolist(),
-        **(given_damping() if arm == PLANAR else {"damping_ratio": ZETA, **NULL_SPACE}),
-    }
-    scenario = {
-        "robot": robot,
-        "integrator": "reference",
-        "timeline": [{"at_s": 0.3, "mode": "hold"}, {"at_s": 0.8, "mode": "active"},
-                     {"at_s": 1.0, "gains": gains}],
-    }  # fmt: skip
+    damping = given_damping() if arm == PLANAR else {"damping_ratio": ZETA, **NULL_SPACE}
+    gains = tip_gains(stiffness[:3], stiffness[3:], model_compensation="gravity", **damping)
     deflections = np.diag([PUSH_M] * 3 + [PUSH_RAD] * 3)[: len(K)]
-    q, seen = rung(context, name, scenario, list(deflections * stiffness), len(K))
+    q, seen = rung(context, name, robot, gains, list(deflections * stiffness), len(K))
     return modes_asked(robot, q, np.diag(K)), seen
 
 
@@ -101,30 +88,27 @@ def given_damping() -> dict[str, Any]:
     J, M = planar2r.jacobian(HOME), planar2r.inertia(HOME)
     D = np.zeros((6, 6))
     D[:2, :2] = designed(tip_inertia(J, M), np.diag(STIFFNESS[PLANAR]))
-    return {"damping": "given", "D_x": D.tolist()}
+    return {"damping": "given", "D_x": D}
 
 
-def checks(found: dict[str, tuple[list[Mode], list[Mode]]]) -> list[Check]:
+def checks(found: dict[str, tuple[list[Mode], list[Mode]]]) -> list[Comparison]:
     made = []
     for arm, (asked, seen) in found.items():
         for i, (a, s) in enumerate(zip(asked, seen, strict=True), 1):
-            made.append(Check(f"{arm}, mode {i}: frequency", a.omega, s.omega, "rad/s", 0.01))
-            made.append(Check(f"{arm}, mode {i}: damping ratio", a.zeta, s.zeta, "", 0.06))
+            made.append(Comparison(f"{arm}, mode {i}: frequency", a.omega, s.omega, "rad/s", 0.01))
+            made.append(Comparison(f"{arm}, mode {i}: damping ratio", a.zeta, s.zeta, "", 0.06))
     return made
 
 
-def draw(found: dict[str, tuple[list[Mode], list[Mode]]], ax: Any) -> None:
+def draw(found: dict[str, tuple[list[Mode], list[Mode]]], ax: Axes) -> None:
     for (arm, (asked, seen)), color in zip(found.items(), (ORANGE, BLUE), strict=True):
         ax.plot([m.omega for m in seen], [m.zeta for m in seen], **MEASURED, color=color, label=arm)
         for a in asked:
             ax.plot([a.omega], [a.zeta], "+", ms=11, color=color)
     ax.plot([], [], "+", ms=11, color="0.3", label="predicted")
     some = np.linspace(0, 1.1 * max(m.omega for m in found[SEVEN][0]), 20)
-    ax.axhline(ZETA, color="0.5", ls=":", lw=1)
-    ax.annotate("asked for", (some[-1], ZETA), ha="right", va="bottom", color="0.35")
+    level(ax, "asked for", (some[-1], ZETA), ha="right", va="bottom")
     ax.plot(some, ZETA - some * DELAY_S / 2, color=GREEN, label="less ω t/2: 1.5 ms of delay")
     ax.set_ylim(0, 0.16)
     ax.set_title("Arms let go: how their tips ring")
-    ax.set_xlabel("frequency of a mode (rad/s)")
-    ax.set_ylabel("damping ratio")
-    ax.legend(loc="lower left")
+    name_axes(ax, "frequency of a mode (rad/s)", "damping ratio", "lower left")

@@ -1,14 +1,12 @@
 """Salisbury's law keeps its joint damping while stiffness and inertia change with the pose."""
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE, Axes, name_axes
 from limber.experiments.ringdown import DELAY_S, Mode, modes_of
+from limber.experiments.timeline import joint_damping, tip_gains
 
 from .arm import rung
 
@@ -29,39 +27,27 @@ def predicted(elbow: float) -> list[Mode]:
 def runs(context: Context) -> Found:
     found = {}
     for elbow in ELBOWS:
-        gains = {
-            "law": "salisbury",
-            "K_x_translation_N_per_m": [*np.diag(K).tolist(), 0.0],
-            "K_x_rotation_Nm_per_rad": 0.0,
-            "joint_damping": "given",
-            "D_q_Nms_per_rad": D_Q.tolist(),
-        }
-        scenario = {
-            "robot": arm.ROBOT,
-            "integrator": "reference",
-            "start_q": [SHOULDER, elbow],
-            "timeline": [{"at_s": 0.3, "mode": "hold"}, {"at_s": 0.8, "mode": "active"},
-                         {"at_s": 1.0, "gains": gains}],
-        }  # fmt: skip
-        pushes = [0.4 * axis for axis in np.eye(6)[:2]]
-        _, seen = rung(context, f"salisbury_{elbow:g}", scenario, pushes, 2)
+        gains = tip_gains([*np.diag(K), 0.0], law="salisbury", **joint_damping(D_Q))
+        pushes, start = [0.4 * axis for axis in np.eye(6)[:2]], [SHOULDER, elbow]
+        name = f"salisbury_{elbow:g}"
+        _, seen = rung(context, name, arm.ROBOT, gains, pushes, 2, start_q=start)
         found[elbow] = predicted(elbow), seen
     return found
 
 
-def checks(found: Found) -> list[Check]:
+def checks(found: Found) -> list[Comparison]:
     made = []
     for elbow, (asked, seen) in found.items():
         for i, (a, s) in enumerate(zip(asked, seen, strict=True), 1):
             name = f"constant joint damping, elbow at {elbow:g} rad, mode {i}: damping ratio"
-            made.append(Check(name, a.zeta, s.zeta, "", 0.06))
+            made.append(Comparison(name, a.zeta, s.zeta, "", 0.06))
     ratios = [[m.zeta for m in modes] for pair in found.values() for modes in pair]
     asked, seen = (np.concatenate(ratios[i::2]) for i in (0, 1))
     name = "constant joint damping: greatest ratio over lowest"
-    return [*made, Check(name, asked.max() / asked.min(), seen.max() / seen.min(), "", 0.06)]
+    return [*made, Comparison(name, asked.max() / asked.min(), seen.max() / seen.min(), "", 0.06)]
 
 
-def draw(found: Found, ax: Any) -> None:
+def draw(found: Found, ax: Axes) -> None:
     elbows = np.linspace(0.5, 2.6, 60)
     lines = np.array([[mode.zeta for mode in predicted(elbow)] for elbow in elbows])
     for i, (name, color) in enumerate((("slow mode", BLUE), ("fast mode", ORANGE))):
@@ -70,6 +56,4 @@ def draw(found: Found, ax: Any) -> None:
     ax.plot([], [], **MEASURED, color="0.3", label="measured")
     ax.set_ylim(bottom=0)
     ax.set_title("Salisbury's law: one joint damping, many ratios")
-    ax.set_xlabel("angle of the elbow (rad)")
-    ax.set_ylabel("damping ratio")
-    ax.legend()
+    name_axes(ax, "angle of the elbow (rad)", "damping ratio", "best")

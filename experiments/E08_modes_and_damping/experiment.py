@@ -1,7 +1,6 @@
 """Does the arm ring with the damping it was asked for?"""
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 
 from . import arm, constant, poses
 
@@ -12,7 +11,7 @@ PLANT = "planar2r and ideal7, exact equations, pushed and let go; the damping de
 FAST = False
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     ratios = poses.damping_ratios(context)
     rung = {name: arm.cartesian(context, name) for name in (arm.PLANAR, arm.SEVEN)}
     salisbury = constant.runs(context)

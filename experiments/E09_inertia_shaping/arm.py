@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from limber.experiments import planar2r
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 from limber.experiments.inertia import tip_inertia
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.pictures import ARROW, BLUE, GREEN, MEASURED, ORANGE, Axes, name_axes
 from limber.experiments.ringdown import DELAY_S, Mode, modes_seen
-from limber.experiments.truth import joints, motion, seconds, status
+from limber.experiments.timeline import tip_gains
+from limber.experiments.truth import Log, joints, motion, status, time_s
 from limber.experiments.variants import TIP_SENSOR, variant
 
 M_D = np.diag([3.0, 1.0])  # kg, wanted
@@ -38,40 +38,34 @@ LAWS = {
 }
 
 
-def six(M: np.ndarray) -> list[list[float]]:
+def six(M: np.ndarray) -> np.ndarray:
     """In the first rows of a 6 x 6 matrix."""
-    return np.pad(M, (0, 6 - len(M))).tolist()
-
-
-def scenario(robot: str, gains: dict[str, Any], push: dict[str, Any], end_s: float) -> dict:
-    gains = {"K_x_rotation_Nm_per_rad": 0.0, "damping": "given", **gains}
-    return {
-        "robot": robot,
-        "integrator": "reference",
-        "duration_s": end_s + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            {"at_s": PUSH_S, "push": push},
-        ],
-    }
+    return np.pad(M, (0, 6 - len(M)))
 
 
 def shaped_modes(context: Context, robot: str, contact: str) -> list[Mode]:
     """The tip pushed aside and let go; modes of its motion."""
-    gains = {
-        "law": "opspace_impedance",
-        "K_x_translation_N_per_m": [K, K, 0.0],
-        "M_x": six(M_D),
-        "D_x": six(D * np.eye(2)),
-        "contact": contact,
-    }
+    shaping = {"law": "opspace_impedance", "M_x": six(M_D), "contact": contact}
     push = {"force_N": [4.0, 4.0, 0.0], "ramp_s": 0.1, "for_s": LET_GO_S - PUSH_S}
-    log = context.lab(scenario(robot, gains, push, END_S), f"ring_{contact}")
+    log = run(context, f"ring_{contact}", robot, K, shaping, push, END_S)
     status(log, PUSH_S, END_S)
     rows = motion(log, LET_GO_S + 0.01, END_S)[::5]
     return modes_seen([np.hstack([rows["p_BT"][:, :2], rows["V_BT"][:, :2]])], 5e-3, 2)
+
+
+def run(
+    context: Context,
+    name: str,
+    robot: str,
+    stiffness: float,
+    shaping: dict[str, Any],
+    push: dict[str, Any],
+    end_s: float,
+) -> Log:
+    """A push on the tip, which is on a soft spring in the plane and has a damper."""
+    gains = tip_gains([stiffness, stiffness, 0.0], damping="given", D_x=six(D * np.eye(2)))
+    entries = [{"at_s": PUSH_S, "push": push}]
+    return context.run_law(name, robot, {**gains, **shaping}, entries, end_s)
 
 
 def asked_modes() -> list[Mode]:
@@ -103,22 +97,21 @@ class Start:
 
 
 def pushed(context: Context, robot: str, law: str) -> Start:
-    gains = {
+    senses = law == "opspace_impedance"
+    shaping = {
         "law": law,
-        "K_x_translation_N_per_m": [SOFT, SOFT, 0.0],
-        "D_x": six(D * np.eye(2)),
-        "contact": "tip_sensor" if law == "opspace_impedance" else "none",
-        "M_x": six(M_D if law == "opspace_impedance" else M_ADDED),
+        "contact": "tip_sensor" if senses else "none",
+        "M_x": six(M_D if senses else M_ADDED),
         "acceleration_filter_s": FILTER_S,
     }
-    push = {"force_N": [*FORCE.tolist(), 0.0], "for_s": BEGIN_S}
     end = PUSH_S + BEGIN_S
-    log = context.lab(scenario(robot, gains, push, end), f"push_{law}")
+    push = {"force_N": [*FORCE, 0.0], "for_s": BEGIN_S}
+    log = run(context, f"push_{law}", robot, SOFT, shaping, push, end)
     status(log, PUSH_S - 0.1, end)
     rows = motion(log, PUSH_S - 0.01, end)
     first = np.flatnonzero(np.abs(rows["F_push"]).max(axis=1) > 0)[0] - 1
     rest = joints(rows)[first]
-    t = (seconds(rows) - seconds(rows)[first])[first:]
+    t = (time_s(rows) - time_s(rows)[first])[first:]
     V = rows["V_BT"][first:, :2]
     since, until = WINDOWS_S[law]
     judged = (t > since - 1e-6) & (t < until)
@@ -132,22 +125,21 @@ def runs(context: Context) -> tuple[dict[str, list[Mode]], dict[str, Start]]:
     return modes, {law: pushed(context, robot, law) for law in LAWS}
 
 
-def checks(modes: dict[str, list[Mode]], starts: dict[str, Start]) -> list[Check]:
+def checks(modes: dict[str, list[Mode]], starts: dict[str, Start]) -> list[Comparison]:
     found = []
     for source, seen in modes.items():
         for axis, asked, mode in zip("xy", asked_modes(), seen, strict=True):
             name = f"inertia shaped, {source.replace('_', ' ')}, along {axis}"
-            found.append(Check(f"{name}: frequency", asked.omega, mode.omega, "rad/s", 0.01))
-            found.append(Check(f"{name}: damping ratio", asked.zeta, mode.zeta, "", 0.05))
+            found.append(Comparison(f"{name}: frequency", asked.omega, mode.omega, "rad/s", 0.01))
+            found.append(Comparison(f"{name}: damping ratio", asked.zeta, mode.zeta, "", 0.05))
     for law, start in starts.items():
         for i, axis in enumerate("xy"):
             name = f"acceleration at the start of a push, {law}, along {axis}"
-            values = float(start.predicted[i]), float(start.measured[i])
-            found.append(Check(name, *values, "m/s²", 0.02))
+            found.append(Comparison(name, start.predicted[i], start.measured[i], "m/s²", 0.02))
     return found
 
 
-def draw(starts: dict[str, Start], ax: Any) -> None:
+def draw(starts: dict[str, Start], ax: Axes) -> None:
     colors = (BLUE, ORANGE, GREEN)
     for (law, start), color in zip(starts.items(), colors, strict=True):
         ms = start.t * 1e3
@@ -155,10 +147,7 @@ def draw(starts: dict[str, Start], ax: Any) -> None:
         ax.plot(ms[:51:3], start.V[:51:3, 0] * 1e3, **MEASURED, color=color)
     ax.plot([], [], **MEASURED, color="0.3", label="measured; line: inertia⁻¹ force")
     ax.set_title("A push of 3 N begins: how fast the tip sets off")
-    ax.set_xlabel("time since the push began (ms)")
-    ax.set_ylabel("speed of the tip along x (mm/s)")
-    ax.annotate("here the damper begins to act", (42, 148), xytext=(50, 72), ha="right",
-                arrowprops={"arrowstyle": "->"})  # fmt: skip
+    ax.annotate("here the damper begins to act", (42, 148), (50, 72), ha="right", **ARROW)
     ax.set_xlim(-1, 51)
     ax.set_ylim(0, 200)
-    ax.legend(loc="upper left")
+    name_axes(ax, "time since the push began (ms)", "speed of the tip along x (mm/s)", "upper left")

@@ -1,7 +1,6 @@
 """Giving the tip another inertia than it has."""
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 
 from . import arm, reduced
 
@@ -13,7 +12,7 @@ PLANT = "planar2r with a force sensor at the tip; a mass of 2 kg for the limits"
 FAST = False
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     modes, starts = arm.runs(context)
     with context.picture(TITLE, columns=3, size=(16.5, 5.0)) as (left, middle, right):
         arm.draw(starts, left)

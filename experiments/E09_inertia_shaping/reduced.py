@@ -1,12 +1,11 @@
 """How far another inertia can be asked for, on one mass: acceleration and force feedback."""
 
 import math
-from typing import Any
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE, Axes, level, name_axes
 from limber.experiments.plants import growth, held, mass, with_delay
 from limber.experiments.search import limit
 
@@ -25,22 +24,19 @@ def most_reduction(t_d: float) -> float:
     return 1 / (1 - b_e / (k_e * t_d))
 
 
-def checks() -> list[Check]:
+def checks() -> list[Comparison]:
     p = math.exp(-T / FILTER_S)
     found = []
     for name, pole in (("unfiltered", 0.0), ("with a filter of 5 ms", p)):
         added = limit(lambda M_x, pole=pole: _settles(M_x, pole), 0.1, 1e3)
-        found.append(
-            Check(
-                f"acceleration feedback, {name}: most added", most_inertia(pole), added, "kg", 0.02
-            )
-        )
+        title = f"acceleration feedback, {name}: most added"
+        found.append(Comparison(title, most_inertia(pole), added, "kg", 0.02))
     taken = limit(lambda M_x: _settles(-M_x, p), 0.1, 1e3)
     name = "acceleration feedback, with a filter of 5 ms: most taken away"
-    found.append(Check(name, m, taken, "kg", 0.02))
+    found.append(Comparison(name, m, taken, "kg", 0.02))
     for t_d in (1.5e-3, 2.5e-3):
         name = f"force feedback with {t_d * 1e3:g} ms of delay: most reduction of the inertia"
-        found.append(Check(name, most_reduction(t_d), _reduction(t_d), "", 0.05))
+        found.append(Comparison(name, most_reduction(t_d), _reduction(t_d), "", 0.05))
     return found
 
 
@@ -69,38 +65,36 @@ def _reduction(t_d: float) -> float:
     return limit(lambda rho: growth(A + (rho - 1) * B @ contact) < 1.0, 1.001, 50.0)
 
 
-def draw(left: Any, right: Any) -> None:
+def draw(left: Axes, right: Axes) -> None:
     filters = np.linspace(0.2e-3, 10e-3, 60)
     some = np.linspace(1e-3, 10e-3, 7)
-    left.plot(
-        filters * 1e3,
-        [most_inertia(math.exp(-T / tau)) / m for tau in filters],
-        color=BLUE,
-        label="(1 + p)/(1 - p)",
-    )
+    most = [most_inertia(math.exp(-T / tau)) / m for tau in filters]
+    left.plot(filters * 1e3, most, color=BLUE, label="(1 + p)/(1 - p)")
     poles = [math.exp(-T / tau) for tau in some]
     points = [limit(lambda M, p=p: _settles(M, p), 0.1, 1e3) / m for p in poles]
     left.plot(some * 1e3, points, **MEASURED, color=BLUE, label="found by trying")
-    left.axhline(1, color="0.5", ls=":", lw=1)
-    left.annotate("unfiltered: no more than the tip's own", (10, 1.2), ha="right", color="0.35")
+    level(left, "unfiltered: no more than the tip's own", (10, 1), (0, 3), ha="right")
     left.set_title("Acceleration feedback: a slower filter allows more")
-    left.set_xlabel("filter on the acceleration (ms), at 1 kHz")
-    left.set_ylabel("most inertia added over own")
     left.set_ylim(bottom=0)
-    left.legend(loc="upper left")
+    name_axes(
+        left,
+        "filter on the acceleration (ms), at 1 kHz",
+        "most inertia added over own",
+        "upper left",
+    )
 
     delays = np.linspace(0.7e-3, 5e-3, 80)
-    right.plot(
-        delays * 1e3, [most_reduction(t) for t in delays], color=ORANGE, label="1/(1 - b/(k t))"
-    )
+    bound = [most_reduction(t_d) for t_d in delays]
+    right.plot(delays * 1e3, bound, color=ORANGE, label="1/(1 - b/(k t))")
     some = np.linspace(0.8e-3, 4.8e-3, 9)
-    right.plot(
-        some * 1e3, [_reduction(t) for t in some], **MEASURED, color=ORANGE, label="found by trying"
-    )
-    right.axhline(1, color="0.5", ls=":", lw=1)
-    right.annotate("own inertia", (4.9, 0.88), ha="right", color="0.35")
+    points = [_reduction(t_d) for t_d in some]
+    right.plot(some * 1e3, points, **MEASURED, color=ORANGE, label="found by trying")
+    level(right, "own inertia", (4.9, 1), (0, -10), ha="right")
     right.set_title("Force feedback: delay leaves little to take away")
-    right.set_xlabel("delay of the measured force (ms)")
-    right.set_ylabel("own inertia over the lightest shown")
     right.set_ylim(0.8, 4)
-    right.legend(loc="upper right")
+    name_axes(
+        right,
+        "delay of the measured force (ms)",
+        "own inertia over the lightest shown",
+        "upper right",
+    )

@@ -1,23 +1,17 @@
 """An elbow that gives way with its own spring, and a hand that does not notice."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, at_least, at_most, case, near_zero
 from limber.experiments.inertia import joint_inertia
-from limber.experiments.pictures import BLACK, BLUE, GREEN, ORANGE
-from limber.experiments.truth import joints, motion, seconds, status
-from limber.logs import Log
-from limber.robot import load_robot
+from limber.experiments.pictures import BLACK, BLUE, GREEN, ORANGE, note
+from limber.experiments.timeline import in_turn, tip_gains
+from limber.experiments.truth import Log, joints, motion, status, time_s
+from limber.model.robot import load_robot
 
 TITLE = "The elbow yields by its own spring; only the projector with the inertia spares the hand"
-CLAIM = (
-    "Seven joints leave the elbow free, and a spring in the null space holds it without the hand"
-)
-CLAIM += " noticing"
+CLAIM = "Seven joints leave the elbow free, and a spring in the null space holds it without the"
+CLAIM += " hand noticing"
 SECTION = "3"
 PLANT = "ideal7 with its controller, driver and simulator, exact equations; cartesian_impedance"
 FAST = False
@@ -32,25 +26,26 @@ PUSHED_AT, LETS_GO_AT, END = 3.0, 7.0, 9.0
 PROJECTORS = {"dynamic": BLUE, "kinematic": ORANGE, "none": GREEN}
 
 
-def run(context: Context) -> list[Check]:
-    logs = {name: context.lab(scenario(name), name) for name in PROJECTORS}
+def run(context: Context) -> list[Comparison]:
+    logs = {name: pushed(context, name) for name in PROJECTORS}
     draw(context, logs)
-    found = [Check("tip acceleration by a dynamically projected torque", 0.0,
-                   leak(context), "m/s²", 1e-9, "absolute")]  # fmt: skip
     rests = {name: off_at_rest(log) for name, log in logs.items()}
-    angle = LOAD / K_NULL * 1e3
-    for name in ("dynamic", "kinematic"):
-        title = f"elbow gives way, {name} projector"
-        found.append(Check(title, angle, rests[name][0], "mrad", 0.03))
-    name = "tip moved at 10 mrad of the elbow, dynamic projector"
-    found.append(Check(name, 20.0, rests["dynamic"][1], "µm", 0.0, "at_most"))
-    for name, formula in tip_moves().items():
-        word = "no" if name == "none" else name
-        title = f"tip moved at 10 mrad of the elbow, {word} projector"
-        found.append(Check(title, formula, rests[name][1], "µm", 0.03))
+    angle, moved = LOAD / K_NULL * 1e3, "tip moved at 10 mrad of the elbow"
     times = rests["kinematic"][1] / rests["dynamic"][1]
-    found.append(Check("tip moved, kinematic over dynamic", 10.0, times, "", 0.0, "at_least"))
-    return found
+    leaked = "tip acceleration by a dynamically projected torque"
+    return [
+        near_zero(leaked, leak(context), "m/s²", 1e-9),
+        *(
+            Comparison(f"elbow gives way, {name} projector", angle, rests[name][0], "mrad", 0.03)
+            for name in ("dynamic", "kinematic")
+        ),
+        at_most(f"{moved}, dynamic projector", 20.0, rests["dynamic"][1], "µm"),
+        *(
+            Comparison(f"{moved}, {word} projector", tip_moves()[name], rests[name][1], "µm", 0.03)
+            for name, word in (("kinematic", "kinematic"), ("none", "no"))
+        ),
+        at_least("tip moved, kinematic over dynamic", 10.0, times),
+    ]
 
 
 def null_vector() -> np.ndarray:
@@ -65,33 +60,18 @@ def load() -> np.ndarray:
     return LOAD * M @ z / (z @ M @ z)
 
 
-def scenario(projector: str) -> dict[str, Any]:
-    gains = {
-        "law": "cartesian_impedance",
-        "K_x_translation_N_per_m": float(K[0, 0]),
-        "K_x_rotation_Nm_per_rad": float(K[3, 3]),
-        "K_null_Nm_per_rad": K_NULL,
-        "D_null_Nms_per_rad": D_NULL,
-    }
-    shape = {"ramp_s": 0.3, "for_s": LETS_GO_AT - PUSHED_AT}
+def pushed(context: Context, projector: str) -> Log:
+    gains = tip_gains(K[0, 0], K[3, 3], K_null_Nm_per_rad=K_NULL, D_null_Nms_per_rad=D_NULL)
     pushes = [
-        {"link": f"link_{i + 1}", "torque_Nm": moment.tolist(), "id": i + 1, **shape}
+        {"link": f"link_{i + 1}", "torque_Nm": moment, "id": i + 1}
         for i, moment in enumerate(moments(load()))
     ]
-    return {
-        "robot": ROBOT,
-        "duration_s": END + 0.1,
-        "integrator": "reference",
-        "start_q": Q.tolist(),
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            # the gains have got there: without projector the damping we start with is too much
-            {"at_s": 2.0, "gains": {"projector": projector}},
-            *({"at_s": PUSHED_AT, "push": push} for push in pushes),
-        ],
-    }
+    entries = [
+        # the gains have got there: without projector the damping we start with is too much
+        {"at_s": 2.0, "gains": {"projector": projector}},
+        *in_turn(PUSHED_AT, 0.0, pushes, ramp_s=0.3, for_s=LETS_GO_AT - PUSHED_AT),
+    ]
+    return context.run_law(projector, ROBOT, gains, entries, END, start_q=Q)
 
 
 def moments(torque: np.ndarray) -> np.ndarray:
@@ -103,19 +83,11 @@ def moments(torque: np.ndarray) -> np.ndarray:
 def leak(context: Context) -> float:
     """Greatest entry of J M⁻¹ N, which turns a joint torque of 1 N m into tip acceleration."""
     zero = np.zeros(7)
+    spring = {"q_n": zero, "Kn": K_NULL * np.eye(7), "Dn": np.diag(D_NULL)}
     terms, answer = context.eval(
         [
             case("kin_dyn", ROBOT, q=Q, v=zero, W=np.zeros(6)),
-            case(
-                "nullspace",
-                ROBOT,
-                q=Q,
-                v=zero,
-                q_n=zero,
-                Kn=K_NULL * np.eye(7),
-                Dn=np.diag(D_NULL),
-                projector="dynamic",
-            ),
+            case("nullspace", ROBOT, q=Q, v=zero, projector="dynamic", **spring),
         ]
     )
     return float(np.abs(terms["J"] @ np.linalg.solve(terms["M"], answer["N"])).max())
@@ -137,7 +109,7 @@ def off(log: Log, start_s: float, end_s: float) -> tuple[np.ndarray, np.ndarray,
     goal = status(log, start_s, end_s)["p_BD"][0]
     rows = motion(log, start_s, end_s)
     elbow = (joints(rows) - Q) @ null_vector() * 1e3
-    return seconds(rows), elbow, np.linalg.norm(rows["p_BT"] - goal, axis=1) * 1e6
+    return time_s(rows), elbow, np.linalg.norm(rows["p_BT"] - goal, axis=1) * 1e6
 
 
 def off_at_rest(log: Log) -> tuple[float, float]:
@@ -151,15 +123,15 @@ def draw(context: Context, logs: dict[str, Log]) -> None:
         for name, color in PROJECTORS.items():
             t, elbow, tip = off(logs[name], PUSHED_AT - 0.5, END)
             t = t - PUSHED_AT
-            label = {"dynamic": "with the inertia", "kinematic": "without the inertia",
-                     "none": "no projector"}[name]  # fmt: skip
-            left.plot(t, elbow, color=color, label=label)
-            right.plot(t, tip, color=color, label=label)
+            words = {"dynamic": "with the inertia", "kinematic": "without the inertia"}
+            word = words.get(name, "no projector")
+            left.plot(t, elbow, color=color, label=word)
+            right.plot(t, tip, color=color, label=word)
             if name in formula:
                 right.plot([1.5, 3.7], [formula[name]] * 2, color=BLACK, ls="--", lw=1.2, zorder=4)
-        left.axhline(LOAD / K_NULL * 1e3, color=BLACK, ls="--", lw=1.2)
-        left.annotate("load / stiffness of the null space", (5.9, 10), (0, 4), ha="right",
-                      textcoords="offset points")  # fmt: skip
+        angle = LOAD / K_NULL * 1e3
+        left.axhline(angle, color=BLACK, ls="--", lw=1.2)
+        note(left, "load / stiffness of the null space", (5.9, angle), (0, 4), ha="right")
         left.set_title("Elbow, pushed along the null space")
         left.set_ylabel("elbow moved (mrad)")
         right.set_ylim(0, 700)

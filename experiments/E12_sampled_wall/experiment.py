@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import AMBER, BLACK, BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import AMBER, BLACK, BLUE, GREEN, MEASURED, ORANGE, name_axes, note
 
 from . import wall
 
@@ -29,27 +28,27 @@ def free_mass_limit(m: float) -> float:
     return b * a * (1 - eps) / (1 - eps * (1 + a * T))
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     checks = []
     for B in (0.0, 2.0, -2.0):
         bound = 2 * (b - abs(B)) / T
         name = f"stiffest passive wall, B = {B:g} N s/m"
-        checks.append(Check(name, bound, wall.passive_limit(T, b, B), "N/m", 1e-3))
+        checks.append(Comparison(name, bound, wall.passive_limit(T, b, B), "N/m", 1e-3))
         worst = min(wall.stiffest(T, m, b, B, k_e) for m in PARTNERS_KG for k_e in PARTNERS_N_PER_M)
         name = f"stiffest wall with the worst partner, B = {B:g} N s/m"
-        checks.append(Check(name, bound, worst, "N/m", 0.05))
+        checks.append(Comparison(name, bound, worst, "N/m", 0.05))
     for m in (0.02, 0.2, 2.0):
         measured = wall.stiffest(T, m, b)
-        checks.append(Check(f"free {m:g} kg", free_mass_limit(m), measured, "N/m", 1e-4))
+        checks.append(Comparison(f"free {m:g} kg", free_mass_limit(m), measured, "N/m", 1e-4))
     for delay in (0, 1, 3):
         rule = (b + 20.0) / (T / 2 + delay * T)
         measured = wall.stiffest(T, 2.0, b, 20.0, delay=delay)
         name = f"linear rule (b + B)/(T/2 + delay), {delay} ms of delay"
-        checks.append(Check(name, rule, measured, "N/m", 0.15))
+        checks.append(Comparison(name, rule, measured, "N/m", 0.15))
     for delay, factor in ((0, 2.0), (1, 2 * (math.sqrt(2) - 1))):
         measured = wall.most_damping(T, 2.0, delay)
         name = f"most damping on 2 kg, {delay} ms of delay"
-        checks.append(Check(name, factor * 2.0 / T, measured, "N s/m", 1e-3))
+        checks.append(Comparison(name, factor * 2.0 / T, measured, "N s/m", 1e-3))
     draw(context)
     return checks
 
@@ -69,8 +68,10 @@ def draw(context: Context) -> None:
             ax.plot(B, limits, "--", color=color, label=name)
             label = "formula for B = 0" if m == 2.0 else None
             ax.plot(0, free_mass_limit(m) * 1e-3, "s", color=color, label=label)
-        ax.annotate("safe with every passive partner", (0, 3.2), ha="center", color=BLACK)
+        note(ax, "safe with every passive partner", (0, 3.2), ha="center", color=BLACK)
         ax.set_ylim(0, 25)
-        ax.set_xlabel("damping of the virtual wall, B (N s/m)")
-        ax.set_ylabel("stiffness of the virtual wall, K (kN/m)")
-        ax.legend(loc="upper left")
+        x_name, y_name = (
+            "damping of the virtual wall, B (N s/m)",
+            "stiffness of the virtual wall, K",
+        )
+        name_axes(ax, x_name, f"{y_name} (kN/m)", "upper left")

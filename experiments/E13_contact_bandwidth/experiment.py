@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import ARROW, BLUE, MEASURED, ORANGE, name_axes, note
 from limber.experiments.plants import held, mass
 
 TITLE = "Contact multiplies a soft arm's bandwidth by the root of the stiffness"
@@ -24,21 +23,21 @@ GAIN = 2 * math.pi / K  # of the force loop, m/s per N: 1 Hz against a spring of
 TOUCHED = np.array([0.0, 99.0, 9999.0]) * K
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     checks = []
     for k_e, f in zip(TOUCHED, (1.0, 10.0, 100.0), strict=True):
         frequency, zeta = ring_down(k_e)
         against = f"against {k_e / K:g} times its own stiffness"
-        checks.append(Check(f"frequency {against}", f, frequency, "Hz", 0.01))
-        checks.append(Check(f"damping ratio {against}", ZETA / f, zeta, "", 0.01))
+        checks.append(Comparison(f"frequency {against}", f, frequency, "Hz", 0.01))
+        checks.append(Comparison(f"damping ratio {against}", ZETA / f, zeta, "", 0.01))
     for k_e in (K, 10 * K, 100 * K):
         bandwidth = GAIN * k_e / (2 * math.pi)
         name = f"bandwidth of a force loop against {k_e / K:g} times that stiffness"
-        checks.append(Check(name, bandwidth, force_loop(k_e), "Hz", 0.01))
+        checks.append(Comparison(name, bandwidth, force_loop(k_e), "Hz", 0.01))
     F_ff, depth, k_e = 8.0, 0.05, 20 * K
     force = k_e * (F_ff + K * depth) / (K + k_e)
     measured = pressed(F_ff, depth, k_e)
-    checks.append(Check("contact force with feed-forward", force, measured, "N", 0.01))
+    checks.append(Comparison("contact force with feed-forward", force, measured, "N", 0.01))
     draw(context)
     return checks
 
@@ -54,10 +53,9 @@ def ring_down(k_e: float) -> tuple[float, float]:
     A, _ = closed_loop(k_e)
     state, x = np.array([1e-3, 0.0]), []
     stride = round(0.05 / math.sqrt(1 + k_e / K) / T)  # twenty positions a period
-    for k in range(40 * stride):
-        if k % stride == 0:
-            x.append(state[0])
-        state = A @ state
+    for _ in range(40):
+        x.append(state[0])
+        state = np.linalg.matrix_power(A, stride) @ state
     return fit(np.array(x), stride * T)
 
 
@@ -98,19 +96,17 @@ def draw(context: Context) -> None:
         ax.loglog(stiff, [ring_down(r * K)[0] for r in stiff], **MEASURED, color=BLUE)
         ax.loglog(1e4, ring_down(1e4 * K)[0], **MEASURED, color=BLUE, label="its ring-down")
         force = ratio[ratio < 2000]
-        name = "force loop of 1 Hz at k = K: k/K"
-        ax.loglog(force, force, color=ORANGE, label=name)
+        ax.loglog(force, force, color=ORANGE, label="force loop of 1 Hz at k = K: k/K")
         some = np.geomspace(0.1, 1000, 9)
         points = [force_loop(r * K) for r in some]
         ax.loglog(some, points, **MEASURED, color=ORANGE, label="its step")
-        ax.annotate(
+        note(
+            ax,
             "10 000 times stiffer:\n100 times faster",
             (1e4, 100),
-            xytext=(-12, -85),
-            textcoords="offset points",
+            (-12, -85),
             ha="right",
-            arrowprops={"arrowstyle": "->"},
+            **ARROW,
         )
-        ax.set_xlabel("stiffness touched over stiffness of the law, k/K")
-        ax.set_ylabel("bandwidth (Hz)")
-        ax.legend(loc="upper left")
+        x_name = "stiffness touched over stiffness of the law, k/K"
+        name_axes(ax, x_name, "bandwidth (Hz)", "upper left")

@@ -2,11 +2,10 @@
 
 from typing import Any
 
-import numpy as np
-
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
-from limber.experiments.ringdown import Mode, modes_seen
+from limber.experiments.ringdown import Mode, mode_seen
+from limber.experiments.variants import friction
 
 from .law import COULOMB_NM, GRAVITY, HORIZONTAL, HYDRAULIC, KAPPA, PUSH_NM, VOLTAGE_D
 
@@ -14,13 +13,12 @@ MOVE_S = 8.0
 
 
 def _robot(gravity: float = 0.0, **actuator: Any) -> dict[str, Any]:
-    change = {**bench.joint(**bench.RIGID), "gravity_m_per_s2": [0.0, -gravity, 0.0]}
+    change = {**bench.joint(**bench.RIGID), **bench.gravity(gravity)}
     return {**change, **bench.motor(actuator=actuator)} if actuator else change
 
 
 def torque_constant(context: Context, K: float, D: float) -> tuple[float, float, float]:
     """Angle asked for, sag from it, and how far a push moves the joint from there."""
-    true = KAPPA * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
     log = bench.on_bus(
         context,
         f"torque_constant_{K:g}",
@@ -29,7 +27,7 @@ def torque_constant(context: Context, K: float, D: float) -> tuple[float, float,
         7.0,
         changes=_robot(GRAVITY),
         start_q=[HORIZONTAL],
-        reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
+        reality=bench.torque_constant(KAPPA),
     )
     rest = bench.mean(log, 3.0, 3.9)
     moved = bench.mean(log, 5.5, 6.4) - rest
@@ -38,53 +36,35 @@ def torque_constant(context: Context, K: float, D: float) -> tuple[float, float,
 
 def friction_lag(context: Context, K: float, D: float) -> float:
     """In the middle of a smooth motion, where nothing accelerates: mean over a stretch of it."""
-    friction = {"coulomb_Nm": COULOMB_NM, "viscous_Nms_per_rad": 0.0}
-    move = {"joints_rad": [1.0], "duration_s": MOVE_S}
-    log = bench.on_bus(
-        context,
-        f"friction_{K:g}",
-        bench.spring_damper(K, D),
-        [{"at_s": 2.0, "goal": move}],
-        2.0 + MOVE_S,
-        changes=_robot(),
-        reality=bench.joint(friction=friction),
-    )
-    return bench.lag(log, 2.0 + MOVE_S / 2 - 0.5, 2.0 + MOVE_S / 2 + 0.5)
+    middle, end = 2.0 + MOVE_S / 2, 2.0 + MOVE_S
+    goal = {"at_s": 2.0, "goal": {"joints_rad": [1.0], "duration_s": MOVE_S}}
+    reality = bench.joint(friction=friction(COULOMB_NM))
+    law, name = bench.spring_damper(K, D), f"friction_{K:g}"
+    log = bench.on_bus(context, name, law, [goal], end, changes=_robot(), reality=reality)
+    return bench.lag(log, middle - 0.5, middle + 0.5)
 
 
 def rung(context: Context, name: str, K: float, D: float, **actuator: Any) -> Mode:
     """Pushed aside and let go."""
-    log = bench.on_bus(
-        context,
-        name,
-        bench.spring_damper(K, D),
-        [bench.push(5.0, 1.8, 0.7)],
-        4.5,
-        changes=_robot(**actuator),
-    )
+    push, changes = bench.push(5.0, 1.8, 0.7), _robot(**actuator)
+    log = bench.on_bus(context, name, bench.spring_damper(K, D), [push], 4.5, changes=changes)
     seen = bench.truth(log, 2.51, 4.5)
-    track = np.column_stack([seen["q"], seen["v"]])[::5]
-    return modes_seen([track], 5e-3, 1)[0]
+    return mode_seen(seen["q"], seen["v"], every=5)
 
 
 def most_stiffness(
     context: Context, name: str, D: float, tried: list[float], **actuator: Any
 ) -> float:
     """Stiffness at which a push neither dies out nor grows, between two that were tried."""
-    rates = []
-    for K in tried:
-        log = bench.on_bus(
-            context,
-            f"{name}_{K:.0f}",
-            bench.spring_damper(K, D),
-            [bench.push(10.0, 1.7, 0.02)],
-            2.4,
-            changes=_robot(**actuator),
-        )
+
+    def growth(K: float) -> float:
+        law, push = bench.spring_damper(K, D), bench.push(10.0, 1.7, 0.02)
+        changes = _robot(**actuator)
+        log = bench.on_bus(context, f"{name}_{K:.0f}", law, [push], 2.4, changes=changes)
         seen = bench.truth(log, 1.8, 2.4)
-        mode = modes_seen([np.column_stack([seen["q"], seen["v"]])], 1e-3, 1)[0]
-        rates.append(-mode.zeta * mode.omega)
-    return bench.zero_between(tried, rates)
+        return mode_seen(seen["q"], seen["v"]).growth
+
+    return bench.zero_between(tried, [growth(K) for K in tried])
 
 
 def hydraulic() -> dict[str, Any]:

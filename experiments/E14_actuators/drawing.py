@@ -1,13 +1,12 @@
 """Errors over the stiffness of the law, and how stiff it may be behind a lag."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison
+from limber.experiments.pictures import BLUE, GREEN, MARKS, ORANGE, Axes, name_axes, plot_marks
 
 from . import ideal
 from .law import COULOMB_NM, KAPPA, PUSH_NM, SOFT
@@ -38,43 +37,38 @@ class Limit:
     late: float
     bus: float
 
-    def checks(self) -> list[Check]:
+    def checks(self) -> list[Comparison]:
         unit = "N m/rad"
         return [
-            Check(f"{self.name}, ideal", self.formula, self.ideal, unit, 0.03),
-            Check(f"{self.name}, bus with its delay", self.late, self.bus, unit, 0.03),
+            Comparison(f"{self.name}, ideal", self.formula, self.ideal, unit, 0.03),
+            Comparison(f"{self.name}, bus with its delay", self.late, self.bus, unit, 0.03),
         ]
 
 
-def errors(found: Found, seen: Found, ax: Any) -> None:
+def errors(found: Found, seen: Found, ax: Axes) -> None:
     K = np.geomspace(60, 1e4, 40)
     for name, color in zip(NAMES, (BLUE, ORANGE, GREEN), strict=True):
         line = [predicted(name, k, np.pi / 2) * 1e3 for k in K]
         ax.loglog(K, line, color=color, label=name)
-        for values, marker in ((seen, MEASURED), (found, bench.IDEAL)):
-            at = list(values[name])
-            ax.loglog(at, [values[name][k] * 1e3 for k in at], **marker, color=color)
-    ax.plot([], [], **MEASURED, color="0.3", label="measured on the bus")
-    ax.plot([], [], **bench.IDEAL, color="0.3", label="on the joint's equations")
+        at = list(found[name])
+        alone, on_bus = ([ways[name][k] * 1e3 for k in at] for ways in (found, seen))
+        plot_marks(ax, at, alone, on_bus, color=color)
     ax.set_title("Errors at rest and on a ramp")
-    ax.set_xlabel("stiffness of the law (N m/rad)")
-    ax.set_ylabel("error of the joint angle (mrad)")
-    ax.legend(loc="lower left")
+    name_axes(ax, "stiffness of the law (N m/rad)", "error of the joint angle (mrad)", "lower left")
 
 
-def limits(found: list[Limit], ax: Any) -> None:
+def limits(found: list[Limit], ax: Axes) -> None:
     lags = np.linspace(1e-3, 10e-3, 40)
     D = SOFT[1]
     late = [ideal.most_stiffness(D, lag, bench.CYCLE_S, 1) for lag in lags]
     ax.plot(lags * 1e3, D / lags, color=BLUE, label="damping / lag")
     ax.plot(lags * 1e3, late, "--", color=ORANGE, label="sampled at 1 kHz, a cycle late")
     at = [limit.lag * 1e3 for limit in found]
-    ax.plot(at, [limit.ideal for limit in found], **bench.IDEAL, color=BLUE, label="found, ideal")
-    ax.plot(
-        at, [limit.bus for limit in found], **MEASURED, color=ORANGE, label="measured on the bus"
-    )
+    alone, on_bus = [limit.ideal for limit in found], [limit.bus for limit in found]
+    ax.plot(at, alone, **MARKS["ideal"], color=BLUE, label="found, ideal")
+    ax.plot(at, on_bus, **MARKS["bus"], color=ORANGE, label="measured on the bus")
     ax.set_ylim(0, 8000)
     ax.set_title("How stiff a law with 10 N m s/rad of damping may be")
-    ax.set_xlabel("lag of the current loop (ms)")
-    ax.set_ylabel("largest stable stiffness (N m/rad)")
-    ax.legend(loc="upper right")
+    name_axes(
+        ax, "lag of the current loop (ms)", "largest stable stiffness (N m/rad)", "upper right"
+    )

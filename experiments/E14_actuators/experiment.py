@@ -3,8 +3,7 @@
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, ideal_and_bus
 
 from . import bus, drawing, ideal
 from .law import HORIZONTAL, HYDRAULIC, INERTIA, LAGS_S, RING_D, SOFT, STIFF, VOLTAGE_D
@@ -19,7 +18,7 @@ FAST = False
 LEVELS = {"soft": SOFT, "stiff": STIFF}
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     errors = Errors(context)
     limits = [stiffness_limit(context, lag) for lag in LAGS_S]
     limits.append(hydraulic_limit(context))
@@ -38,58 +37,46 @@ class Errors:
     """Angles by which torque constant and friction put the joint off, soft and stiff."""
 
     def __init__(self, context: Context) -> None:
-        self.ideal: dict[str, dict[float, float]] = {name: {} for name in drawing.NAMES}
-        self.bus: dict[str, dict[float, float]] = {name: {} for name in drawing.NAMES}
+        self.ideal: drawing.Found = {name: {} for name in drawing.NAMES}
+        self.bus: drawing.Found = {name: {} for name in drawing.NAMES}
         self.goal: dict[float, float] = {}
         for K, D in LEVELS.values():
-            goal, sag, moved = bus.torque_constant(context, K, D)
-            self.goal[K] = goal
-            self._store(self.bus, K, moved, sag, bus.friction_lag(context, K, D))
-            self._store(
-                self.ideal,
-                K,
+            self.goal[K], sag, moved = bus.torque_constant(context, K, D)
+            seen = moved, sag, bus.friction_lag(context, K, D)
+            model = (
                 ideal.deflection_model(K, D),
                 ideal.sag_model(K, D, HORIZONTAL),
                 ideal.friction_lag_model(K, D),
             )
+            for name, on_bus, alone in zip(drawing.NAMES, seen, model, strict=True):
+                self.bus[name][K], self.ideal[name][K] = on_bus, alone
 
-    @staticmethod
-    def _store(found: dict[str, dict[float, float]], K: float, *values: float) -> None:
-        for name, value in zip(drawing.NAMES, values, strict=True):
-            found[name][K] = value
-
-    def checks(self) -> list[Check]:
+    def checks(self) -> list[Comparison]:
         made = []
         for name in drawing.NAMES:
             for level, (K, _) in LEVELS.items():
-                predicted = drawing.predicted(name, K, HORIZONTAL)
-                on_bus = drawing.predicted(name, K, self.goal[K])
                 what = f"{name}, {level} (K = {K:g} N m/rad)"
-                made += [
-                    _check(f"{what}, ideal", predicted, self.ideal[name][K], "mrad", 1e3),
-                    _check(f"{what}, bus", on_bus, self.bus[name][K], "mrad", 1e3),
-                ]
+                for where, q_d, found in (
+                    ("ideal", HORIZONTAL, self.ideal),
+                    ("bus", self.goal[K], self.bus),
+                ):
+                    values = drawing.predicted(name, K, q_d) * 1e3, found[name][K] * 1e3
+                    made.append(Comparison(f"{what}, {where}", *values, "mrad", 0.01))
         return made
 
 
-def _check(
-    name: str, predicted: float, measured: float, unit: str, scale: float, tol: float = 0.01
-) -> Check:
-    return Check(name, predicted * scale, measured * scale, unit, tol)
-
-
-def rotor(context: Context) -> list[Check]:
+def rotor(context: Context) -> list[Comparison]:
     """√(K/(M + B)); the bus takes some damping, the frequency hardly changes."""
     K = SOFT[0]
     plant = bench.rigid(INERTIA)
     exact = bench.slowest(bench.looped(plant, [K, RING_D], ideal.FINE_S, 0), ideal.FINE_S)
     late = bench.slowest(bench.looped(plant, [K, RING_D], bench.CYCLE_S, 1), bench.CYCLE_S)
     seen = bus.rung(context, "rotor", K, RING_D)
-    name = "frequency with the rotor, √(K/(M + B))"
+    omega, name = np.sqrt(K / INERTIA), "frequency with the rotor, √(K/(M + B))"
+    damping = "damping ratio with the rotor, bus with its delay"
     return [
-        Check(f"{name}, ideal", np.sqrt(K / INERTIA), exact.omega, "rad/s", 0.01),
-        Check(f"{name}, bus", np.sqrt(K / INERTIA), seen.omega, "rad/s", 0.01),
-        Check("damping ratio with the rotor, bus with its delay", late.zeta, seen.zeta, "", 0.03),
+        *ideal_and_bus(name, omega, exact.omega, seen.omega, "rad/s", 0.01),
+        Comparison(damping, late.zeta, seen.zeta, "", 0.03),
     ]
 
 
@@ -97,17 +84,15 @@ def stiffness_limit(context: Context, lag: float) -> drawing.Limit:
     """K < D/τ_e; on the bus the same loop sampled and a cycle late."""
     D = SOFT[1]
     late = ideal.most_stiffness(D, lag, bench.CYCLE_S, 1)
-    tried = [0.9 * late, 1.1 * late]
     drive = {"kind": "current_drive", "lag_s": lag}
     name = f"lag_{lag * 1e3:.0f}ms"
-    seen = bus.most_stiffness(context, name, D, tried, **drive)
     return drawing.Limit(
         f"most stiffness with a current loop of {lag * 1e3:.0f} ms",
         lag,
         formula=D / lag,
         ideal=ideal.most_stiffness(D, lag),
         late=late,
-        bus=seen,
+        bus=bus.most_stiffness(context, name, D, [0.9 * late, 1.1 * late], **drive),
     )
 
 
@@ -126,7 +111,7 @@ def hydraulic_limit(context: Context) -> drawing.Limit:
     )
 
 
-def back_emf(context: Context) -> list[Check]:
+def back_emf(context: Context) -> list[Comparison]:
     """k_t k_e/R damps a joint that no law damps; 2 ζ ω (M + B) of its ring-down."""
     K = SOFT[0]
     exact = bench.slowest(bench.looped(ideal.winding(), [K, 0], ideal.FINE_S, 0), ideal.FINE_S)
@@ -137,6 +122,6 @@ def back_emf(context: Context) -> list[Check]:
     name = "damping by a voltage drive, k_t k_e/R"
     unit = "N m s/rad"
     return [
-        Check(f"{name}, ideal", VOLTAGE_D, damping[0], unit, 0.03),
-        Check(f"{name}, bus with its delay", damping[1], damping[2], unit, 0.03),
+        Comparison(f"{name}, ideal", VOLTAGE_D, damping[0], unit, 0.03),
+        Comparison(f"{name}, bus with its delay", damping[1], damping[2], unit, 0.03),
     ]

@@ -2,22 +2,21 @@
 
 from typing import Any
 
-import numpy as np
-
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
-from limber.experiments.ringdown import Mode, modes_seen
-from limber.logs import Log
+from limber.experiments.ringdown import Mode, mode_seen
+from limber.experiments.truth import Log
+from limber.experiments.variants import friction
 
 from .ideal import D, K
 
 RATE_HZ = 10_000.0
 STEP_S, COARSE_S = 1e-4, 2.5e-4  # s, of the simulated joint
 MOVE_RAD, MOVE_S = 0.3, 6.0  # slow: nothing accelerates much
-LAW = {**bench.spring_damper(K, D), "position": "motor"}
+LAW = {**bench.spring_damper(K, D), "position_feedback": "motor"}
 # Link held: 20 N m, from a goal that moves in 0.1 s. In its middle the drive hears nothing for
 # 15 ms, less than its watchdog waits, and what it missed comes as a jump.
-HELD_LAW = {**bench.spring_damper(1000.0, 0.0), "position": "link"}
+HELD_LAW = {**bench.spring_damper(1000.0, 0.0), "position_feedback": "link"}
 JUMP = [
     {"at_s": 1.7, "goal": {"joints_rad": [0.02], "duration_s": 0.1}},
     {"at_s": 1.74, "fault": {"joint": bench.JOINT, "kind": "drop_commands", "for_s": 0.015}},
@@ -46,7 +45,7 @@ def _jumped(context: Context, name: str, joint: dict[str, Any], end_s: float, st
 def mode(log: Log, start_s: float, end_s: float) -> Mode:
     seen = bench.truth(log, start_s, end_s)
     deflection, rate = seen["theta"] - seen["q"], seen["theta_dot"] - seen["v"]
-    return modes_seen([np.column_stack([deflection, rate])], bench.CYCLE_S, 1)[0]
+    return mode_seen(deflection, rate)
 
 
 def rung(context: Context, rho: float) -> Mode:
@@ -59,15 +58,15 @@ def most_ratio(context: Context, rate: float, samples: int, expected: float) -> 
 
     The drive takes the joint for one without damper, so that it uses the sensed torque alone.
     """
-    tried = [1 + (expected - 1) * share for share in (0.85, 1.15)]
-    growths = []
-    for rho in tried:
+
+    def growth(rho: float) -> float:
         joint = {**_loop(rho, rate, samples), "transmission": {"damping_Nms_per_rad": 0.0}}
         name = f"limit_{rate * 1e-3:g}kHz_{samples}_{rho:.2f}"
-        step_s = min(1 / rate, COARSE_S)
-        seen = mode(_jumped(context, name, joint, 2.4, step_s), 1.81, 2.4)
-        growths.append(-seen.zeta * seen.omega)
-    return bench.zero_between(tried, growths)
+        log = _jumped(context, name, joint, 2.4, min(1 / rate, COARSE_S))
+        return mode(log, 1.81, 2.4).growth
+
+    tried = [1 + (expected - 1) * share for share in (0.85, 1.15)]
+    return bench.zero_between(tried, [growth(rho) for rho in tried])
 
 
 def pushed(
@@ -79,17 +78,9 @@ def pushed(
     push: float,
 ) -> Log:
     """The free joint with another torque constant than the drive believes in."""
-    true = kappa * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
-    return bench.on_bus(
-        context,
-        name,
-        law,
-        [bench.push(push, 2.0, 4.0, 0.5)],
-        5.4,
-        changes=changes,
-        reality=bench.motor(rotor_torque_constant_Nm_per_A=true),
-        step_s=STEP_S,
-    )
+    entries, reality = [bench.push(push, 2.0, 4.0, 0.5)], bench.torque_constant(kappa)
+    real = {"changes": changes, "reality": reality}
+    return bench.on_bus(context, name, law, entries, 5.4, **real, step_s=STEP_S)
 
 
 def share_of(log: Log) -> float:
@@ -102,32 +93,20 @@ def shared(context: Context, rho: float, kappa: float, push: float) -> float:
     return share_of(pushed(context, f"share_{rho:g}", LAW, bench.joint(**_loop(rho)), kappa, push))
 
 
+def _free(context: Context, name: str, rho: float, entries: list, end_s: float, **real: Any) -> Log:
+    """The free joint with something else about it than the drive believes."""
+    robot = {"changes": bench.joint(**_loop(rho)), "reality": bench.joint(**real)}
+    return bench.on_bus(context, name, LAW, entries, end_s, **robot, step_s=STEP_S)
+
+
 def biased(context: Context, rho: float, bias: float) -> float:
     """Torque by which a biased sensor pushes the joint aside."""
-    log = bench.on_bus(
-        context,
-        f"bias_{rho:g}",
-        LAW,
-        [],
-        4.0,
-        changes=bench.joint(**_loop(rho)),
-        reality=bench.joint(torque_sensor={"bias_Nm": bias}),
-        step_s=STEP_S,
-    )
+    log = _free(context, f"bias_{rho:g}", rho, [], 4.0, torque_sensor={"bias_Nm": bias})
     return -K * bench.lag(log, 3.5, 4.0, "theta")
 
 
 def friction_lag(context: Context, rho: float, coulomb: float) -> float:
-    friction = {"coulomb_Nm": coulomb, "viscous_Nms_per_rad": 0.0}
-    middle = 2.0 + MOVE_S / 2
-    log = bench.on_bus(
-        context,
-        f"friction_{rho:g}",
-        LAW,
-        [{"at_s": 2.0, "goal": {"joints_rad": [MOVE_RAD], "duration_s": MOVE_S}}],
-        2.0 + MOVE_S,
-        changes=bench.joint(**_loop(rho)),
-        reality=bench.joint(friction=friction),
-        step_s=STEP_S,
-    )
+    middle, end = 2.0 + MOVE_S / 2, 2.0 + MOVE_S
+    goal = {"at_s": 2.0, "goal": {"joints_rad": [MOVE_RAD], "duration_s": MOVE_S}}
+    log = _free(context, f"friction_{rho:g}", rho, [goal], end, friction=friction(coulomb))
     return bench.lag(log, middle - 0.5, middle + 0.5, "theta")

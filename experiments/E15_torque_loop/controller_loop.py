@@ -3,8 +3,7 @@
 from typing import Any
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, ideal_and_bus
 from limber.experiments.plants import growth
 from limber.experiments.search import limit
 
@@ -19,16 +18,16 @@ JUMP = [
 ]
 
 
-def checks(context: Context, kappa: float, push: float) -> list[Check]:
+def checks(context: Context, kappa: float, push: float) -> list[Comparison]:
     bound = ideal.most_ratio(1 / bench.CYCLE_S, 1) - 1
     name = "largest torque gain in the controller, link held"
     share = ideal.gained(1 + GAIN, kappa)
     gained = f"share of the torque, gain {GAIN:g} in the controller"
+    gains = most_gain(), most_gain_bus(context, bound)
+    shares = shared(kappa, push), shared_bus(context, kappa, push)
     return [
-        Check(f"{name}, ideal", bound, most_gain(), "", 0.05),
-        Check(f"{name}, bus", bound, most_gain_bus(context, bound), "", 0.05),
-        Check(f"{gained}, ideal", share, shared(kappa, push), "", 0.01),
-        Check(f"{gained}, bus", share, shared_bus(context, kappa, push), "", 0.01),
+        *ideal_and_bus(name, bound, *gains, "", 0.05),
+        *ideal_and_bus(gained, share, *shares, "", 0.01),
     ]
 
 
@@ -45,24 +44,15 @@ def _law(K: float, D: float, gain: float) -> dict[str, Any]:
 
 
 def most_gain_bus(context: Context, expected: float) -> float:
+    def growth(gain: float) -> float:
+        damper = bench.joint(transmission={"damping_Nms_per_rad": 0.0})
+        real = bench.joint(transmission={"damping_Nms_per_rad": bench.D_J})
+        robot = {"changes": {"urdf": "held.urdf", **damper}, "reality": real}
+        name, law = f"controller_limit_{gain:.3f}", _law(K_HELD, 0.0, gain)
+        return bus.mode(bench.on_bus(context, name, law, JUMP, 2.5, **robot), 1.9, 2.5).growth
+
     tried = [0.85 * expected, 1.15 * expected]
-    growths = []
-    for gain in tried:
-        log = bench.on_bus(
-            context,
-            f"controller_limit_{gain:.3f}",
-            _law(K_HELD, 0.0, gain),
-            JUMP,
-            2.5,
-            changes={
-                "urdf": "held.urdf",
-                **bench.joint(transmission={"damping_Nms_per_rad": 0.0}),
-            },
-            reality=bench.joint(transmission={"damping_Nms_per_rad": bench.D_J}),
-        )
-        mode = bus.mode(log, 1.9, 2.5)
-        growths.append(-mode.zeta * mode.omega)
-    return bench.zero_between(tried, growths)
+    return bench.zero_between(tried, [growth(gain) for gain in tried])
 
 
 def shared(kappa: float, push: float) -> float:
@@ -75,13 +65,5 @@ def shared(kappa: float, push: float) -> float:
 
 
 def shared_bus(context: Context, kappa: float, push: float) -> float:
-    spring = {"law": "linear", "stiffness_Nm_per_rad": SOFT}
-    log = bus.pushed(
-        context,
-        "controller_share",
-        _law(ideal.K, ideal.D, GAIN),
-        bench.joint(transmission={"spring": spring}),
-        kappa,
-        push,
-    )
-    return bus.share_of(log)
+    law, name = _law(ideal.K, ideal.D, GAIN), "controller_share"
+    return bus.share_of(bus.pushed(context, name, law, bench.sprung(SOFT), kappa, push))

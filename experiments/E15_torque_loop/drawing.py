@@ -1,13 +1,11 @@
 """The largest inertia ratio over the loop's rate; and what a ratio does for the law outside."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, ideal_and_bus
+from limber.experiments.pictures import BLUE, GREEN, ORANGE, Axes, name_axes, plot_marks
 
 from . import ideal
 
@@ -19,14 +17,11 @@ class Limit:
     ideal: float
     bus: float
 
-    def checks(self) -> list[Check]:
+    def checks(self) -> list[Comparison]:
         delay = "a sample of delay" if self.samples else "no delay"
         name = f"largest inertia ratio, less 1, at {self.rate * 1e-3:g} kHz, {delay}"
         bound = ideal.most_ratio(self.rate, self.samples) - 1
-        return [
-            Check(f"{name}, ideal", bound, self.ideal - 1, "", 0.05),
-            Check(f"{name}, bus", bound, self.bus - 1, "", 0.05),
-        ]
+        return ideal_and_bus(name, bound, self.ideal - 1, self.bus - 1, "", 0.05)
 
 
 @dataclass(frozen=True)
@@ -38,24 +33,23 @@ class Effect:
     bus: tuple[float, float, float]
 
 
-def limits(found: list[Limit], ax: Any) -> None:
+def limits(found: list[Limit], ax: Axes) -> None:
     rates = np.geomspace(0.8e3, 14e3, 40)
     for samples, color, name in ((0, BLUE, "no delay"), (1, ORANGE, "a sample of delay")):
         bound = [ideal.most_ratio(rate, samples) - 1 for rate in rates]
         ax.loglog(rates * 1e-3, bound, color=color, label=f"damping / (stiffness × delay), {name}")
         mine = [limit for limit in found if limit.samples == samples]
         at = [limit.rate * 1e-3 for limit in mine]
-        ax.loglog(at, [limit.ideal - 1 for limit in mine], **bench.IDEAL, color=color)
-        ax.loglog(at, [limit.bus - 1 for limit in mine], **MEASURED, color=color)
-    _legend(ax)
+        ideals, buses = [limit.ideal - 1 for limit in mine], [limit.bus - 1 for limit in mine]
+        plot_marks(ax, at, ideals, buses, color=color)
     ax.set_title("How far the motor's inertia may be divided")
-    ax.set_xlabel("rate of the torque loop (kHz)")
-    ax.set_ylabel("largest stable inertia ratio, less 1")
     ax.set_xticks([1, 2, 4, 10], ["1", "2", "4", "10"])
-    ax.legend(loc="upper left")
+    name_axes(
+        ax, "rate of the torque loop (kHz)", "largest stable inertia ratio, less 1", "upper left"
+    )
 
 
-def effects(found: list[Effect], kappa: float, ax: Any) -> None:
+def effects(found: list[Effect], kappa: float, ax: Axes) -> None:
     rho = np.linspace(1, 8.5, 60)
     lines = (
         (f"share of the torque, torque constant {kappa:g}", ideal.gained(rho, kappa), BLUE),
@@ -65,16 +59,9 @@ def effects(found: list[Effect], kappa: float, ax: Any) -> None:
     for i, (name, line, color) in enumerate(lines):
         ax.plot(rho, line, color=color, label=name)
         at = [effect.rho for effect in found]
-        ax.plot(at, [abs(effect.ideal[i]) for effect in found], **bench.IDEAL, color=color)
-        ax.plot(at, [abs(effect.bus[i]) for effect in found], **MEASURED, color=color)
-    _legend(ax)
+        ideals = [abs(effect.ideal[i]) for effect in found]
+        buses = [abs(effect.bus[i]) for effect in found]
+        plot_marks(ax, at, ideals, buses, color=color)
     ax.set_ylim(0, 1.05)
     ax.set_title("What the law outside gets")
-    ax.set_xlabel("inertia ratio")
-    ax.set_ylabel("share")
-    ax.legend(loc="center right")
-
-
-def _legend(ax: Any) -> None:
-    ax.plot([], [], **MEASURED, color="0.3", label="measured on the bus")
-    ax.plot([], [], **bench.IDEAL, color="0.3", label="on the joint's equations")
+    name_axes(ax, "inertia ratio", "share", "center right")

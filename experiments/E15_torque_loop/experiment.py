@@ -1,8 +1,9 @@
 """What a torque loop in the drive gives, and how much of it a rate allows."""
 
+import numpy as np
+
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, ideal_and_bus
 
 from . import bus, controller_loop, drawing, ideal, law_forms
 
@@ -19,7 +20,7 @@ RATES_HZ = (1e3, 4e3, 1e4)
 KAPPA, PUSH_NM, COULOMB_NM, BIAS_NM = 0.8, 10.0, 2.0, 1.0
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     limits = [
         drawing.Limit(
             rate,
@@ -60,30 +61,21 @@ def effect(context: Context, rho: float) -> drawing.Effect:
     )
 
 
-def effect_checks(found: drawing.Effect) -> list[Check]:
+def effect_checks(found: drawing.Effect) -> list[Comparison]:
     """Lag and bias in their own units."""
-    rho = found.rho
-    lag = COULOMB_NM / ideal.K * 1e3
-    made = []
-    for how, (share, friction, bias) in (("ideal", found.ideal), ("bus", found.bus)):
-        name = f"inertia ratio {rho:g}"
-        gained = ideal.gained(rho, KAPPA)
-        made += [
-            Check(f"share of the torque, {name}, {how}", gained, share, "", 0.01),
-            Check(f"friction lag, {name}, {how}", lag / rho, friction * lag, "mrad", 0.02),
-            Check(
-                f"torque made by a bias of {BIAS_NM:g} N m, {name}, {how}",
-                (1 / rho - 1) * BIAS_NM,
-                bias * BIAS_NM,
-                "N m",
-                0.01,
-                "absolute",
-            ),
-        ]
-    return sorted(made, key=lambda check: check.name.rpartition(",")[0])
+    name, lag = f"inertia ratio {found.rho:g}", COULOMB_NM / ideal.K * 1e3
+    shares, frictions, biases = zip(found.ideal, found.bus, strict=True)
+    lags, torques = np.array(frictions) * lag, np.array(biases) * BIAS_NM
+    gained, missing = ideal.gained(found.rho, KAPPA), (1 / found.rho - 1) * BIAS_NM
+    bias = f"torque made by a bias of {BIAS_NM:g} N m, {name}"
+    return [
+        *ideal_and_bus(f"friction lag, {name}", lag / found.rho, *lags, "mrad", 0.02),
+        *ideal_and_bus(f"share of the torque, {name}", gained, *shares, "", 0.01),
+        *ideal_and_bus(bias, missing, *torques, "N m", 0.01, "absolute"),
+    ]
 
 
-def ring(context: Context, rho: float) -> list[Check]:
+def ring(context: Context, rho: float) -> list[Comparison]:
     """√(K_J ρ/B) and D_J/(2 √(K_J B/ρ)), link held."""
     omega = (rho * bench.K_J / bench.B) ** 0.5
     zeta = bench.D_J / (2 * (bench.K_J * bench.B / rho) ** 0.5)
@@ -91,11 +83,9 @@ def ring(context: Context, rho: float) -> list[Check]:
     drive = bench.slowest(ideal.loop_of_drive(rho, bus.RATE_HZ), 1 / bus.RATE_HZ)
     seen = bus.rung(context, rho)
     name = f"link held, inertia ratio {rho:g}"
+    sampled = f"{name}: damping ratio, bus with the drive's sampling"
     return [
-        Check(f"{name}: frequency, ideal", omega, exact.omega, "rad/s", 0.01),
-        Check(f"{name}: frequency, bus", omega, seen.omega, "rad/s", 0.01),
-        Check(f"{name}: damping ratio, ideal", zeta, exact.zeta, "", 0.03),
-        Check(
-            f"{name}: damping ratio, bus with the drive's sampling", drive.zeta, seen.zeta, "", 0.03
-        ),
+        *ideal_and_bus(f"{name}: frequency", omega, exact.omega, seen.omega, "rad/s", 0.01),
+        Comparison(f"{name}: damping ratio, ideal", zeta, exact.zeta, "", 0.03),
+        Comparison(sampled, drive.zeta, seen.zeta, "", 0.03),
     ]

@@ -3,19 +3,16 @@
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, case, near_zero
 
 RHO, K_PU, K_DU = 4.0, 100.0, 10.0
 STATES = 20
 
 
-def checks(context: Context) -> list[Check]:
+def checks(context: Context) -> list[Comparison]:
     """Greatest difference at random states of the joint, N m."""
-    error, speed, tau, rate, weight = context.rng.uniform(-1, 1, (5, STATES)) * [
-        [0.1], [2.0], [20.0], [500.0], [20.0],
-    ]  # fmt: skip
+    scale = np.array([0.1, 2.0, 20.0, 500.0, 20.0])[:, None]
+    error, speed, tau, rate, weight = context.rng.uniform(-1, 1, (5, STATES)) * scale
     u = weight - K_PU * error - K_DU * speed
     by_hand = RHO * u + (1 - RHO) * (tau + bench.D_J / bench.K_J * rate)
     feedback, full = [], []
@@ -30,7 +27,6 @@ def checks(context: Context) -> list[Check]:
     made = []
     for name, cases in (("torque feedback", feedback), ("full-state feedback", full)):
         found = np.array([np.ravel(a["tau_m"])[0] for a in context.eval(cases)])
-        off = float(np.abs(found - by_hand).max())
         name = f"{name} of the controller and the equation differ by"
-        made.append(Check(name, 0.0, off, "N m", 1e-9, "absolute"))
+        made.append(near_zero(name, np.abs(found - by_hand).max(), "N m", 1e-9))
     return made

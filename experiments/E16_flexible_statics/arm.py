@@ -3,13 +3,16 @@
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.optimize import fsolve
 from scipy.spatial.transform import Rotation
 
 from limber.experiments.context import Context
-from limber.experiments.truth import motion, status
+from limber.experiments.timeline import in_turn, tip_gains
+from limber.experiments.truth import Log, motion, status
 from limber.experiments.variants import variant
-from limber.robot import load_robot
+from limber.model.robot import load_robot
+from limber.model.rotations import left_jacobian_inverse
 
 ROBOT = "ideal7"
 HOME = np.array([0.0, 0.5, 0.0, -1.2, 0.0, 1.0, 0.0])
@@ -40,13 +43,9 @@ def model(position: str) -> np.ndarray:
 
     def spring_torque(q: np.ndarray) -> np.ndarray:
         X, J = chain.forward(q), chain.jacobian(q)
-        turned = Rotation.from_matrix(X[:3, :3] @ start[:3, :3].T)
-        e = np.concatenate([X[:3, 3] - start[:3, 3], turned.as_rotvec()])
-        half = np.linalg.norm(e[3:]) / 2
-        S = np.cross(np.eye(3), e[3:])  # [e]×
-        A = np.eye(6)
-        if half > 1e-6:
-            A[3:, 3:] += -S / 2 + (1 - half / np.tan(half)) / (2 * half) ** 2 * S @ S
+        turned = Rotation.from_matrix(X[:3, :3] @ start[:3, :3].T).as_rotvec()
+        e = np.concatenate([X[:3, 3] - start[:3, 3], turned])
+        A = block_diag(np.eye(3), left_jacobian_inverse(turned))
         null = np.eye(7) - np.linalg.pinv(J) @ J
         return -J.T @ A.T @ K_X @ e - K_NULL * null @ (q - HOME)
 
@@ -66,74 +65,43 @@ def model(position: str) -> np.ndarray:
 
 def robot(context: Context) -> str:
     """ideal7 with elastic joints, sensors, and torque loops in CiA 402 drives; weightless."""
+    motor = {
+        "protocol": "cia402",
+        "gear_ratio": 1,
+        "rotor_torque_constant_Nm_per_A": 1,
+        "phase_resistance_ohm": 0.1,
+        "peak_torque_Nm": 300,
+        "rated_torque_Nm": 10,
+        "encoder_bits": 24,
+    }
     motors: dict[str, Any] = {"ideal": None}
     joints: dict[str, Any] = {}
     for i in range(7):
-        motors[f"motor_{i + 1}"] = {
-            "protocol": "cia402",
-            "gear_ratio": 1,
-            "rotor_inertia_kgm2": float(ROTOR[i]),
-            "rotor_torque_constant_Nm_per_A": 1,
-            "phase_resistance_ohm": 0.1,
-            "peak_torque_Nm": 300,
-            "rated_torque_Nm": 10,
-            "encoder_bits": 24,
-        }
-        spring = {"law": "linear", "stiffness_Nm_per_rad": float(SPRING[i])}
+        motors[f"motor_{i + 1}"] = {**motor, "rotor_inertia_kgm2": ROTOR[i]}
+        spring = {"law": "linear", "stiffness_Nm_per_rad": SPRING[i]}
         joints[f"joint_{i + 1}"] = {
             "motor": f"motor_{i + 1}",
-            "transmission": {
-                "kind": "elastic",
-                "spring": spring,
-                "damping_Nms_per_rad": float(DAMPER[i]),
-            },
+            "transmission": {"kind": "elastic", "spring": spring, "damping_Nms_per_rad": DAMPER[i]},
             "link_encoder": {"bits": 24},
             "torque_sensor": {"resolution_Nm": 0.01},
             "torque_loop": {"inertia_ratio": RATIO, "rate_hz": 4000},
         }
-    changes = {
-        "motors": motors,
-        "joints": joints,
-        "gravity_m_per_s2": [0.0, 0.0, 0.0],
-    }
+    changes = {"motors": motors, "joints": joints, "gravity_m_per_s2": np.zeros(3)}
     return variant(context.out / "arm", ROBOT, changes)
 
 
 def measured(context: Context, position: str) -> np.ndarray:
-    gains = {
-        "law": "cartesian_impedance",
-        "position": position,
-        "K_x_translation_N_per_m": np.diag(K_X)[:3].tolist(),
-        "K_x_rotation_Nm_per_rad": np.diag(K_X)[3:].tolist(),
-        "damping_ratio": 0.7,
-        "K_null_Nm_per_rad": K_NULL,
-        "D_null_Nms_per_rad": 3.0,
-    }
-    pushes = [
-        {
-            "at_s": PUSH_S + EACH_S * i,
-            "push": {"force_N": (FORCE_N * axis).tolist(), "for_s": EACH_S, "ramp_s": 0.3},
-        }
-        for i, axis in enumerate(np.eye(3))
-    ]
-    end = PUSH_S + 3 * EACH_S
-    scenario = {
-        "robot": robot(context),
-        "start_q": HOME.tolist(),
-        "duration_s": end + 0.05,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            *pushes,
-        ],
-    }
-    log = context.lab(scenario, f"arm_{position}")
+    null = {"K_null_Nm_per_rad": K_NULL, "D_null_Nms_per_rad": 3.0}
+    gains = tip_gains(K_X[0, 0], K_X[3, 3], damping_ratio=0.7, position_feedback=position, **null)
+    forces = [{"force_N": FORCE_N * axis} for axis in np.eye(3)]
+    pushes = in_turn(PUSH_S, EACH_S, forces, for_s=EACH_S, ramp_s=0.3)
+    end, head = PUSH_S + 3 * EACH_S, {"integrator": "ode", "start_q": HOME}
+    log = context.run_law(f"arm_{position}", robot(context), gains, pushes, end, **head)
     status(log, PUSH_S - 0.3, end)
     rest = _place(log, PUSH_S - 0.2, PUSH_S)
     ends = [PUSH_S + EACH_S * (i + 1) - 0.35 for i in range(3)]
     return np.array([(_place(log, t - 0.2, t) - rest)[i] for i, t in enumerate(ends)])
 
 
-def _place(log: Any, start: float, end: float) -> np.ndarray:
+def _place(log: Log, start: float, end: float) -> np.ndarray:
     return motion(log, start, end)["p_BT"].mean(axis=0)

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, ideal_and_bus
 
 from . import arm, drawing, iteration, joint
 
@@ -20,7 +19,7 @@ CONSTANT = "the same with constant gravity torque"
 AT_REST = "law at rest of the link"
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     one = list(one_joint(context))
     seven = {
         position: (arm.predicted(position), arm.model(position), arm.measured(context, position))
@@ -38,23 +37,22 @@ def run(context: Context) -> list[Check]:
 
 def one_joint(context: Context) -> Iterator[drawing.Stiffness]:
     gravity, D = joint.GRAVITY, joint.D
-    motor = {**bench.spring_damper(joint.K, D), "position": "motor"}
+    motor = {**bench.spring_damper(joint.K, D), "position_feedback": "motor"}
     yield drawing.Stiffness(
         ON_MOTOR,
         joint.series(joint.K),
         joint.stiffness_model(joint.on_motor, 0.0, 0.0),
         joint.stiffness_bus(context, "on_motor", motor, 0.0),
     )
+    tomei = {"law": "tomei", **bench.given(joint.K, D)}
     yield drawing.Stiffness(
         CONSTANT,
         joint.series(joint.K) + joint.gradient(),
         joint.stiffness_model(joint.tomei, gravity, joint.ANGLE),
-        joint.stiffness_bus(
-            context, "constant_gravity", {"law": "tomei", **bench.given(joint.K, D)}, gravity
-        ),
+        joint.stiffness_bus(context, "constant_gravity", tomei, gravity),
     )
     for K_d in joint.ASKED:
-        gains = {**bench.spring_damper(K_d, D), "position": "static"}
+        gains = {**bench.spring_damper(K_d, D), "position_feedback": "static"}
         yield drawing.Stiffness(
             f"{AT_REST}, {K_d:g} N m/rad",
             K_d,
@@ -63,13 +61,12 @@ def one_joint(context: Context) -> Iterator[drawing.Stiffness]:
         )
 
 
-def seven_checks(found: dict[str, tuple]) -> list[Check]:
+def seven_checks(found: dict[str, tuple]) -> list[Comparison]:
     names = {arm.ON_MOTOR: "law on the motors", arm.AT_REST: "law at rest of the links"}
     made = []
-    for position, values in found.items():
+    for position, values_along in found.items():
         for i, axis in enumerate("xyz"):
             name = f"seven joints, {names[position]}: tip moved along {axis} by {arm.FORCE_N:g} N"
-            formula, ideal, bus = (float(value[i]) * 1e3 for value in values)
-            made.append(Check(f"{name}, ideal", formula, ideal, "mm", 0.03))
-            made.append(Check(f"{name}, bus", formula, bus, "mm", 0.03))
+            values = (value[i] * 1e3 for value in values_along)
+            made += ideal_and_bus(name, *values, "mm", 0.03)
     return made

@@ -6,46 +6,41 @@ import numpy as np
 
 from limber.errors import RunError
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, case, near_zero
 from limber.experiments.variants import variant
-from limber.robot import load_robot
+from limber.model.robot import load_robot
 
 from . import joint
 
 TOO_STIFF = 1500.0  # N m/rad
 
 
-def checks(context: Context) -> list[Check]:
+def checks(context: Context) -> list[Comparison]:
     made = []
     for K_d in (*joint.ASKED, TOO_STIFF):
         _, before, after, _ = joint.fixpoint_steps(K_d)
         factor = abs(K_d - joint.gradient()) / joint.SPRING
         name = f"a step of the iteration over the one before, {K_d:g} N m/rad asked for"
-        made.append(Check(name, factor, after / before, "", 0.01))
-    changes = {"gravity_m_per_s2": [0.0, -joint.GRAVITY, 0.0]}
-    robot = variant(context.out / "solver", bench.ROBOT, changes)
+        made.append(Comparison(name, factor, after / before, "", 0.01))
+    robot = variant(context.out / "solver", bench.ROBOT, bench.gravity(joint.GRAVITY))
     for K_d in joint.ASKED:
         name = f"the controller's own solution, {K_d:g} N m/rad asked for: torque left over"
-        made.append(Check(name, 0.0, _left_over(context, robot, K_d), "N m", 1e-8, "absolute"))
+        made.append(near_zero(name, _left_over(context, robot, K_d), "N m", 1e-8))
     name = f"{TOO_STIFF:g} N m/rad asked for"
     solved, taken = _solvable(context, robot), 1 - joint.refused_bus(context, TOO_STIFF)
     return [
         *made,
-        Check(f"{name}: solutions, by the controller", 0.0, float(solved), "", 0.0, "absolute"),
-        Check(f"{name}: requests it takes, bus", 0.0, float(taken), "", 0.0, "absolute"),
+        near_zero(f"{name}: solutions, by the controller", solved, "", 0.0),
+        near_zero(f"{name}: requests it takes, bus", taken, "", 0.0),
     ]
 
 
 def _asked(robot: str, K_d: float) -> dict[str, Any]:
-    K_x = [[0.0] * 6 for _ in range(6)]
-    K_x[5][5] = K_d
+    K_x = np.diag([0.0] * 5 + [K_d])
     theta = joint.ANGLE + 0.02 + joint.weight(joint.ANGLE) / joint.SPRING
     goal = load_robot(bench.ROBOT).chain.forward(np.array([joint.ANGLE]))
     pose = {"p_d": goal[:3, 3], "R_d": goal[:3, :3]}
-    inputs = {"theta": [theta], **pose, "Kx": K_x, "K": [joint.SPRING]}
-    return case("qbar", robot, **inputs)
+    return case("qbar", robot, theta=[theta], Kx=K_x, K=[joint.SPRING], **pose)
 
 
 def _left_over(context: Context, robot: str, K_d: float) -> float:

@@ -94,29 +94,18 @@ def _settle(law: Law, gravity: float, start: float, push: float) -> float:
 
 def stiffness_bus(context: Context, name: str, gains: dict, gravity: float) -> float:
     """The same on the bus."""
-    log = bench.on_bus(
-        context,
-        name,
-        gains,
-        [bench.push(PUSH_NM, 3.0, 4.0, 0.5)],
-        6.4,
-        changes=_changes(gravity),
-        start_q=[ANGLE if gravity else 0.0],
-    )
+    push, start = bench.push(PUSH_NM, 3.0, 4.0, 0.5), [ANGLE if gravity else 0.0]
+    changes = _changes(gravity)
+    log = bench.on_bus(context, name, gains, [push], 6.4, changes=changes, start_q=start)
     return PUSH_NM / (bench.mean(log, 5.5, 6.4) - bench.mean(log, 2.5, 2.99))
 
 
 def refused_bus(context: Context, K_d: float) -> int:
     """1: the controller does not take a request for such a stiffness at rest, else 0."""
-    gains = {**bench.spring_damper(K_d, D), "position": "static"}
+    gains = {**bench.spring_damper(K_d, D), "position_feedback": "static"}
     log = bench.on_bus(context, f"asked_{K_d:g}", gains, [], 1.5, changes=_changes(GRAVITY))
     return bench.refused(log)
 
 
 def _changes(gravity: float) -> dict:
-    """Of the bench."""
-    spring = {"law": "linear", "stiffness_Nm_per_rad": SPRING}
-    return {
-        "gravity_m_per_s2": [0.0, -gravity, 0.0],
-        **bench.joint(transmission={"spring": spring}),
-    }
+    return {**bench.gravity(gravity), **bench.sprung(SPRING)}

@@ -1,14 +1,10 @@
 """Position control of the motor, gravity torque of the goal: does the link come to rest there?"""
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, case, ideal_and_bus
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE, Axes, level, name_axes, plot_marks
 
 from . import joint, seven
 
@@ -26,7 +22,7 @@ TOO_SOFT = 18.0  # N m/rad: less than the weight pulls
 STIFF_LAW = 1000.0
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     ideal = [joint.final_error_model(K_P, BESIDE, SECONDS) for K_P in TRIED]
     bus = [joint.final_error_bus(context, K_P, BESIDE, SECONDS) for K_P in TRIED]
     path = joint.from_afar_bus(context, AFAR_K_P, AFAR)
@@ -44,40 +40,30 @@ def run(context: Context) -> list[Check]:
     ]
 
 
-def limits(context: Context) -> list[Check]:
-    found = joint.critical_bus(context, [28.5, 31.5])
+def limits(context: Context) -> list[Comparison]:
+    found = joint.critical_model(), joint.critical_bus(context, [28.5, 31.5])
     name = "smallest motor gain that holds the arm up"
-    unit = "N m/rad"
-    return [
-        Check(f"{name}, ideal", joint.CRITICAL, joint.critical_model(), unit, 0.01),
-        Check(f"{name}, bus", joint.CRITICAL, found, unit, 0.01),
-    ]
+    return ideal_and_bus(name, joint.CRITICAL, *found, "N m/rad", 0.01)
 
 
-def errors(ideal: list[float], bus: list[float]) -> list[Check]:
+def errors(ideal: list[float], bus: list[float]) -> list[Comparison]:
     made = []
     for K_P, model, seen in zip(TRIED, ideal, bus, strict=True):
         wanted = joint.final_error(K_P)
         name = f"final error with K_P = {K_P:g} N m/rad"
-        kind = ("relative", 0.01) if wanted > 0 else ("absolute", 2e-3)
-        made += [
-            Check(f"{name}, {how}", wanted, value, "rad", kind[1], kind[0])
-            for how, value in (("ideal", model), ("bus", seen))
-        ]
+        tolerance = (0.01, "relative") if wanted > 0 else (2e-3, "absolute")
+        made += ideal_and_bus(name, wanted, model, seen, "rad", *tolerance)
     return made
 
 
-def afar(path: joint.Path, model: np.ndarray) -> list[Check]:
+def afar(path: joint.Path, model: np.ndarray) -> list[Comparison]:
     """K_P above the bound of the proof."""
     name = f"final error from {AFAR:g} rad away, K_P = {AFAR_K_P:g} above {joint.SUFFICIENT:g}"
     ends = [abs(float(q[-100:].mean()) - joint.UPRIGHT) for q in (model, path.q)]
-    return [
-        Check(f"{name}, {how}", 0.0, end, "rad", 1e-3, "absolute")
-        for how, end in zip(("ideal", "bus"), ends, strict=True)
-    ]
+    return ideal_and_bus(name, 0.0, *ends, "rad", 1e-3, "absolute")
 
 
-def sufficient(context: Context) -> list[Check]:
+def sufficient(context: Context) -> list[Comparison]:
     """K_P at which the controller finds the smallest eigenvalue at α; it takes no less."""
     gains = np.linspace(40.0, 60.0, 41)
     state = {"theta": [0.0], "thetad": [0.0], "q_d": [0.0], "K": [joint.SPRING], "KD": [0.0]}
@@ -86,53 +72,38 @@ def sufficient(context: Context) -> list[Check]:
     found = float(np.interp(joint.GRAVITY, eigenvalues, gains))
     name = "motor gain that the proof asks for, by the controller"
     bound = joint.SUFFICIENT
-    made = [Check(name, bound, found, "N m/rad", 1e-3)]
+    made = [Comparison(name, bound, found, "N m/rad", 1e-3)]
     for share, refused in ((0.99, 1), (1.01, 0)):
         name = f"refused of one request, K_P = {share * bound:g} N m/rad, bus"
         seen = joint.refused_bus(context, share * bound)
-        made.append(Check(name, refused, seen, "", 0.0, "absolute"))
+        made.append(Comparison(name, refused, seen, "", 0.0, "absolute"))
     return made
 
 
-def too_soft(context: Context) -> list[Check]:
+def too_soft(context: Context) -> list[Comparison]:
     """A spring below α: no gain helps."""
     wanted = joint.final_error(STIFF_LAW, TOO_SOFT)
     ideal = joint.final_error_model(STIFF_LAW, BESIDE, SECONDS, TOO_SOFT)
     bus = joint.final_error_bus(context, STIFF_LAW, BESIDE, SECONDS, TOO_SOFT)
     name = f"final error on a spring of {TOO_SOFT:g} N m/rad, K_P = {STIFF_LAW:g}"
-    return [
-        Check(f"{name}, ideal", wanted, ideal, "rad", 0.01),
-        Check(f"{name}, bus", wanted, bus, "rad", 0.01),
-    ]
+    return ideal_and_bus(name, wanted, ideal, bus, "rad", 0.01)
 
 
-def draw_errors(ideal: list[float], bus: list[float], ax: Any) -> None:
+def draw_errors(ideal: list[float], bus: list[float], ax: Axes) -> None:
     gains = np.linspace(12, 85, 300)
     ax.plot(gains, [joint.final_error(K) for K in gains], color=BLUE, label="k e = α sin e")
-    ax.plot(TRIED, ideal, **bench.IDEAL, color=BLUE, label="on the joint's equations")
-    ax.plot(TRIED, bus, **MEASURED, color=BLUE, label="measured on the bus")
+    plot_marks(ax, TRIED, ideal, bus, color=BLUE)
     for K_P, text in ((joint.CRITICAL, "exact bound"), (joint.SUFFICIENT, "bound of the proof")):
-        ax.axvline(K_P, color="0.5", ls=":", lw=1)
-        ax.annotate(text, (K_P + 0.6, 1.2), rotation=90, va="center", color="0.35")
+        level(ax, text, (K_P, 1.2), (3, 0), upright=True, rotation=90, va="center")
     ax.set_title("Where the link comes to rest")
-    ax.set_xlabel("gain on the motor, K_P (N m/rad)")
-    ax.set_ylabel("final error (rad)")
-    ax.legend(loc="upper right")
+    name_axes(ax, "gain on the motor, K_P (N m/rad)", "final error (rad)", "upper right")
 
 
-def draw_afar(path: joint.Path, model: np.ndarray, ax: Any) -> None:
+def draw_afar(path: joint.Path, model: np.ndarray, ax: Axes) -> None:
     ax.plot(path.t, path.q_d - joint.UPRIGHT, color="0.5", ls="--", lw=1.2, label="goal")
     ax.plot(path.t, model - joint.UPRIGHT, color=ORANGE, label="on the joint's equations")
-    few = slice(None, None, 16)
-    ax.plot(
-        path.t[few],
-        path.q[few] - joint.UPRIGHT,
-        **MEASURED,
-        color=ORANGE,
-        label="measured on the bus",
-    )
+    t, q = path.t[::16], path.q[::16]
+    ax.plot(t, q - joint.UPRIGHT, **MEASURED, color=ORANGE, label="measured on the bus")
     ax.set_xlim(-0.1, 3)
     ax.set_title(f"From {AFAR:g} rad away, K_P = {AFAR_K_P:g} N m/rad")
-    ax.set_xlabel("time since the goal left (s)")
-    ax.set_ylabel("angle from upright (rad)")
-    ax.legend(loc="lower right")
+    name_axes(ax, "time since the goal left (s)", "angle from upright (rad)", "lower right")

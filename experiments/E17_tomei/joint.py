@@ -13,6 +13,7 @@ from limber.experiments import testbench as bench
 from limber.experiments.context import Context
 from limber.experiments.plants import growth
 from limber.experiments.search import limit
+from limber.model.scenario import GAINS_S
 
 SPRING, GRAVITY = 60.0, 20.0  # N m/rad of the joint; N m that the link weighs when it lies
 K_D = 6.0  # N m s/rad
@@ -59,10 +60,8 @@ def path_model(K_P: float, t: np.ndarray, q_d: np.ndarray) -> np.ndarray:
 
     first = [q_d[0], 0.0, q_d[0] + bench.weight(q_d[0], GRAVITY) / SPRING, 0.0]
     span = (t[0], t[-1])
-    found = solve_ivp(
-        rate, span, first, t_eval=t, method="LSODA", rtol=1e-7, atol=1e-9, max_step=0.02
-    )
-    return found.y[0]
+    tight = {"method": "LSODA", "rtol": 1e-7, "atol": 1e-9, "max_step": 0.02}
+    return solve_ivp(rate, span, first, t_eval=t, **tight).y[0]
 
 
 def critical_model() -> float:
@@ -79,18 +78,14 @@ def critical_model() -> float:
 
 def changes(spring: float, gravity: float) -> dict:
     """Of the bench. A law that holds it meanwhile must be softer than the spring."""
-    transmission = {"spring": {"law": "linear", "stiffness_Nm_per_rad": spring}}
-    return {
-        "gravity_m_per_s2": [0.0, -gravity, 0.0],
-        "gains": {"K_q_Nm_per_rad": 0.6 * spring, "K_x_translation_N_per_m": 40.0},
-        **bench.joint(transmission=transmission),
-    }
+    softer = {"K_q_Nm_per_rad": 0.6 * spring, "K_x_translation_N_per_m": 40.0}
+    return {**bench.gravity(gravity), **bench.sprung(spring), "gains": softer}
 
 
 # The controller refuses gains below the bound of the proof. Here it takes the link for lighter than
 # it is, and so accepts them; upright the weight it believes in does not matter, g(q_d) = 0.
 BELIEVED = 5.0
-REALITY = {"gravity_m_per_s2": [0.0, -GRAVITY, 0.0]}
+REALITY = bench.gravity(GRAVITY)
 # Fine steps of the torque, where little torque decides
 FINE_MOTOR = bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0)
 
@@ -103,18 +98,10 @@ def final_error_bus(
     context: Context, K_P: float, start: float, seconds: float, spring: float = SPRING
 ) -> float:
     """From a goal beside upright, which then goes there."""
-    to_upright = {"joints_rad": [UPRIGHT], "duration_s": 0.5}
-    end = bench.GAINS_S + seconds
-    log = bench.on_bus(
-        context,
-        f"upright_{spring:g}_{K_P:g}",
-        gains(K_P),
-        [{"at_s": bench.GAINS_S + 0.6, "goal": to_upright}],
-        end,
-        changes=changes(spring, BELIEVED),
-        reality=REALITY,
-        start_q=[UPRIGHT - start],
-    )
+    goal = {"at_s": GAINS_S + 0.6, "goal": {"joints_rad": [UPRIGHT], "duration_s": 0.5}}
+    end, name = GAINS_S + seconds, f"upright_{spring:g}_{K_P:g}"
+    real = {"changes": changes(spring, BELIEVED), "reality": REALITY}
+    log = bench.on_bus(context, name, gains(K_P), [goal], end, **real, start_q=[UPRIGHT - start])
     return abs(bench.mean(log, end - 0.5, end) - UPRIGHT)
 
 
@@ -129,16 +116,10 @@ class Path:
 
 def from_afar_bus(context: Context, K_P: float, start: float) -> Path:
     """The goal jumps up as fast as goals may."""
-    end = 8.0
-    log = bench.on_bus(
-        context,
-        f"from_afar_{K_P:g}",
-        gains(K_P),
-        [{"at_s": 2.0, "goal": {"joints_rad": [UPRIGHT], "duration_s": 0.1}}],
-        end,
-        changes=changes(SPRING, GRAVITY),
-        start_q=[UPRIGHT - start],
-    )
+    end, name = 8.0, f"from_afar_{K_P:g}"
+    goal = {"at_s": 2.0, "goal": {"joints_rad": [UPRIGHT], "duration_s": 0.1}}
+    robot = {"changes": changes(SPRING, GRAVITY), "start_q": [UPRIGHT - start]}
+    log = bench.on_bus(context, name, gains(K_P), [goal], end, **robot)
     seen = bench.truth(log, 1.95, end)
     t, q_d = bench.goal(log, 1.95, end)
     return Path(t - 2.0, q_d, np.interp(t, seen["t"], seen["q"]))
@@ -146,26 +127,20 @@ def from_afar_bus(context: Context, K_P: float, start: float) -> Path:
 
 def critical_bus(context: Context, tried: list[float]) -> float:
     """Where a small push neither grows nor dies out, between two gains that were tried."""
-    rates = []
-    for K_P in tried:
-        log = bench.on_bus(
-            context,
-            f"critical_{K_P:g}",
-            gains(K_P),
-            [bench.push(0.3, 1.8, 0.5, 0.1)],
-            6.0,
-            changes={**changes(SPRING, BELIEVED), **FINE_MOTOR},
-            reality=REALITY,
-            start_q=[UPRIGHT],
-        )
+    robot = {"changes": {**changes(SPRING, BELIEVED), **FINE_MOTOR}, "reality": REALITY}
+
+    def rate(K_P: float) -> float:
+        push, name = bench.push(0.3, 1.8, 0.5, 0.1), f"critical_{K_P:g}"
+        log = bench.on_bus(context, name, gains(K_P), [push], 6.0, **robot, start_q=[UPRIGHT])
         seen = bench.truth(log, 3.0, 6.0)
-        rates.append(float(np.polyfit(seen["t"], np.log(abs(seen["q"] - UPRIGHT)), 1)[0]))
-    return bench.zero_between(tried, rates)
+        return float(np.polyfit(seen["t"], np.log(abs(seen["q"] - UPRIGHT)), 1)[0])
+
+    return bench.zero_between(tried, [rate(K_P) for K_P in tried])
 
 
 def refused_bus(context: Context, K_P: float) -> int:
     """Gains that the controller refuses when it knows the weight: one request, or none."""
-    log = bench.on_bus(
-        context, f"refused_{K_P:g}", gains(K_P), [], 1.5, changes=changes(SPRING, GRAVITY)
+    robot = changes(SPRING, GRAVITY)
+    return bench.refused(
+        bench.on_bus(context, f"refused_{K_P:g}", gains(K_P), [], 1.5, changes=robot)
     )
-    return bench.refused(log)

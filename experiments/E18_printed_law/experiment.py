@@ -1,14 +1,10 @@
 """The lecture's motor law as it is printed: it has no set-point."""
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, at_most, case, ideal_and_bus, near_zero
+from limber.experiments.pictures import BLUE, GREEN, ORANGE, Axes, level, name_axes, plot_marks
 
 from . import joint
 
@@ -23,7 +19,7 @@ GAINS = (0.0, 60.0, 240.0)  # N m/rad
 FALLING = 240.0
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     ideal = [joint.acceleration_model(K_pm) for K_pm in GAINS]
     bus = [joint.pushed_bus(context, K_pm) for K_pm in GAINS]
     height, time, t, q = joint.fall_bus(context, FALLING)
@@ -33,30 +29,27 @@ def run(context: Context) -> list[Check]:
     return [*pushes(ideal, bus), *fall(height, time, q), *by_controller(context)]
 
 
-def pushes(ideal: list[float], bus: list[float]) -> list[Check]:
+def pushes(ideal: list[float], bus: list[float]) -> list[Comparison]:
     made = []
     for K_pm, model, seen in zip(GAINS, ideal, bus, strict=True):
         wanted = joint.PUSH_NM / joint.inertia(K_pm)
         name = f"acceleration by 1 N m, K_pm = {K_pm:g} N m/rad"
-        made.append(Check(f"{name}, ideal", wanted, model, "rad/s²", 0.005))
-        made.append(Check(f"{name}, bus", wanted, seen, "rad/s²", 0.005))
+        made += ideal_and_bus(name, wanted, model, seen, "rad/s²", 0.005)
     return made
 
 
-def fall(height: float, time: float, q: np.ndarray) -> list[Check]:
+def fall(height: float, time: float, q: np.ndarray) -> list[Comparison]:
     """From where it turned by itself: rest is nowhere but below."""
     wanted = joint.fall_time(FALLING, height)
     name = f"falls from {height:.2f} rad to where it hangs in"
     model = joint.fall_time_model(FALLING, height)
     return [
-        Check(f"{name}, ideal", wanted, model, "s", 0.005),
-        Check(f"{name}, bus", wanted, time, "s", 0.005),
-        Check("lowest angle of an arm held at 2 rad, bus", 0.0, float(q.min()), "rad", 0.0,
-              "at_most"),
-    ]  # fmt: skip
+        *ideal_and_bus(name, wanted, model, time, "s", 0.005),
+        at_most("lowest angle of an arm held at 2 rad, bus", 0.0, q.min(), "rad"),
+    ]
 
 
-def by_controller(context: Context) -> list[Check]:
+def by_controller(context: Context) -> list[Comparison]:
     """The controller's class at random states."""
     states = context.rng.uniform(-1, 1, (20, 4))
     K_vm = joint.damper(FALLING)
@@ -67,36 +60,30 @@ def by_controller(context: Context) -> list[Check]:
     ]
     found = np.array([np.ravel(answer["tau_m"])[0] for answer in context.eval(cases)])
     by_hand = states @ [FALLING, K_vm, -FALLING, -K_vm]
-    off = float(np.abs(found - by_hand).max())
     name = "law of the controller and the equation differ by"
-    return [Check(name, 0.0, off, "N m", 1e-9, "absolute")]
+    return [near_zero(name, np.abs(found - by_hand).max(), "N m", 1e-9)]
 
 
-def draw_push(ideal: list[float], bus: list[float], ax: Any) -> None:
+def draw_push(ideal: list[float], bus: list[float], ax: Axes) -> None:
     gains = np.linspace(0, 260, 100)
     line = [joint.PUSH_NM / joint.inertia(K) for K in gains]
     ax.plot(gains, line, color=BLUE, label="1 N m / (M + B/(1 + K/K_J))")
-    ax.plot(GAINS, ideal, **bench.IDEAL, color=BLUE, label="on the joint's equations")
-    ax.plot(GAINS, bus, **MEASURED, color=BLUE, label="measured on the bus")
+    plot_marks(ax, GAINS, ideal, bus, color=BLUE)
     for value, name in ((bench.M + bench.B, "link and rotor"), (bench.M, "link alone")):
-        ax.axhline(1 / value, color="0.5", ls=":", lw=1)
-        ax.annotate(name, (258, 1 / value - 0.005), ha="right", va="top", color="0.35")
+        level(ax, name, (258, 1 / value), (0, -3), ha="right", va="top")
     ax.set_title("Pushed by 1 N m, weightless")
-    ax.set_xlabel("gain of the law, K_pm (N m/rad)")
-    ax.set_ylabel("acceleration of the link (rad/s²)")
+    name_axes(ax, "gain of the law, K_pm (N m/rad)", "acceleration of the link (rad/s²)")
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 0.08))
 
 
-def draw_fall(t: np.ndarray, q: np.ndarray, ax: Any) -> None:
+def draw_fall(t: np.ndarray, q: np.ndarray, ax: Axes) -> None:
     ax.plot(t, q, color=ORANGE, label="measured on the bus")
     ax.axhline(joint.START, color=GREEN, ls="--", lw=1.2, label="where it was held")
-    ax.axhline(0, color="0.5", ls=":", lw=1)
-    ax.annotate("hanging", (-0.28, 0.06), color="0.35")
     ax.set_xlim(-0.3, t[-1])
-    ax.axvline(0, color="0.5", ls=":", lw=1)
-    ax.annotate("the law begins", (0.03, -2.3), color="0.35")
+    level(ax, "hanging", (-0.28, 0), (0, 3))
+    level(ax, "the law begins", (0, -2.3), (3, 0), upright=True)
     ax.set_ylim(-2.6, 2.9)
     ax.set_title("Under gravity: nothing holds the arm")
-    ax.set_xlabel("time since the law began (s)")
-    ax.set_ylabel("angle of the link from hanging (rad)")
-    ax.legend(loc="upper right")
+    name_axes(
+        ax, "time since the law began (s)", "angle of the link from hanging (rad)", "upper right"
+    )

@@ -10,6 +10,7 @@ from limber.errors import RunError
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
 from limber.experiments.plants import held
+from limber.model.scenario import GAINS_S
 
 SPRING, GRAVITY = 60.0, 20.0  # N m/rad; N m that the link weighs when it lies
 PUSH_NM, PUSH_S, JUDGED_S = 1.0, 2.5, (0.5, 1.5)
@@ -93,13 +94,9 @@ def fall_time_model(K_pm: float, height: float) -> float:
 
 def _bench(gravity: float) -> dict[str, Any]:
     """Fine steps of the torque; a law that holds the joint before may not be too stiff for it."""
-    spring = {"law": "linear", "stiffness_Nm_per_rad": SPRING}
-    return {
-        "gravity_m_per_s2": [0.0, -gravity, 0.0],
-        "gains": {"K_q_Nm_per_rad": 35.0, "K_x_translation_N_per_m": 40.0},
-        **bench.joint(transmission={"spring": spring}),
-        **bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0),
-    }
+    softer = {"K_q_Nm_per_rad": 35.0, "K_x_translation_N_per_m": 40.0}
+    fine = bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0)
+    return {**bench.gravity(gravity), **bench.sprung(SPRING), **fine, "gains": softer}
 
 
 def _gains(K_pm: float) -> dict[str, Any]:
@@ -108,30 +105,17 @@ def _gains(K_pm: float) -> dict[str, Any]:
 
 def pushed_bus(context: Context, K_pm: float) -> float:
     end = PUSH_S + JUDGED_S[1]
-    log = bench.on_bus(
-        context,
-        f"push_{K_pm:g}",
-        _gains(K_pm),
-        [bench.push(PUSH_NM, PUSH_S, JUDGED_S[1] + 0.04)],
-        end,
-        changes=_bench(0.0),
-    )
+    push, name = bench.push(PUSH_NM, PUSH_S, JUDGED_S[1] + 0.04), f"push_{K_pm:g}"
+    log = bench.on_bus(context, name, _gains(K_pm), [push], end, changes=_bench(0.0))
     seen = bench.truth(log, PUSH_S, end)
     return acceleration(seen["t"] - PUSH_S, seen["q"])
 
 
 def fall_bus(context: Context, K_pm: float) -> tuple[float, float, np.ndarray, np.ndarray]:
     """Height, time to the bottom; time and angle of all of it."""
-    log = bench.on_bus(
-        context,
-        f"fall_{K_pm:g}",
-        _gains(K_pm),
-        [],
-        SWING_S,
-        changes=_bench(GRAVITY),
-        start_q=[START],
-    )
+    robot = {"changes": _bench(GRAVITY), "start_q": [START]}
+    log = bench.on_bus(context, f"fall_{K_pm:g}", _gains(K_pm), [], SWING_S, **robot)
     seen = bench.truth(log, bench.SETTLED_S, SWING_S)
     height, time = fall(seen["t"], seen["q"], seen["v"])
     whole = bench.truth(log, 0.9, SWING_S)
-    return height, time, whole["t"] - bench.GAINS_S, whole["q"]
+    return height, time, whole["t"] - GAINS_S, whole["q"]

@@ -1,21 +1,18 @@
 """A spring in the joint: what it filters, what it isolates, and what it costs."""
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 
 from . import baxter, passive, port, tip, tracking
 
 TITLE = "A spring in the joint filters and spares, cannot be made stiff, and has to be led"
-CLAIM = (
-    "A compliant element in the joint is a low-pass filter, isolates the joint from the motor, and"
-)
-CLAIM += " is safe without any control"
+CLAIM = "A compliant element in the joint is a low-pass filter, isolates the joint from the motor,"
+CLAIM += " and is safe without any control"
 SECTION = "3.3"
 PLANT = "one, two and seven joints with springs; ideal: reduced plants; bus: CiA 402 drives"
 FAST = False
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     clamped = passive.checks(context)
     through, points = port.checks(context)
     followed = tracking.found(context)

@@ -5,13 +5,12 @@ from typing import Any
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 from limber.experiments.elastic import State, one_joint, run
-from limber.experiments.pictures import BLUE, MEASURED
-from limber.experiments.ringdown import Mode, modes_seen
+from limber.experiments.pictures import BLUE, MARKS, Axes, name_axes
+from limber.experiments.ringdown import Mode, mode_seen
 
-from .soft import CLAMPED, FAST_KGM2, FREE, K_S, START_S, sensed, sprung
+from .tracking import K_S, START_S
 
 D_S = 0.5  # N m s/rad
 STIFFNESS = (300.0, 5000.0)  # N m/rad, of the two joints that are hit
@@ -22,25 +21,26 @@ EVERY = 10  # samples between two that are fitted
 
 def ring_ideal() -> Mode:
     rows = _free(K_S, D_S, q=0.01, v=0.0, seconds=RING_S)
-    return _mode(rows.x.q[:, 0], rows.x.v[:, 0])
+    return mode_seen(rows.x.q[:, 0], rows.x.v[:, 0], EVERY)
 
 
 def ring_bus(context: Context) -> Mode:
     let_go = START_S + PUSH_S
     push = bench.push(PUSH_NM, START_S, PUSH_S)
-    end, changes = let_go + RING_S, sprung(K_S, D_S)
-    log = bench.on_bus(context, "ring", FREE, [push], end, changes=changes, reality=CLAMPED)
-    seen = sensed(log, let_go + 0.01, end)
-    return _mode(seen["q"], seen["v"])
+    end = let_go + RING_S
+    log = bench.on_bus(context, "ring", bench.FREE, [push], end, **clamped(K_S, D_S))
+    seen = bench.sensed(log, let_go + 0.01, end)
+    return mode_seen(seen["q"], seen["v"], EVERY)
 
 
-def _mode(q: np.ndarray, v: np.ndarray) -> Mode:
-    return modes_seen([np.column_stack([q, v])[::EVERY]], EVERY * 1e-3, 1)[0]
+def clamped(K: float, D: float) -> dict[str, Any]:
+    """How the bench is changed, and what is so in reality."""
+    return {"changes": bench.sprung(K, D), "reality": bench.CLAMPED}
 
 
 def _free(K: float, D: float, q: float, v: float, seconds: float) -> Any:
     """The motor as heavy as if it were clamped."""
-    arm = one_joint(bench.M, FAST_KGM2, K, D)
+    arm = one_joint(bench.M, bench.FAST_KGM2, K, D)
     zero = np.zeros(1)
     start = State(np.array([q]), zero, np.array([v]), zero)
     return run(arm, lambda t, x: zero, seconds, start=start)
@@ -54,9 +54,8 @@ def impact_ideal(K: float) -> float:
 def impact_bus(context: Context, K: float) -> float:
     """Greatest torque at the sensor over the link's speed where the spring is relaxed."""
     hit, end = bench.push(HIT_NM, START_S, HIT_S), START_S + 0.5
-    changes = sprung(K, 0.0)
-    log = bench.on_bus(context, f"hit_{K:g}", FREE, [hit], end, changes=changes, reality=CLAMPED)
-    seen = sensed(log, START_S + HIT_S + 2e-3, end)
+    log = bench.on_bus(context, f"hit_{K:g}", bench.FREE, [hit], end, **clamped(K, 0.0))
+    seen = bench.sensed(log, START_S + HIT_S + 2e-3, end)
     q, v = seen["q"], seen["v"]
     before = np.flatnonzero(q[:-1] * q[1:] < 0)
     share = q[before] / (q[before] - q[before + 1])
@@ -64,27 +63,25 @@ def impact_bus(context: Context, K: float) -> float:
     return float(np.abs(seen["tau"]).max() / speeds.mean())
 
 
-def checks(context: Context) -> list[Check]:
+def checks(context: Context) -> list[Comparison]:
     omega, zeta = np.sqrt(K_S / bench.M), D_S / (2 * np.sqrt(K_S * bench.M))
     made = []
     for where, mode in (("ideal", ring_ideal()), ("bus", ring_bus(context))):
         name = f"motor clamped, link let go, {where}"
-        made.append(Check(f"{name}: frequency", omega, mode.omega, "rad/s", 0.01))
-        made.append(Check(f"{name}: damping ratio", zeta, mode.zeta, "", 0.01))
+        made.append(Comparison(f"{name}: frequency", omega, mode.omega, "rad/s", 0.01))
+        made.append(Comparison(f"{name}: damping ratio", zeta, mode.zeta, "", 0.01))
     for K in STIFFNESS:
         for where, peak in (("ideal", impact_ideal(K)), ("bus", impact_bus(context, K))):
             name = f"impact on a spring of {K:g} N m/rad, {where}: torque for 1 rad/s"
-            made.append(Check(name, np.sqrt(K * bench.M), peak, "N m", 0.01))
+            made.append(Comparison(name, np.sqrt(K * bench.M), peak, "N m", 0.01))
     return made
 
 
-def draw(made: list[Check], ax: Any) -> None:
+def draw(made: list[Comparison], ax: Axes) -> None:
     K = np.geomspace(50, 2e4, 60)
     ax.loglog(K, np.sqrt(K * bench.M), color=BLUE, label="√(K M)")
-    for where, style in (("ideal", bench.IDEAL), ("bus", MEASURED)):
+    for where, style in MARKS.items():
         hits = [c.measured for c in made if c.name.startswith("impact") and f", {where}:" in c.name]
         ax.loglog(STIFFNESS, hits, **style, color=BLUE, label=where)
     ax.set_title("Hit on a joint whose motor stands still")
-    ax.set_xlabel("stiffness of the spring (N m/rad)")
-    ax.set_ylabel("greatest torque for 1 rad/s (N m)")
-    ax.legend()
+    name_axes(ax, "stiffness of the spring (N m/rad)", "greatest torque for 1 rad/s (N m)", "best")

@@ -1,19 +1,17 @@
 """What passes through the spring: the motor's torque outwards, the link's motion inwards."""
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context
 from limber.experiments.elastic import ElasticArm, one_joint
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.pictures import BLUE, GREEN, MARKS, ORANGE, Axes, name_axes
 from limber.experiments.ringdown import DELAY_S
-from limber.experiments.testbench import IDEAL, B, M
-from limber.experiments.truth import motion, status
+from limber.experiments.testbench import FAST_KGM2, FREE, B, M, sensed, sprung
+from limber.experiments.truth import motion, status, time_s
+from limber.experiments.variants import friction
 
-from .soft import FAST_KGM2, FREE, K_S, START_S, sensed, sprung, viscous
+from .tracking import K_S, START_S
 
 OMEGA_N = np.sqrt(K_S / B)
 D_MOTOR = 2.0  # N m s/rad, low-pass
@@ -62,21 +60,19 @@ def low_pass_bus(context: Context, omega: float) -> tuple[float, float]:
     """
     half_ms = round(np.pi / omega * 1e3)
     omega = np.pi / (half_ms * 1e-3)
-    changes = {**sprung(K_S, 0.0, friction=viscous(D_MOTOR)), "urdf": "held.urdf"}
+    changes = {**sprung(K_S, 0.0, friction=friction(viscous=D_MOTOR)), "urdf": "held.urdf"}
     K = float(B * omega**2 - K_S)
-    gains = bench.spring_damper(K, K * DELAY_S, position="motor")  # gives back what delay takes
+    back = K * DELAY_S  # what delay takes
+    gains = bench.spring_damper(K, back, position_feedback="motor")
     count = round(4.0 / (half_ms * 1e-3))
-    goals = [
-        {"at_s": START_S + i * half_ms * 1e-3,
-         "goal": {"joints_rad": [0.05 * (-1) ** i], "duration_s": 0.1}}
-        for i in range(count)
-    ]  # fmt: skip
+    moves = [{"joints_rad": [0.05 * (-1) ** i], "duration_s": 0.1} for i in range(count)]
+    goals = [{"at_s": START_S + i * half_ms * 1e-3, "goal": move} for i, move in enumerate(moves)]
     end = START_S + count * half_ms * 1e-3
     name = f"low_pass_{omega:.0f}"
     log = bench.on_bus(context, name, gains, goals, end, changes=changes)
     status(log, START_S + 1.5, end)
     seen, rows = sensed(log, START_S + 1.5, end), motion(log, START_S + 1.5, end)
-    applied = amplitude(rows["time_ns"] * 1e-9, rows["tau_motor"][:, 0], omega)
+    applied = amplitude(time_s(rows), rows["tau_motor"][:, 0], omega)
     return omega, amplitude(seen["t"], seen["tau"], omega) / applied
 
 
@@ -90,7 +86,7 @@ def stiffness_bus(context: Context, period_s: float, torque: float) -> tuple[flo
     """Pushes to and fro; frequency, and sensed torque over the link's angle."""
     omega, half = 2 * np.pi / period_s, period_s / 2
     loop = {"inertia_ratio": 1 + K_T, "rate_hz": RATE_HZ}
-    changes = sprung(K_S, 0.0, friction=viscous(D_LOOP), torque_loop=loop)
+    changes = sprung(K_S, 0.0, friction=friction(viscous=D_LOOP), torque_loop=loop)
     # a quarter of a period first: the link then does not drift away
     pushes = [bench.push(-torque, START_S, half / 2)]
     count = 2 * round(max(4.0, 6 * period_s) / period_s)
@@ -107,7 +103,7 @@ def stiffness_bus(context: Context, period_s: float, torque: float) -> tuple[flo
 Point = tuple[str, float, float]  # ideal or bus, rad/s, measured
 
 
-def checks(context: Context) -> tuple[list[Check], list[Point]]:
+def checks(context: Context) -> tuple[list[Comparison], list[Point]]:
     """And the stiffnesses that were measured, for the picture."""
     made, points = [], []
     for factor in (2, 4):
@@ -115,7 +111,7 @@ def checks(context: Context) -> tuple[list[Check], list[Point]]:
         ways = [("ideal", omega, low_pass_ideal(omega)), ("bus", *low_pass_bus(context, omega))]
         for where, at, share in ways:
             name = f"motor torque that reaches the link at {at / OMEGA_N:.2f} times its frequency"
-            made.append(Check(f"{name}, {where}", float(low_pass(at)), share, "", 0.01))
+            made.append(Comparison(f"{name}, {where}", low_pass(at), share, "", 0.01))
     for period, torque, omega in ((SLOW_S, 5.0, 5.0), (FAST_S, 50.0, 600.0)):
         at, seen = stiffness_bus(context, period, torque)
         points += [("ideal", omega, stiffness_ideal(omega)), ("bus", at, seen)]
@@ -127,20 +123,18 @@ def checks(context: Context) -> tuple[list[Check], list[Point]]:
             strict=True,
         ):
             name = f"torque for the link's angle at {at:.3g} rad/s, torque loop, {where}{more}"
-            made.append(Check(name, asked, got, "N m/rad", 0.01))
+            made.append(Comparison(name, asked, got, "N m/rad", 0.01))
     return made, points
 
 
-def draw(points: list[Point], ax: Any) -> None:
+def draw(points: list[Point], ax: Axes) -> None:
     omega = np.geomspace(2, 2000, 400)
     ax.loglog(omega, stiffness(omega), color=BLUE, label="torque loop, gain 4")
     ax.loglog(omega, B / (1 + K_T) * omega**2, ":", color=GREEN, label="B ω²/5: the loop's")
     ax.axhline(K_S, ls="--", color=ORANGE, label="the spring's, whatever the loop does")
-    for where, style in (("ideal", IDEAL), ("bus", MEASURED)):
+    for where, style in MARKS.items():
         found = np.array([point[1:] for point in points if point[0] == where])
         ax.loglog(*found.T, **style, color=BLUE, label=where)
     ax.set_ylim(0.05, 3e4)
     ax.set_title("What a hand feels that moves the link to and fro")
-    ax.set_xlabel("frequency (rad/s)")
-    ax.set_ylabel("torque over angle (N m/rad)")
-    ax.legend()
+    name_axes(ax, "frequency (rad/s)", "torque over angle (N m/rad)", "best")

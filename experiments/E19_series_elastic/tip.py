@@ -3,17 +3,16 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.patches import Polygon
+from numpy.linalg import eigvalsh
 from scipy.optimize import fsolve
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, ORANGE
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import BLUE, ORANGE, Axes, ellipse, name_axes
 from limber.experiments.probing import Probing
-from limber.experiments.variants import variant
+from limber.experiments.variants import friction, variant
+from limber.model.robot import read_yaml
 from limber.paths import robot_folder
-from limber.robot import read_yaml
 
 ROBOT = "antagonist2r"  # its links, with one motor a joint
 SPRINGS = np.array([300.0, 150.0])  # N m/rad
@@ -47,39 +46,25 @@ def ideal(elbow: float) -> np.ndarray:
 
 def bus(context: Context, elbow: float) -> np.ndarray:
     name = f"tip_{elbow:g}"
-    scenario = {
-        "robot": variant(context.out / name, ROBOT, sprung()),
-        "integrator": "reference",
-        "start_q": [SHOULDER, elbow],
-        "duration_s": PROBING.end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": {"law": "joint_pd", "position": "motor",
-                                    "joint_damping": "given", **HELD}},
-            *PROBING.timeline(),
-        ],
-    }  # fmt: skip
-    return PROBING.stiffness(context.lab(scenario, name))
+    robot, end = variant(context.out / name, ROBOT, sprung()), PROBING.end
+    law = {"law": "joint_pd", "position_feedback": "motor", "joint_damping": "given", **HELD}
+    start = [SHOULDER, elbow]
+    log = context.run_law(name, robot, law, PROBING.timeline(), end, start_q=start)
+    return PROBING.stiffness(log)
 
 
 def sprung() -> dict[str, Any]:
     """A linear spring and one motor without friction at each joint; the arm lies."""
     joints = {}
     for joint, K, d in zip(("shoulder", "elbow"), SPRINGS, DAMPERS, strict=True):
-        transmission = {
-            "kind": "elastic",
-            "spring": {
-                "law": "linear",
-                "stiffness_Nm_per_rad": float(K),
-                "k2_Nm_per_rad2": None,
-            },
-            "damping_Nms_per_rad": d,
-            "preload_rad": None,
-            "preload_max_rad": None,
+        spring = {"law": "linear", "stiffness_Nm_per_rad": K, "k2_Nm_per_rad2": None}
+        transmission = {"kind": "elastic", "spring": spring, "damping_Nms_per_rad": d}
+        preload = {"preload_rad": None, "preload_max_rad": None}
+        joints[joint] = {
+            "transmission": {**transmission, **preload},
+            "antagonist": None,
+            "friction": friction(),
         }
-        still = {"coulomb_Nm": 0.0, "viscous_Nms_per_rad": 0.0}
-        joints[joint] = {"transmission": transmission, "antagonist": None, "friction": still}
     motor = read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"]["puller"]
     return {
         "gravity_m_per_s2": [0.0, 0.0, -9.81],
@@ -92,42 +77,30 @@ def found(context: Context) -> Found:
     return {e: {"ideal": ideal(e), "bus": bus(context, e)} for e in ELBOWS}
 
 
-def checks(seen: Found) -> list[Check]:
+def checks(seen: Found) -> list[Comparison]:
     made = []
     for elbow, ways in seen.items():
         for where, K in ways.items():
             held = np.inf if where == "ideal" else HELD["K_q_Nm_per_rad"]
             word = where if where == "ideal" else f"bus, motors held by {held:g} N m/rad"
             for i, axis in enumerate(("soft", "stiff")):
-                asked, got = (
-                    np.linalg.eigvalsh((A + A.T) / 2)[i] for A in (presented(elbow, held), K)
-                )
+                asked, got = (eigvalsh((A + A.T) / 2)[i] for A in (presented(elbow, held), K))
                 name = f"tip of two such joints, elbow at {elbow:g} rad, {word}: {axis} axis"
-                made.append(Check(name, asked, got, "N/m", 0.01))
+                made.append(Comparison(name, asked, got, "N/m", 0.01))
     return made
 
 
-def draw(seen: Found, ax: Any) -> None:
+def draw(seen: Found, ax: Axes) -> None:
     for elbow, ways in seen.items():
         q = np.array([SHOULDER, elbow])
         links = np.array([[0, 0], arm.elbow(q), arm.tip(q)])
         ax.plot(*links.T, color="0.6", lw=2.5, solid_capstyle="round", zorder=1)
-        held = HELD["K_q_Nm_per_rad"]
-        for K, style in ((presented(elbow, held), {"ec": BLUE, "lw": 1.6}),
-                         (ways["bus"], {"ec": ORANGE, "lw": 2.4, "ls": ":"})):  # fmt: skip
-            ax.add_patch(Polygon(arm.tip(q) + ellipse(K), fill=False, zorder=2, **style))
+        formula = presented(elbow, HELD["K_q_Nm_per_rad"])
+        for K, color, lw, ls in ((formula, BLUE, 1.6, "-"), (ways["bus"], ORANGE, 2.4, ":")):
+            ax.plot(*(arm.tip(q)[:, None] + 1e-4 * ellipse(K)), ls, color=color, lw=lw, zorder=2)
     ax.plot([], [], color=BLUE, label="J⁻ᵀ K J⁻¹, motors in K")
     ax.plot([], [], ":", color=ORANGE, lw=2.4, label="felt on the arm")
     ax.set_aspect("equal")
     ax.margins(0.12)
     ax.set_title("Stiffness of the tip; 0.1 m is 1000 N/m")
-    ax.set_xlabel("x (m)")
-    ax.set_ylabel("y (m)")
-    ax.legend(loc="lower right")
-
-
-def ellipse(K: np.ndarray) -> np.ndarray:
-    """Stiffness along each direction of the unit circle's image."""
-    angle = np.linspace(0, 2 * np.pi, 120)
-    values, axes = np.linalg.eigh((K + K.T) / 2)
-    return (axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))).T * 1e-4
+    name_axes(ax, "x (m)", "y (m)", "lower right")

@@ -2,21 +2,19 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.interpolate import CubicSpline
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, at_most
 from limber.experiments.elastic import State, one_joint, run
-from limber.experiments.pictures import BLUE, GREEN, ORANGE
+from limber.experiments.pictures import BLUE, GREEN, ORANGE, Axes, name_axes
 from limber.experiments.testbench import B, M
 
-from .soft import K_S, START_S, sprung
-
+K_S = 300.0  # N m/rad, the spring of all parts
+START_S = 2.0  # of what is done to the joint
 ANGLE, MOVE_S, END_S = 0.5, 0.5, 1.2
 K_P = 2000.0  # N m/rad, of the motor's servo
 K_D = 2 * 0.7 * np.sqrt(K_P * B)
@@ -82,10 +80,10 @@ def ideal(shape: Polynomial, feed_forward: bool) -> Followed:
 def bus(context: Context, feed_forward: bool) -> Followed:
     """Errors by the truth: what the link did against the path the controller says."""
     law = "flatness" if feed_forward else "joint_pd"
-    gains = bench.given(K_P, float(K_D)) | {"law": law, "position": "motor"}
+    gains = bench.given(K_P, float(K_D)) | {"law": law, "position_feedback": "motor"}
     goal = {"at_s": START_S, "goal": {"joints_rad": [ANGLE], "duration_s": MOVE_S}}
     end = START_S + END_S
-    log = bench.on_bus(context, law, gains, [goal], end, changes=sprung(K_S, 0.0))
+    log = bench.on_bus(context, law, gains, [goal], end, changes=bench.sprung(K_S, 0.0))
     seen, path = bench.truth(log, START_S, end), CubicSpline(*bench.goal(log, START_S - 0.01, end))
     return Followed(seen["t"] - START_S, seen["q"] - path(seen["t"]))
 
@@ -99,30 +97,27 @@ def found(context: Context) -> dict[str, Followed]:
     }
 
 
-def checks(runs: dict[str, Followed]) -> list[Check]:
+def checks(runs: dict[str, Followed]) -> list[Comparison]:
     name = "0.5 rad in 0.5 s with the motor on the path: greatest error of the link"
     worst = {key: run.worst * 1e3 for key, run in runs.items()}
+    model, seen = worst["motor PD, ideal"], worst["motor PD, bus"]
     made = [
-        Check(f"{name}, ideal", duhamel(QUINTIC) * 1e3, worst["motor PD, ideal"], "mrad", 0.05),
-        Check(f"{name}, bus", worst["motor PD, ideal"], worst["motor PD, bus"], "mrad", 0.02),
+        Comparison(f"{name}, ideal", duhamel(QUINTIC) * 1e3, model, "mrad", 0.05),
+        Comparison(f"{name}, bus", model, seen, "mrad", 0.02),
     ]
     name = "0.5 rad in 0.5 s with flatness: greatest error of the link"
     for where in ("ideal", "bus"):
-        measured = worst[f"flatness, {where}"]
-        made.append(Check(f"{name}, {where}", 1.0, measured, "mrad", 0.0, "at_most"))
+        made.append(at_most(f"{name}, {where}", 1.0, worst[f"flatness, {where}"], "mrad"))
     return made
 
 
-def draw(runs: dict[str, Followed], ax: Any) -> None:
-    for name, color, word in (
-        ("motor PD", ORANGE, "motor on the path"),
-        ("flatness", GREEN, "flatness"),
+def draw(runs: dict[str, Followed], ax: Axes) -> None:
+    for name, color, dashes, word in (
+        ("motor PD", ORANGE, "0.3", "motor on the path"),
+        ("flatness", GREEN, BLUE, "flatness"),
     ):
         one, other = runs[f"{name}, ideal"], runs[f"{name}, bus"]
         ax.plot(one.t, one.error * 1e3, color=color, label=f"{word}, ideal")
-        ax.plot(other.t, other.error * 1e3, "--", color=BLUE if name == "flatness" else "0.3",
-                label=f"{word}, bus")  # fmt: skip
+        ax.plot(other.t, other.error * 1e3, "--", color=dashes, label=f"{word}, bus")
     ax.set_title("0.5 rad in 0.5 s through a spring of 300 N m/rad")
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel("error of the link (mrad)")
-    ax.legend(loc="lower right")
+    name_axes(ax, "time (s)", "error of the link (mrad)", "lower right")

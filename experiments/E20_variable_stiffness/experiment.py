@@ -1,13 +1,10 @@
 """Two motors and a nonlinear spring a joint: how much of Eq. 4's stiffness they can set."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, ORANGE
-from limber.robot import load_robot
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import BLUE, ORANGE, Axes, name_axes
+from limber.model.robot import load_robot
 
 from . import fit, fit_picture, pair, ring, seven
 
@@ -19,7 +16,7 @@ PLANT = "one, two and seven joints with two motors each; ideal: their springs; b
 FAST = False
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     alone = pair.checks(context)
     rung, placed = ring.found(context), ring.found_under_law(context)
     shares = fit.residuals(context)
@@ -35,16 +32,13 @@ def run(context: Context) -> list[Check]:
     return [*alone, *released, *fit.checks(tips, springs, shares), *wrist, *arm]
 
 
-def draw_ring(rung: dict[str, ring.Rung], ax: Any) -> None:
+def draw_ring(rung: dict[str, ring.Rung], ax: Axes) -> None:
     run = rung["bus"]
-    sigma = run.mode.zeta * run.mode.omega
     ax.plot(run.t, 1e3 * run.q, color=BLUE, lw=0.8, label="link")
     amplitude = ring.START_RAD * np.exp(-ring.D / (2 * ring.M) * run.t)
     for sign in (1, -1):
         label = "predicted: exp(-d t/2M)" if sign == 1 else None
         ax.plot(run.t, 1e3 * sign * amplitude, color=ORANGE, label=label)
-    ax.set_title(f"Let go: damping ratio {run.mode.zeta:.4f}, decay {sigma:.3f}/s")
+    ax.set_title(f"Let go: damping ratio {run.mode.zeta:.4f}, decay {-run.mode.growth:.3f}/s")
     ax.set_ylim(-60, 75)
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel("angle of the link (mrad)")
-    ax.legend(loc="upper right")
+    name_axes(ax, "time (s)", "angle of the link (mrad)", "upper right")

@@ -1,18 +1,16 @@
 """Two joints with variable springs that shall give the tip a stiffness: what is really there."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, case, near_zero
 from limber.experiments.probing import Probing
+from limber.experiments.timeline import tip_gains
 from limber.experiments.truth import joints, motion
-from limber.experiments.variants import variant
+from limber.experiments.variants import friction, variant
 
 from .pair import K_2, tension
 
@@ -99,10 +97,7 @@ def ideal(wanted: Case) -> np.ndarray:
 def lying(context: Context, name: str) -> str:
     """The arm without gravity or motor friction; its bearings damp, so that it comes to rest."""
     changed = {
-        joint: {
-            "friction": {"coulomb_Nm": 0.0, "viscous_Nms_per_rad": 0.0},
-            "link_friction": {"coulomb_Nm": 0.0, "viscous_Nms_per_rad": float(d)},
-        }
+        joint: {"friction": friction(), "link_friction": friction(viscous=d)}
         for joint, d in zip(("shoulder", "elbow"), DAMPING, strict=True)
     }
     changes = {"gravity_m_per_s2": [0.0, 0.0, -9.81], "joints": changed}
@@ -112,29 +107,16 @@ def lying(context: Context, name: str) -> str:
 def bus(context: Context, wanted: Case) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness felt on the arm with four drives, and the joint stiffnesses its springs have."""
     name = f"tip_{CASES.index(wanted)}"
-    gains = {
-        "law": "variable_stiffness",
-        "stiffness_fit": "diagonal",
-        "K_x_translation_N_per_m": [ASKED, ASKED, 0.0],
-        "K_x_rotation_Nm_per_rad": 0.0,
-    }
-    load = [*wanted.load.tolist(), 0.0]
-    held = {"force_N": [-f for f in load]}
-    scenario: dict[str, Any] = {
-        "robot": lying(context, name),
-        "integrator": "reference",
-        "start_q": wanted.q.tolist(),
-        "duration_s": PROBED.end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            {"at_s": 1.2, "goal": held},
-            {"at_s": 1.2, "push": {"force_N": load, "ramp_s": 0.1, "for_s": PROBED.end}},
-            *PROBED.timeline(),
-        ],
-    }
-    log = context.lab(scenario, name)
+    law = {"law": "variable_stiffness", "stiffness_fit": "diagonal"}
+    gains = tip_gains([ASKED, ASKED, 0.0], **law)
+    load = np.array([*wanted.load, 0.0])
+    entries = [
+        {"at_s": 1.2, "goal": {"force_N": -load}},
+        {"at_s": 1.2, "push": {"force_N": load, "ramp_s": 0.1, "for_s": PROBED.end}},
+        *PROBED.timeline(),
+    ]
+    robot, q = lying(context, name), wanted.q
+    log = context.run_law(name, robot, gains, entries, PROBED.end, start_q=q)
     rows = motion(log, PROBED.first_at - 0.1, PROBED.first_at)
     return PROBED.stiffness(log), joints(rows, "sigma").mean(axis=0)
 
@@ -151,22 +133,22 @@ def found(context: Context) -> tuple[Tips, dict[str, np.ndarray]]:
     return tips, springs
 
 
-def checks(tips: Tips, springs: dict[str, np.ndarray], shares: np.ndarray) -> list[Check]:
+def checks(tips: Tips, springs: dict[str, np.ndarray], shares: np.ndarray) -> list[Comparison]:
     formula = np.array([residual(np.array([0.5, elbow])) for elbow in ELBOWS])
+    differ, exact = np.abs(shares - formula).max(), np.argmin(np.abs(ELBOWS - np.arccos(-0.8)))
+    name = "2R, share of the wish that is missed: formula and controller differ by"
     made = [
-        Check("2R, share of the wish that is missed: formula and controller differ by", 0.0,
-              float(np.abs(shares - formula).max()), "", 1e-9, "absolute"),
-        Check("2R, share missed where cos q₂ = -l₂/l₁", 0.0,
-              float(shares[np.argmin(np.abs(ELBOWS - np.arccos(-0.8)))]), "", 1e-6, "absolute"),
-    ]  # fmt: skip
+        near_zero(name, differ, "", 1e-9),
+        near_zero("2R, share missed where cos q₂ = -l₂/l₁", shares[exact], "", 1e-6),
+    ]
     for wanted in CASES:
         for i, joint in enumerate(("shoulder", "elbow")):
             name = f"{wanted.name}, bus: stiffness of the {joint}'s springs"
-            seen = float(springs[wanted.name][i])
-            made.append(Check(name, float(wanted.sigma[i]), seen, "N m/rad", 0.01))
+            seen = springs[wanted.name][i]
+            made.append(Comparison(name, wanted.sigma[i], seen, "N m/rad", 0.01))
         for where, K in tips[wanted.name].items():
             for i, word in enumerate(("soft", "stiff")):
                 asked, got = (np.linalg.eigvalsh((A + A.T) / 2)[i] for A in (wanted.presented(), K))
                 name = f"{wanted.name}, {where}: tip along its {word} axis"
-                made.append(Check(name, float(asked), float(got), "N/m", 0.02))
+                made.append(Comparison(name, asked, got, "N/m", 0.02))
     return made

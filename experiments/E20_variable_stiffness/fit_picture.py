@@ -1,21 +1,13 @@
 """Pictures of what two joints with variable springs give the tip."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.pictures import BLUE, GREEN, MEASURED, ORANGE, Axes, ellipse, name_axes
 
 from .fit import ASKED, CASES, ELBOWS, Tips, residual
 
 
-def ellipse(K: np.ndarray) -> np.ndarray:
-    angle = np.linspace(0, 2 * np.pi, 120)
-    values, axes = np.linalg.eigh((K + K.T) / 2)
-    return axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))
-
-
-def draw_tips(tips: Tips, ax: Any) -> None:
+def draw_tips(tips: Tips, ax: Axes) -> None:
     for wanted, color in zip(CASES, (BLUE, ORANGE, GREEN), strict=True):
         ax.plot(*ellipse(wanted.presented()), color=color, label=f"presented, {wanted.name}")
         ax.plot(*ellipse(tips[wanted.name]["bus"])[:, ::6], **MEASURED, color=color)
@@ -24,18 +16,15 @@ def draw_tips(tips: Tips, ax: Any) -> None:
     ax.set_aspect("equal")
     ax.margins(0.05)
     ax.set_title("Tip stiffness of two joints with variable springs")
-    ax.set_xlabel("along x (N/m)")
-    ax.set_ylabel("along y (N/m)")
+    name_axes(ax, "along x (N/m)", "along y (N/m)")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
-def draw_residual(shares: np.ndarray, ax: Any) -> None:
+def draw_residual(shares: np.ndarray, ax: Axes) -> None:
     elbows = np.linspace(0.2, 3.0, 200)
     line = [residual(np.array([0.5, elbow])) for elbow in elbows]
     ax.plot(np.degrees(elbows), 100 * np.array(line), color=BLUE, label="formula")
     ax.plot(np.degrees(ELBOWS), 100 * shares, **MEASURED, color=BLUE, label="the controller's")
     ax.set_ylim(bottom=-2)
     ax.set_title("What a diagonal joint stiffness misses")
-    ax.set_xlabel("angle of the elbow (°)")
-    ax.set_ylabel("share of the wish missed (%)")
-    ax.legend()
+    name_axes(ax, "angle of the elbow (°)", "share of the wish missed (%)", "best")

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, case, near_zero
 from limber.experiments.search import limit
 
 K_2 = 400.0  # N m/rad²
@@ -20,7 +18,7 @@ def torque(theta_1: np.ndarray, theta_2: np.ndarray, q: np.ndarray) -> np.ndarra
     return tension(theta_1 - q) - tension(theta_2 + q)
 
 
-def inverse_map(context: Context) -> list[Check]:
+def inverse_map(context: Context) -> list[Comparison]:
     """Motor angles from the controller's class; torque and its slope from the springs here."""
     sigma = context.rng.uniform(20.0, 200.0, POINTS)
     tau = context.rng.uniform(-0.9, 0.9, POINTS) * sigma**2 / (2 * K_2)
@@ -35,27 +33,26 @@ def inverse_map(context: Context) -> list[Check]:
     formula = np.abs(2 * K_2 * c * (e - q) - tau).max()
     name = "motor angles by the controller, 16 points"
     return [
-        Check(f"{name}: torque of the springs off by", 0.0, off_torque, "N m", 1e-9, "absolute"),
-        Check(f"{name}: σ (e - q) off by", 0.0, formula, "N m", 1e-9, "absolute"),
-        Check(f"{name}: stiffness off by", 0.0, off_stiffness, "", 1e-6, "absolute"),
+        near_zero(f"{name}: torque of the springs off by", off_torque, "N m", 1e-9),
+        near_zero(f"{name}: σ (e - q) off by", formula, "N m", 1e-9),
+        near_zero(f"{name}: stiffness off by", off_stiffness, "", 1e-6),
     ]
 
 
-def least_stiffness(context: Context) -> list[Check]:
+def least_stiffness(context: Context) -> list[Comparison]:
     """The controller says what is feasible; here: is a tendon slack where the torque is right?"""
     made = []
     for tau in (2.0, 8.0):
 
         def slack(sigma: float, tau: float = tau) -> bool:
-            return not context.eval([case("vsa", sigma=sigma, tau=tau, q=0.0, k2=K_2)])[0][
-                "feasible"
-            ]
+            (answer,) = context.eval([case("vsa", sigma=sigma, tau=tau, q=0.0, k2=K_2)])
+            return not answer["feasible"]
 
         found = limit(slack, 1.0, 1000.0, 1e-4)
         name = f"least stiffness that carries {tau:g} N m"
-        made.append(Check(name, np.sqrt(2 * K_2 * tau), found, "N m/rad", 1e-3))
+        made.append(Comparison(name, np.sqrt(2 * K_2 * tau), found, "N m/rad", 1e-3))
     return made
 
 
-def checks(context: Context) -> list[Check]:
+def checks(context: Context) -> list[Comparison]:
     return [*inverse_map(context), *least_stiffness(context)]

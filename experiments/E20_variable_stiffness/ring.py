@@ -6,22 +6,17 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from limber.experiments import testbench as bench
-from limber.experiments.check import Check
-from limber.experiments.context import Context
+from limber.experiments.context import Comparison, Context, at_most
 from limber.experiments.elastic import State, one_joint, run
-from limber.experiments.ringdown import Mode, modes_seen
+from limber.experiments.ringdown import Mode, mode_seen
 from limber.experiments.testbench import B, M
-from limber.experiments.truth import seconds
+from limber.experiments.variants import friction
 
 from .pair import K_2, torque
 
 D = 0.05  # N m s/rad, of the link's bearing
 SIGMA = 120.0  # N m/rad
 C = SIGMA / (2 * K_2)  # preload, rad
-# In reality, whatever the motors are told: 1e6 kg m² behind the gear
-CLAMPED = bench.motor(
-    rotor_inertia_kgm2=1.0, gear_ratio=1000.0, rotor_torque_constant_Nm_per_A=1e-3
-)
 SERVO, LEAD_S = 50.0, 3e-3  # rad/s, s: of the law that places the motors
 PLACED = {"law": "variable_stiffness", "stiffness_fit": "joint", "K_q_Nm_per_rad": SIGMA}
 START_RAD, RING_S, EVERY = 0.05, 6.0, 20
@@ -43,7 +38,7 @@ def ideal() -> Rung:
 
     t = np.arange(0, RING_S, 1e-3)
     q, v = solve_ivp(rate, (0, RING_S), [START_RAD, 0.0], t_eval=t, rtol=1e-9, atol=1e-12).y
-    return Rung(t, q, _mode(q, v))
+    return Rung(t, q, mode_seen(q, v, EVERY))
 
 
 def ideal_under_law() -> Rung:
@@ -56,7 +51,7 @@ def ideal_under_law() -> Rung:
 
     start = State(*(np.array([value]) for value in (START_RAD, 0.0, 0.0, 0.0)))
     track = run(arm, law, RING_S, start=start)
-    return Rung(track.t, track.x.q[:, 0], _mode(track.x.q[:, 0], track.x.v[:, 0]))
+    return Rung(track.t, track.x.q[:, 0], mode_seen(track.x.q[:, 0], track.x.v[:, 0], EVERY))
 
 
 def bus(context: Context, clamped: bool) -> Rung:
@@ -68,34 +63,18 @@ def bus(context: Context, clamped: bool) -> Rung:
         "preload_rad": C,
         "preload_max_rad": 0.4,
     }
-    changes = bench.joint(
-        transmission=transmission,
-        antagonist={"id": 2},
-        torque_loop=None,
-        link_friction={"coulomb_Nm": 0.0, "viscous_Nms_per_rad": D},
-    )
-    let_go = START_S + PUSH_S
-    held = let_go - HELD_S
-    pull = START_RAD * SIGMA
-    log = bench.on_bus(
-        context,
-        "clamped" if clamped else "under_law",
-        {"law": "gravity_compensation"} if clamped else PLACED,
-        # up slowly, so that the joint does not ring yet; the second push ends at once
-        [bench.push(pull, START_S, 3 * PUSH_S, PUSH_S - HELD_S), bench.push(pull, held, HELD_S)],
-        let_go + RING_S,
-        changes=changes,
-        reality=CLAMPED if clamped else {},
-    )
-    rows = log.read("JOINT_STATE")
-    t = seconds(rows) - let_go
-    during = (t > 0.01) & (t < RING_S)
-    q, v = rows["q"][during, 0], rows["v"][during, 0]
-    return Rung(t[during], q, _mode(q, v))
-
-
-def _mode(q: np.ndarray, v: np.ndarray) -> Mode:
-    return modes_seen([np.column_stack([q, v])[::EVERY]], EVERY * 1e-3, 1)[0]
+    two = {"transmission": transmission, "antagonist": {"id": 2}, "torque_loop": None}
+    changes = bench.joint(**two, link_friction=friction(viscous=D))
+    let_go, pull = START_S + PUSH_S, START_RAD * SIGMA
+    # up slowly, so that the joint does not ring yet; the second push ends at once
+    up = bench.push(pull, START_S, 3 * PUSH_S, PUSH_S - HELD_S)
+    held = bench.push(pull, let_go - HELD_S, HELD_S)
+    law, reality = (bench.FREE, bench.CLAMPED) if clamped else (PLACED, {})
+    name, end = "clamped" if clamped else "under_law", let_go + RING_S
+    robot = {"changes": changes, "reality": reality}
+    log = bench.on_bus(context, name, law, [up, held], end, **robot)
+    seen = bench.sensed(log, let_go + 0.01, end)
+    return Rung(seen["t"] - let_go, seen["q"], mode_seen(seen["q"], seen["v"], EVERY))
 
 
 def found(context: Context) -> dict[str, Rung]:
@@ -106,22 +85,23 @@ def found_under_law(context: Context) -> dict[str, Rung]:
     return {"ideal": ideal_under_law(), "bus": bus(context, False)}
 
 
-def checks(rung: dict[str, Rung]) -> list[Check]:
+def checks(rung: dict[str, Rung]) -> list[Comparison]:
     made = []
     for where, seen in rung.items():
         name = f"both motors clamped, let go, {where}"
         omega, zeta = np.sqrt(SIGMA / M), D / (2 * np.sqrt(SIGMA * M))
-        made.append(Check(f"{name}: frequency", omega, seen.mode.omega, "rad/s", 0.01))
-        made.append(Check(f"{name}: damping ratio", zeta, seen.mode.zeta, "", 0.03))
+        made.append(Comparison(f"{name}: frequency", omega, seen.mode.omega, "rad/s", 0.01))
+        made.append(Comparison(f"{name}: damping ratio", zeta, seen.mode.zeta, "", 0.03))
     return made
 
 
-def checks_under_law(rung: dict[str, Rung]) -> list[Check]:
+def checks_under_law(rung: dict[str, Rung]) -> list[Comparison]:
     """What delay and the law's lead add is no damping to speak of."""
     model, seen = rung["ideal"].mode, rung["bus"].mode
     name = "motors placed by the law, let go, bus"
+    ideal = f"{name} (prediction: ideal)"
     return [
-        Check(f"{name} (prediction: ideal): frequency", model.omega, seen.omega, "rad/s", 0.01),
-        Check(f"{name} (prediction: ideal): damping ratio", model.zeta, seen.zeta, "", 0.05),
-        Check(f"{name}: damping ratio", 0.01, seen.zeta, "", 0.0, "at_most"),
+        Comparison(f"{ideal}: frequency", model.omega, seen.omega, "rad/s", 0.01),
+        Comparison(f"{ideal}: damping ratio", model.zeta, seen.zeta, "", 0.05),
+        at_most(f"{name}: damping ratio", 0.01, seen.zeta),
     ]

@@ -1,12 +1,9 @@
 """A contact that is not at the tip: who notices?"""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, near_zero
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE, Axes
 
 from .runs import PUSHES, SOURCES, Rest, predicted, runs
 
@@ -17,7 +14,7 @@ PLANT = "planar2r with a force sensor at the tip, exact equations"
 FAST = True
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     rests = runs(context)
     with context.picture(TITLE, columns=2, size=(12.0, 5.0)) as axes:
         for where, ax in zip(PUSHES, axes, strict=True):
@@ -28,14 +25,13 @@ def run(context: Context) -> list[Check]:
         for i, joint in enumerate(("shoulder", "elbow")):
             name = f"push on {rest.where}, {SOURCES[rest.source]}: {joint} gives way by"
             if asked[i] == 0.0:
-                off = float(rest.moved[i])
-                checks.append(Check(name, 0.0, off, "rad", 0.01 * abs(asked).max(), "absolute"))
+                checks.append(near_zero(name, rest.moved[i], "rad", 0.01 * abs(asked).max()))
             else:
-                checks.append(Check(name, float(asked[i]), float(rest.moved[i]), "rad", 0.01))
+                checks.append(Comparison(name, asked[i], rest.moved[i], "rad", 0.01))
     return checks
 
 
-def draw(rests: list[Rest], ax: Any) -> None:
+def draw(rests: list[Rest], ax: Axes) -> None:
     places = np.arange(2)
     for rest, color, side in zip(rests, (BLUE, ORANGE), (-0.2, 0.2), strict=True):
         asked = np.degrees(predicted(rest.where, rest.source))

@@ -7,6 +7,7 @@ import numpy as np
 
 from limber.experiments import planar2r as arm
 from limber.experiments.context import Context
+from limber.experiments.timeline import in_turn
 from limber.experiments.truth import joints, motion, status
 from limber.experiments.variants import TIP_SENSOR, variant
 
@@ -41,28 +42,13 @@ def pushed(context: Context, robot: str, source: str) -> list[Rest]:
     gains = {
         "law": "joint_impedance",
         "contact": source,
-        "M_q_kgm2": M_D.tolist(),
-        "K_q_Nm_per_rad": K_D.tolist(),
+        "M_q_kgm2": M_D,
+        "K_q_Nm_per_rad": K_D,
         "joint_damping_ratio": 1.0,
     }
-    pushes = [
-        {"at_s": START_S + i * 2 * PUSH_S, "push": {**push, "ramp_s": 0.5, "for_s": PUSH_S}}
-        for i, push in enumerate(PUSHES.values())
-    ]
+    pushes = in_turn(START_S, 2 * PUSH_S, PUSHES.values(), ramp_s=0.5, for_s=PUSH_S)
     end = START_S + len(pushes) * 2 * PUSH_S
-    scenario = {
-        "robot": robot,
-        "integrator": "reference",
-        "start_q": Q_D.tolist(),
-        "duration_s": end,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            *pushes,
-        ],
-    }
-    log = context.lab(scenario, source)
+    log = context.run_law(source, robot, gains, pushes, end, start_q=Q_D)
     status(log, START_S, end)
     found = []
     for where, push in zip(PUSHES, pushes, strict=True):

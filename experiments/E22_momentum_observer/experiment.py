@@ -1,12 +1,9 @@
 """Contact torque from motor torques and momentum: how fast it is, and what friction does."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, GREEN, MEASURED
+from limber.experiments.context import Comparison, Context, near_zero
+from limber.experiments.pictures import BLUE, GREEN, MEASURED, Axes, name_axes
 
 from .runs import GAIN, PUSH_S, STEP_NM, VISCOUS, Seen, seen
 
@@ -17,37 +14,25 @@ PLANT = "planar2r in motion, exact equations; without friction, and with viscous
 FAST = True
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     free, viscous = seen(context, friction=False), seen(context, friction=True)
     with context.picture(TITLE, columns=2, size=(12.5, 5.0)) as (left, right):
         draw_step(free, left)
         draw_friction(viscous, right)
-    before, after = at(free, 0.0), at(free, PUSH_S - 0.05)
-    seen_free = dict(zip(("shoulder", "elbow"), at(viscous, 0.0), strict=True))
+    late, joints = PUSH_S - 0.05, ("shoulder", "elbow")
+    before, after = at(free, 0.0), at(free, late)
     felt = -VISCOUS * viscous.v[np.searchsorted(viscous.t, 0.0) - 1]
-    late = PUSH_S - 0.05
-    pushed = -VISCOUS * np.array([np.interp(late, viscous.t, v) for v in viscous.v.T])
+    pushed = STEP_NM - VISCOUS[0] * np.interp(late, viscous.t, viscous.v[:, 0])
+    in_the_end, name = at(viscous, late)[0], "step of 3 N m, viscous shoulder: in the end"
     return [
-        Check("63.2 % of a step after", 1 / GAIN, rise_time(free), "s", 0.06),
-        Check("step of 3 N m, in the end", STEP_NM, float(after[0] - before[0]), "N m", 0.01),
-        Check("elbow, which is not touched", 0.0, float(after[1]), "N m", 0.03, "absolute"),
+        Comparison("63.2 % of a step after", 1 / GAIN, rise_time(free), "s", 0.06),
+        Comparison("step of 3 N m, in the end", STEP_NM, after[0] - before[0], "N m", 0.01),
+        near_zero("elbow, which is not touched", after[1], "N m", 0.03),
         *(
-            Check(
-                f"viscous {joint}, no contact: torque seen",
-                float(torque),
-                float(value),
-                "N m",
-                0.02,
-            )
-            for (joint, value), torque in zip(seen_free.items(), felt, strict=True)
+            Comparison(f"viscous {joint}, no contact: torque seen", torque, seen, "N m", 0.02)
+            for joint, torque, seen in zip(joints, felt, at(viscous, 0.0), strict=True)
         ),
-        Check(
-            "step of 3 N m, viscous shoulder: in the end",
-            float(STEP_NM + pushed[0]),
-            float(at(viscous, late)[0]),
-            "N m",
-            0.02,
-        ),
+        Comparison(name, pushed, in_the_end, "N m", 0.02),
     ]
 
 
@@ -62,7 +47,7 @@ def rise_time(run: Seen) -> float:
     return float(np.interp(1 - np.exp(-1), share[:60], run.t[during][:60]))
 
 
-def draw_step(run: Seen, ax: Any) -> None:
+def draw_step(run: Seen, ax: Axes) -> None:
     ms = run.t * 1e3
     ax.plot(ms, run.truth[:, 0], color="0.5", ls="--", label="contact torque")
     rising = np.where(run.t > 0, STEP_NM * (1 - np.exp(-GAIN * np.maximum(run.t, 0))), 0.0)
@@ -70,18 +55,14 @@ def draw_step(run: Seen, ax: Any) -> None:
     ax.plot(ms[::2], run.estimate[::2, 0], **MEASURED, color=BLUE, label="seen by the observer")
     ax.set_xlim(-60, 360)
     ax.set_title("Shoulder pushed while the arm moves")
-    ax.set_xlabel("time since the push (ms)")
-    ax.set_ylabel("torque (N m)")
-    ax.legend(loc="lower right")
+    name_axes(ax, "time since the push (ms)", "torque (N m)", "lower right")
 
 
-def draw_friction(run: Seen, ax: Any) -> None:
+def draw_friction(run: Seen, ax: Axes) -> None:
     ax.plot(run.t, run.truth[:, 0], color="0.5", ls="--", label="contact torque")
     friction = run.truth[:, 0] - VISCOUS[0] * run.v[:, 0]
     ax.plot(run.t, friction, color=GREEN, label="contact torque less viscous friction")
     few = slice(None, None, 25)
     ax.plot(run.t[few], run.estimate[few, 0], **MEASURED, color=GREEN, label="seen")
     ax.set_title("Shoulder with a viscous motor")
-    ax.set_xlabel("time since the push (s)")
-    ax.set_ylabel("torque (N m)")
-    ax.legend(loc="center left")
+    name_axes(ax, "time since the push (s)", "torque (N m)", "center left")

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.experiments import planar2r as arm
+from limber.experiments import variants
 from limber.experiments.context import Context
-from limber.experiments.truth import joints, motion, seconds, status
-from limber.experiments.variants import variant
+from limber.experiments.truth import joints, motion, status, time_s
 
 GAIN = 20.0  # 1/s
 STEP_NM = 3.0
@@ -30,10 +30,10 @@ class Seen:
 
 def seen(context: Context, friction: bool) -> Seen:
     changes = {
-        name: {"friction": {"coulomb_Nm": 0.0, "viscous_Nms_per_rad": float(d)}}
+        name: {"friction": variants.friction(viscous=d)}
         for name, d in zip(("shoulder", "elbow"), VISCOUS, strict=True)
     }
-    robot = variant(context.out, arm.ROBOT, {"joints": changes}) if friction else arm.ROBOT
+    robot = variants.variant(context.out, arm.ROBOT, {"joints": changes}) if friction else arm.ROBOT
     gains = {
         "law": "pd_plus",
         "K_q_Nm_per_rad": [200.0, 100.0],
@@ -42,28 +42,19 @@ def seen(context: Context, friction: bool) -> Seen:
         "observer_gain_per_s": GAIN,
     }
     push = {"link": "link1", "torque_Nm": [0.0, 0.0, STEP_NM], "for_s": PUSH_S}
-    end = MOVE_S + MOVES_S
-    scenario = {
-        "robot": robot,
-        "integrator": "reference",
-        "start_q": START,
-        "duration_s": end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            {"at_s": MOVE_S, "goal": {"joints_rad": END, "duration_s": MOVES_S}},
-            {"at_s": STEP_S, "push": push},
-        ],
-    }
-    log = context.lab(scenario, "viscous" if friction else "free")
+    entries = [
+        {"at_s": MOVE_S, "goal": {"joints_rad": END, "duration_s": MOVES_S}},
+        {"at_s": STEP_S, "push": push},
+    ]
+    name, end = "viscous" if friction else "free", MOVE_S + MOVES_S
+    log = context.run_law(name, robot, gains, entries, end, start_q=START)
     told = status(log, MOVE_S, end)
     rows = motion(log, MOVE_S, end)
-    t = seconds(rows)
+    t = time_s(rows)
     first = t[np.flatnonzero(np.abs(rows["tau_external"]).max(axis=1) > 0)[0] - 1]
-    at = np.searchsorted(t, seconds(told) - 1e-6)
+    at = np.searchsorted(t, time_s(told) - 1e-6)
     return Seen(
-        seconds(told) - first,
+        time_s(told) - first,
         joints(told, "tau_ext"),
         joints(rows, "tau_external")[at],
         joints(rows, "v")[at],

@@ -5,9 +5,8 @@ import math
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
+from limber.experiments.context import Comparison, Context, case
+from limber.experiments.search import order
 
 T, CUTOFF = 1e-3, 2 * math.pi * 30  # s, rad/s
 SIGMA_A, SIGMA_X = 8.0, 1.1e-4  # assumed acceleration, m/s², and position noise, m
@@ -23,11 +22,11 @@ def estimate(
     return answer
 
 
-def checks(context: Context) -> list[Check]:
+def checks(context: Context) -> list[Comparison]:
     return [*filtered_difference(context), *riccati(context), *levant(context)]
 
 
-def filtered_difference(context: Context) -> list[Check]:
+def filtered_difference(context: Context) -> list[Comparison]:
     sigma, a = 1e-4, math.exp(-CUTOFF * T)
     noise = sigma * context.rng.normal(size=100_000)
     rms = float(np.std(estimate(context, noise)["filtered_diff"][100:]))
@@ -40,13 +39,13 @@ def filtered_difference(context: Context) -> list[Check]:
     jumps = estimate(context, counted, NO_FILTER)["filtered_diff"]
     step = float(np.min(jumps[jumps > 1e-9]))
     return [
-        Check("filtered difference: noise", predicted, rms, "m/s", 0.03),
-        Check("filtered difference: delay", delay, float(late[-1]) / acceleration, "s", 0.01),
-        Check("plain difference: one count of 14 bits", count / T, step, "rad/s", 1e-6),
+        Comparison("filtered difference: noise", predicted, rms, "m/s", 0.03),
+        Comparison("filtered difference: delay", delay, float(late[-1]) / acceleration, "s", 0.01),
+        Comparison("plain difference: one count of 14 bits", count / T, step, "rad/s", 1e-6),
     ]
 
 
-def riccati(context: Context) -> list[Check]:
+def riccati(context: Context) -> list[Comparison]:
     """The α-β filter is the steady Kalman filter: its gains solve the Riccati equation."""
     A, C = np.array([[1.0, T], [0.0, 1.0]]), np.array([[1.0, 0.0]])
     push = np.array([[T**2 / 2], [T]])
@@ -54,20 +53,22 @@ def riccati(context: Context) -> list[Check]:
     gain = (P @ C.T / (C @ P @ C.T + SIGMA_X**2))[:, 0]
     answer = estimate(context, np.zeros(10))
     return [
-        Check("α of the α-β filter", float(gain[0]), float(answer["alpha"]), "", 1e-5),
-        Check("β of the α-β filter", float(gain[1]) * T, float(answer["beta"]), "", 1e-5),
+        Comparison("α of the α-β filter", gain[0], answer["alpha"], "", 1e-5),
+        Comparison("β of the α-β filter", float(gain[1]) * T, answer["beta"], "", 1e-5),
     ]
 
 
-def levant(context: Context) -> list[Check]:
+def levant(context: Context) -> list[Comparison]:
     """Error of order T without noise, of order √ε with noise of size ε."""
     steps = np.array([0.25e-3, 0.5e-3, 1e-3, 2e-3])
     quiet = [levant_error(context, step, 0.0) for step in steps]
     noises = np.array([1e-5, 1e-4, 1e-3])
     noisy = [levant_error(context, 1e-4, noise) for noise in noises]
     return [
-        Check("Levant: order of the error in T", 1.0, slope(steps, quiet), "", 0.15, "absolute"),
-        Check("Levant: order in the noise", 0.5, slope(noises, noisy), "", 0.1, "absolute"),
+        Comparison(
+            "Levant: order of the error in T", 1.0, order(steps, quiet), "", 0.15, "absolute"
+        ),
+        Comparison("Levant: order in the noise", 0.5, order(noises, noisy), "", 0.1, "absolute"),
     ]
 
 
@@ -77,8 +78,3 @@ def levant_error(context: Context, step: float, noise: float) -> float:
     x = 0.1 * np.sin(omega * t) + noise * context.rng.uniform(-1, 1, len(t))
     found = estimate(context, x, L=1.1 * 0.1 * omega**2, step=step)["levant"]
     return float(np.max(np.abs(found - 0.1 * omega * np.cos(omega * t))[len(t) // 2 :]))
-
-
-def slope(x: np.ndarray, y: list[float]) -> float:
-    """Of log y over log x."""
-    return float(np.polyfit(np.log(x), np.log(y), 1)[0])

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import AMBER, BLACK, BLUE, GREEN, MEASURED, ORANGE, SKY
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import AMBER, BLACK, BLUE, GREEN, MEASURED, ORANGE, SKY, name_axes
 
 from . import hunting
 from .estimators import CUTOFF, NO_FILTER, T, checks, estimate
@@ -18,10 +17,10 @@ PLANT = "the controller's estimators at 1 kHz; a mass of 0.1 kg with dry frictio
 FAST = True
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     found = checks(context)
     bound, measured = hunting.stiffest_quiet(), hunting.measured_limit()
-    found.append(Check("stiffest wall without hunting", bound, measured, "N/m", 0.05))
+    found.append(Comparison("stiffest wall without hunting", bound, measured, "N/m", 0.05))
     with context.picture(TITLE, columns=2, size=(12.5, 5.0)) as (left, right):
         draw_estimates(context, left)
         draw_hunting(right)
@@ -43,8 +42,7 @@ def draw_estimates(context: Context, ax) -> None:
     ax.plot(ms, smooth["alpha_beta"][shown], color=GREEN, label="α-β filter")
     ax.plot(ms, 0.05 * omega * np.cos(omega * t[shown]), "--", color=BLACK, label="true")
     ax.set_title("A joint swings by 0.05 rad, seen by 14 bits")
-    ax.set_xlabel("time (ms)")
-    ax.set_ylabel("velocity (rad/s)")
+    name_axes(ax, "time (ms)", "velocity (rad/s)")
     ax.set_ylim(-1.2, 2.1)
     ax.legend(loc="upper right", ncols=2)
 
@@ -65,6 +63,4 @@ def draw_hunting(ax) -> None:
     ticks = [200, 500, 1000, 2000, 5000]
     ax.set_xticks(ticks, [str(tick) for tick in ticks])
     ax.set_title("A wall through counts of 0.1 mm, 0.05 N of friction")
-    ax.set_xlabel("stiffness of the wall (N/m)")
-    ax.set_ylabel("peak to peak (µm)")
-    ax.legend(loc="upper left")
+    name_axes(ax, "stiffness of the wall (N/m)", "peak to peak (µm)", "upper left")

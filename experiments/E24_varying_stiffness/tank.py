@@ -1,6 +1,7 @@
 """The same swing under a sampled controller, with and without an energy tank."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,28 +32,25 @@ class Tank:
         return self.K
 
 
-@dataclass
-class Run:
-    """One value a sample each."""
+class Run(NamedTuple):
+    """One value a sample each; `energy` of mass and spring."""
 
-    K_req: list[float] = field(default_factory=list)
-    K: list[float] = field(default_factory=list)
-    E: list[float] = field(default_factory=list)
-    x: list[float] = field(default_factory=list)
-    v: list[float] = field(default_factory=list)
-    energy: list[float] = field(default_factory=list)  # of mass and spring
+    K_req: np.ndarray
+    K: np.ndarray
+    E: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    energy: np.ndarray
 
 
 def swing(with_tank: bool, seconds: float = 6.0) -> Run:
     """F = -K x - D ẋ, held over T; K_req is chosen to do harm."""
     A, B = held(*mass(m), T)
-    state, tank, run = np.array([0.1, 0.0]), Tank(K_OUT), Run()
+    state, tank, rows = np.array([0.1, 0.0]), Tank(K_OUT), []
     for _ in range(round(seconds / T)):
         x, v = float(state[0]), float(state[1])
         K_req = K_OUT if x * v > 0 else K_IN
         K = tank.update(K_req, x, v) if with_tank else K_req
-        for name, value in (("K_req", K_req), ("K", K), ("E", tank.E), ("x", x), ("v", v)):
-            getattr(run, name).append(value)
-        run.energy.append((m * v * v + K * x * x) / 2)
+        rows.append((K_req, K, tank.E, x, v, (m * v * v + K * x * x) / 2))
         state = A @ state - B[:, 0] * (K * x + D * v)
-    return run
+    return Run(*np.array(rows).T)

@@ -4,10 +4,8 @@ import math
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, case, near_zero
+from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE, level, name_axes
 
 from . import motor
 from .motor import F_c, L, T
@@ -19,26 +17,21 @@ PLANT = "motor of 0.2 kg m² with 2 N m of dry friction, 1 kHz"
 FAST = True
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     friction, seen = step(context)
     start = int(np.argmax(friction > 0))
     after = start + round(1 / (L * T))
     with_it, without = motor.follow(compensated=True), motor.follow(compensated=False)
-    (answer,) = observe(context, np.array(with_it.speed), np.array(with_it.tau_m))
-    off = float(np.max(np.abs(answer - with_it.estimate)))
+    (answer,) = observe(context, with_it.speed, with_it.tau_m)
+    off = np.abs(answer - with_it.estimate).max()
+    lag, seen_lag = F_c / motor.K * 1e3, without.lag[-1] * 1e3
+    same = "the controller's observer and the one here differ by"
     checks = [
-        Check("seen of a step after 1/L", 1 - math.exp(-1), seen[after] / F_c, "", 0.02),
-        Check("seen in the end", F_c, float(seen[-1]), "N m", 1e-3),
-        Check("lag on a ramp without it", F_c / motor.K * 1e3, without.lag[-1] * 1e3, "mrad", 0.01),
-        Check("lag on a ramp with it", 0.0, with_it.lag[-1] * 1e3, "mrad", 0.02, "absolute"),
-        Check(
-            "the controller's observer and the one here differ by",
-            0.0,
-            off,
-            "N m",
-            1e-9,
-            "absolute",
-        ),
+        Comparison("seen of a step after 1/L", 1 - math.exp(-1), seen[after] / F_c, "", 0.02),
+        Comparison("seen in the end", F_c, seen[-1], "N m", 1e-3),
+        Comparison("lag on a ramp without it", lag, seen_lag, "mrad", 0.01),
+        near_zero("lag on a ramp with it", with_it.lag[-1] * 1e3, "mrad", 0.02),
+        near_zero(same, off, "N m", 1e-9),
     ]
     draw(context, friction, seen, with_it, without)
     return checks
@@ -66,20 +59,13 @@ def draw(context: Context, friction: np.ndarray, seen: np.ndarray, with_it, with
         after = np.maximum(t, 0) * 1e-3
         left.plot(t, F_c * (1 - np.exp(-L * after)), color=BLUE, label="predicted: 1 - exp(-L t)")
         left.plot(t[::25], seen[::25], **MEASURED, color=BLUE, label="seen by the observer")
-        left.axvline(1e3 / L, color="0.5", ls=":", lw=1)
-        left.annotate(
-            "63 % after 1/L", (1e3 / L, 0.632 * F_c), xytext=(15, -15), textcoords="offset points"
-        )
+        level(left, "63 % after 1/L", (1e3 / L, 0.632 * F_c), (15, -15), upright=True)
         left.set_title("Friction sets in")
-        left.set_xlabel("time (ms)")
-        left.set_ylabel("torque (N m)")
-        left.legend(loc="lower right")
+        name_axes(left, "time (ms)", "torque (N m)", "lower right")
         t = np.arange(len(without.lag)) * T
-        right.plot(t, np.array(without.lag) * 1e3, color=ORANGE, label="spring-damper law alone")
-        right.plot(t, np.array(with_it.lag) * 1e3, color=GREEN, label="with what the observer sees")
+        right.plot(t, without.lag * 1e3, color=ORANGE, label="spring-damper law alone")
+        right.plot(t, with_it.lag * 1e3, color=GREEN, label="with what the observer sees")
         lag = F_c / motor.K * 1e3
         right.axhline(lag, color=ORANGE, ls="--", lw=1.2, label="friction / stiffness")
         right.set_title("A slow ramp")
-        right.set_xlabel("time (s)")
-        right.set_ylabel("lag behind the ramp (mrad)")
-        right.legend(loc="center right")
+        name_axes(right, "time (s)", "lag behind the ramp (mrad)", "center right")

@@ -1,6 +1,7 @@
 """A motor with dry friction that follows a slow ramp, with and without an observer."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,29 +26,26 @@ class Observer:
         return self.z - L * B * speed
 
 
-@dataclass
-class Ramp:
+class Ramp(NamedTuple):
     """One value a sample each."""
 
-    lag: list[float] = field(default_factory=list)
-    speed: list[float] = field(default_factory=list)
-    tau_m: list[float] = field(default_factory=list)
-    estimate: list[float] = field(default_factory=list)
+    lag: np.ndarray
+    speed: np.ndarray
+    tau_m: np.ndarray
+    estimate: np.ndarray
 
 
 def follow(compensated: bool, seconds: float = 2.0) -> Ramp:
     """τ_m = K (θ_d - θ) + D (θ̇_d - θ̇) [+ τ̂] on B θ̈ = τ_m - F_c sign(θ̇)."""
-    angle, speed, ramp, observer = 0.0, 0.0, Ramp(), Observer(0.0)
+    angle, speed, rows, observer = 0.0, 0.0, [], Observer(0.0)
     for k in range(round(seconds / T)):
         lag = SPEED * k * T - angle
         estimate = observer.output(speed)
         tau_m = K * lag + D * (SPEED - speed) + (estimate if compensated else 0.0)
-        for name, value in (("lag", lag), ("speed", speed), ("tau_m", tau_m)):
-            getattr(ramp, name).append(value)
-        ramp.estimate.append(estimate)
+        rows.append((lag, speed, tau_m, estimate))
         observer.update(speed, tau_m)
         angle, speed = coulomb_step(angle, speed, tau_m, F_c, B, T)
-    return ramp
+    return Ramp(*np.array(rows).T)
 
 
 def turning(friction: np.ndarray, tau_m: float = 3.0) -> np.ndarray:

@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, case
+from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE, name_axes, note
+from limber.experiments.search import limit_by_combs
 
 TITLE = "A rate limit leaves small and slow torques alone and turns large fast ones into triangles"
 CLAIM = "What an actuator cannot do is not noticed until a law asks for it: here a rate of torque"
@@ -24,17 +23,17 @@ def onset(f: float) -> float:
     return RATE * T / (2 * math.sin(math.pi * f * T))
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     checks = []
     for f in FREQUENCIES_HZ:
-        measured = transparent_up_to(context, f)
-        checks.append(Check(f"{f:g} Hz passes unchanged up to", onset(f), measured, "N m", 0.002))
+        name = f"{f:g} Hz passes unchanged up to"
+        checks.append(Comparison(name, onset(f), transparent_up_to(context, f), "N m", 0.002))
     for f in (10.0, 25.0):
         _, out = limited(context, f, [10 * onset(f)])
         settled = out[0][len(out[0]) // 2 :]
         amplitude = (settled.max() - settled.min()) / 2
         name = f"triangle left of a large sine of {f:g} Hz"
-        checks.append(Check(name, RATE / (4 * f), amplitude, "N m", 0.01))
+        checks.append(Comparison(name, RATE / (4 * f), amplitude, "N m", 0.01))
     checks.append(saturated(context))
     draw(context)
     return checks
@@ -46,34 +45,26 @@ def limited(
     """What was asked, for amplitude 1, and what comes out for each amplitude."""
     t = np.arange(0.0, max(1.0, 3.0 / f), T)
     asked = np.sin(2 * math.pi * f * t)
-    answers = context.eval(
-        [
-            case("limit_seq", tau0=0.0, tau=a * asked, tau_max=ceiling, rate_max=RATE, T=T)
-            for a in amplitudes
-        ]
-    )
+    limits = {"tau0": 0.0, "tau_max": ceiling, "rate_max": RATE, "T": T}
+    answers = context.eval([case("limit_seq", tau=a * asked, **limits) for a in amplitudes])
     return asked, [np.ravel(answer["tau"]) for answer in answers]
 
 
 def transparent_up_to(context: Context, f: float) -> float:
-    """Largest amplitude that comes out as it went in: a comb, then a finer one."""
-    low, high = 0.5 * onset(f), 2.0 * onset(f)
-    for _ in range(4):
-        amplitudes = np.linspace(low, high, 8)
+    """Largest amplitude that comes out as it went in."""
+
+    def pass_through(amplitudes: np.ndarray) -> list[bool]:
         asked, outs = limited(context, f, list(amplitudes))
-        same = [
-            np.max(np.abs(out - a * asked)) < 1e-9 * a
-            for a, out in zip(amplitudes, outs, strict=True)
-        ]
-        last = same.index(False) - 1
-        low, high = amplitudes[last], amplitudes[last + 1]
-    return (low + high) / 2
+        pairs = zip(amplitudes, outs, strict=True)
+        return [np.max(np.abs(out - a * asked)) < 1e-9 * a for a, out in pairs]
+
+    return limit_by_combs(pass_through, 0.5 * onset(f), 2.0 * onset(f), 8)
 
 
-def saturated(context: Context) -> Check:
+def saturated(context: Context) -> Comparison:
     """A slow sine beyond the ceiling is cut at it."""
     _, (out,) = limited(context, 0.5, [80.0], TAU_MAX)
-    return Check("greatest torque sent", TAU_MAX, float(np.abs(out).max()), "N m", 1e-9)
+    return Comparison("greatest torque sent", TAU_MAX, np.abs(out).max(), "N m", 1e-9)
 
 
 def draw(context: Context) -> None:
@@ -89,31 +80,16 @@ def draw(context: Context) -> None:
             left.plot(t_ms[window] - 600, out[window], color=color, label=name)
             left.plot(t_ms[window] - 600, scale * onset(f) * asked[window], ":", color=color)
         left.plot([], [], ":", color=BLACK, label="asked for")
-        left.set_xlabel("time (ms)")
-        left.set_ylabel("torque (N m)")
         left.set_title("Two sines of 5 Hz, limit 400 N m/s")
         left.set_ylim(-60, 90)
-        left.legend(loc="upper right")
+        name_axes(left, "time (ms)", "torque (N m)", "upper right")
         frequencies = np.geomspace(1, 100, 50)
-        right.loglog(
-            frequencies,
-            [onset(f) for f in frequencies],
-            color=BLUE,
-            label="onset: RT/(2 sin(ωT/2))",
-        )
+        bound = [onset(f) for f in frequencies]
+        right.loglog(frequencies, bound, color=BLUE, label="onset: RT/(2 sin(ωT/2))")
         some = [1.5, 3.1, 7.3, 15.1, 40.7]
-        right.loglog(
-            some,
-            [transparent_up_to(context, f) for f in some],
-            **MEASURED,
-            color=BLUE,
-            label="largest sine that passes unchanged",
-        )
-        right.fill_between(
-            frequencies, 0.5, [onset(f) for f in frequencies], color=BLUE, alpha=0.12, lw=0
-        )
-        right.annotate("passes unchanged", (2.2, 2.0))
+        largest, words = [transparent_up_to(context, f) for f in some], "largest sine that passes"
+        right.loglog(some, largest, **MEASURED, color=BLUE, label=f"{words} unchanged")
+        right.fill_between(frequencies, 0.5, bound, color=BLUE, alpha=0.12, lw=0)
+        note(right, "passes unchanged", (2.2, 2.0), color=BLACK)
         right.set_ylim(0.5, 100)
-        right.set_xlabel("frequency (Hz)")
-        right.set_ylabel("amplitude of the torque (N m)")
-        right.legend(loc="upper right")
+        name_axes(right, "frequency (Hz)", "amplitude of the torque (N m)", "upper right")

@@ -1,14 +1,10 @@
 """The damped inverse of the Jacobian near the stretched pose, asked of the controller."""
 
-from typing import Any
-
 import numpy as np
 
 from limber.experiments import planar2r as arm
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.evaluate import case
-from limber.experiments.pictures import BLUE, MEASURED, ORANGE
+from limber.experiments.context import Comparison, Context, at_most, case, near_zero
+from limber.experiments.pictures import BLUE, MEASURED, ORANGE, Axes, level, name_axes
 
 SIGMA_0, LAMBDA_MAX = 0.1, 0.05
 ELBOWS = np.array([1e-6, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8])  # rad
@@ -33,28 +29,23 @@ def predicted(elbow: float) -> float:
     return float((s / (s**2 + damping)).max())
 
 
-def checks(found: np.ndarray) -> list[Check]:
+def checks(found: np.ndarray) -> list[Comparison]:
     norm, damping = found
     off = max(abs(n / predicted(elbow) - 1) for elbow, n in zip(ELBOWS, norm, strict=True))
-    share = float((norm * 2 * damping).max())
-    worst = float(norm.max())
     return [
-        Check("damped inverse: norm off by", 0.0, float(off), "", 1e-6, "absolute"),
-        Check("damped inverse: norm times 2λ", 1.0, share, "", 1e-9, "at_most"),
-        Check("damped inverse: greatest norm", GREATEST, worst, "1/m", 0.0, "at_most"),
+        near_zero("damped inverse: norm off by", off, "", 1e-6),
+        at_most("damped inverse: norm times 2λ", 1.0, (norm * 2 * damping).max(), "", 1e-9),
+        at_most("damped inverse: greatest norm", GREATEST, norm.max(), "1/m"),
     ]
 
 
-def draw(found: np.ndarray, ax: Any) -> None:
+def draw(found: np.ndarray, ax: Axes) -> None:
     angles = np.linspace(1e-3, 0.8, 200)
     least = [np.linalg.svd(arm.jacobian(np.array([0.3, a])), compute_uv=False)[-1] for a in angles]
     ax.plot(np.degrees(angles), 1 / np.array(least), "--", color=ORANGE, label="exact: 1/σ")
     ax.plot(np.degrees(angles), [predicted(a) for a in angles], color=BLUE, label="damped")
     ax.plot(np.degrees(ELBOWS), found[0], **MEASURED, color=BLUE, label="the controller's")
-    ax.axhline(GREATEST, color="0.5", ls=":", lw=1)
-    ax.annotate("bound", (46, GREATEST + 0.2), ha="right", color="0.35")
+    level(ax, "bound", (46, GREATEST), (0, 3), ha="right")
     ax.set_ylim(0, 20)
     ax.set_title("Joint speed for a speed of the tip")
-    ax.set_xlabel("angle of the elbow (°); 0: stretched")
-    ax.set_ylabel("norm of the inverse (1/m)")
-    ax.legend()
+    name_axes(ax, "angle of the elbow (°); 0: stretched", "norm of the inverse (1/m)", "best")

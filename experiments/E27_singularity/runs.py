@@ -7,7 +7,8 @@ import numpy as np
 
 from limber.experiments import planar2r as arm
 from limber.experiments.context import Context
-from limber.experiments.truth import RAMP, joints, motion, seconds, status
+from limber.experiments.timeline import UNBOUNDED, tip_gains
+from limber.experiments.truth import RAMP, joints, motion, status, time_s
 
 Q_D = np.array([0.2, 0.7])
 K = 300.0  # N/m
@@ -33,32 +34,13 @@ class Track:
 
 def run(context: Context, name: str, law: str, end: float, more: list[dict[str, Any]]) -> Track:
     """Limits may act on the law with the inertia only: that is what it is shown for."""
-    gains = {
-        "law": law,
-        "K_x_translation_N_per_m": [K, K, 0.0],
-        "K_x_rotation_Nm_per_rad": 0.0,
-        "damping_ratio": 0.7,
-        "spring_force_N": 1000.0,
-        "K_q_Nm_per_rad": [200.0, 100.0],
-        "joint_damping_ratio": 1.0,
-    }
-    scenario = {
-        "robot": arm.ROBOT,
-        "integrator": "reference",
-        "start_q": Q_D.tolist(),
-        "duration_s": end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            *more,
-        ],
-    }
-    log = context.lab(scenario, name)
+    joints_pd = {"K_q_Nm_per_rad": [200.0, 100.0], "joint_damping_ratio": 1.0}
+    gains = tip_gains([K, K, 0.0], law=law, damping_ratio=0.7, **UNBOUNDED, **joints_pd)
+    log = context.run_law(name, arm.ROBOT, gains, more, end, start_q=Q_D)
     limits = LIMITS if law == "opspace_impedance" else RAMP
     told = status(log, PUSH_S, end, limits)
     rows = motion(log, PUSH_S, end)
-    t = seconds(rows) - PUSH_S
+    t = time_s(rows) - PUSH_S
     return Track(t, joints(rows), joints(rows, "v"), rows["p_BT"][:, :2], told)
 
 
@@ -67,7 +49,7 @@ def pushed_through(context: Context, law: str) -> Track:
     across = arm.across(arm.tip(Q_D)) / np.linalg.norm(arm.tip(Q_D))
     push = {
         "link": "link2",  # its origin is the elbow
-        "force_N": [*(PUSH_N * across).tolist(), 0.0],
+        "force_N": [*(PUSH_N * across), 0.0],
         "ramp_s": 0.8,
         "for_s": LET_GO_S - PUSH_S,
     }
@@ -78,6 +60,6 @@ def out_of_reach(context: Context, law: str) -> Track:
     """The goal moves straight away from the base, to BEYOND_M beyond the stretched arm."""
     away = arm.tip(Q_D) / np.linalg.norm(arm.tip(Q_D))
     offset = (REACH + BEYOND_M) * away - arm.tip(Q_D)
-    goal = {"offset_m": [*offset.tolist(), 0.0], "duration_s": MOVED_S}
+    goal = {"offset_m": [*offset, 0.0], "duration_s": MOVED_S}
     end = MOVE_S + MOVED_S + 4.0
     return run(context, f"beyond_{law}", law, end, [{"at_s": MOVE_S, "goal": goal}])

@@ -1,12 +1,12 @@
 """How fast the goal gets on its way, and that the arm keeps up with it."""
 
 import numpy as np
+from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE
-from limber.experiments.truth import motion, seconds, status
+from limber.experiments.context import Comparison, Context, at_most
+from limber.experiments.pictures import BLACK, BLUE, MEASURED, ORANGE, name_axes, note
+from limber.experiments.truth import motion, status, time_s
 
 TITLE = "A smooth goal: its greatest speed and acceleration follow from distance and time"
 CLAIM = "A minimum-jerk goal peaks at 1.875 Δ/T in speed and (10/√3) Δ/T² in acceleration"
@@ -21,71 +21,48 @@ TURN = np.array([0.2, -0.5, 0.3])  # rad
 SPEED, ACCELERATION = 1.875, 10 / np.sqrt(3)
 # Asked for sooner than the goal may move: then it takes as long as its greatest speed wants
 HURRY_AT, FASTEST = 5.0, 1.0  # s, m/s
-SCENARIO = {
-    "robot": "ideal7",
-    "duration_s": 7.0,
-    "timeline": [
-        {"at_s": 0.3, "mode": "hold"},
-        {"at_s": 0.8, "mode": "active"},
-        {
-            "at_s": 1.0,
-            "gains": {
-                "law": "cartesian_impedance",
-                "K_x_translation_N_per_m": K,
-                "inertia_feedforward": True,
-            },
-        },
-        {
-            "at_s": START,
-            "goal": {
-                "offset_m": OFFSET.tolist(),
-                "offset_rad": TURN.tolist(),
-                "duration_s": T,
-            },
-        },
-        {
-            "at_s": HURRY_AT,
-            "goal": {
-                "offset_m": (-OFFSET).tolist(),
-                "offset_rad": (-TURN).tolist(),
-                "duration_s": 0.05,
-            },
-        },
-    ],
-}
 
 
-def run(context: Context) -> list[Check]:
-    log = context.lab(SCENARIO)
+def run(context: Context) -> list[Comparison]:
+    gains = {
+        "law": "cartesian_impedance",
+        "K_x_translation_N_per_m": K,
+        "inertia_feedforward": True,
+    }
+    goals = [
+        {"at_s": START, "goal": {"offset_m": OFFSET, "offset_rad": TURN, "duration_s": T}},
+        {"at_s": HURRY_AT, "goal": {"offset_m": -OFFSET, "offset_rad": -TURN, "duration_s": 0.05}},
+    ]
+    log = context.run_law("run", "ideal7", gains, goals, 6.9, integrator="ode")
     goal = status(log, START - 0.1, START + T + 0.9)
     hurried = status(log, HURRY_AT - 0.1, HURRY_AT + 1.5)
     arm = motion(log, START - 0.1, START + T + 0.9)
     draw(context, goal, arm)
 
-    path = float(np.linalg.norm(OFFSET))
-    speed = float(np.linalg.norm(arm["V_BT"][:, :3], axis=1).max())
-    hurry = float(derivatives(hurried["p_BD"], hurried)[0].max())
-    force = float(np.linalg.norm(goal["F_law"][:, :3], axis=1).max())
+    path = norm(OFFSET)
+    speed = norm(arm["V_BT"][:, :3], axis=1).max()
+    hurry = derivatives(hurried["p_BD"], hurried)[0].max()
+    force = norm(goal["F_law"][:, :3], axis=1).max()
     jump = "force of the law, where a goal that jumps would ask for"
     return [
         *goal_checks(goal),
-        Check("peak speed of the arm", SPEED * path / T, speed, "m/s", 0.01),
-        Check("peak speed of a goal in a hurry", FASTEST, hurry, "m/s", 2e-3),
-        Check(jump, K * path, force, "N", 0.0, "at_most"),
+        Comparison("peak speed of the arm", SPEED * path / T, speed, "m/s", 0.01),
+        Comparison("peak speed of a goal in a hurry", FASTEST, hurry, "m/s", 2e-3),
+        at_most(jump, K * path, force, "N"),
     ]
 
 
-def goal_checks(goal: np.ndarray) -> list[Check]:
+def goal_checks(goal: np.ndarray) -> list[Comparison]:
     found = []
     for name, values, delta, unit in (
-        ("", goal["p_BD"], np.linalg.norm(OFFSET), "m"),
-        ("turning ", turned(goal), np.linalg.norm(TURN), "rad"),
+        ("", goal["p_BD"], norm(OFFSET), "m"),
+        ("turning ", turned(goal), norm(TURN), "rad"),
     ):
         v, a = (float(size.max()) for size in derivatives(values, goal))
-        peaks = float(SPEED * delta / T), float(ACCELERATION * delta / T**2)
-        found.append(Check(f"peak {name}speed of the goal", peaks[0], v, f"{unit}/s", 1e-3))
+        title = f"peak {name}speed of the goal"
+        found.append(Comparison(title, SPEED * delta / T, v, f"{unit}/s", 1e-3))
         title = f"peak {name}acceleration of the goal"
-        found.append(Check(title, peaks[1], a, f"{unit}/s²", 1e-3))
+        found.append(Comparison(title, ACCELERATION * delta / T**2, a, f"{unit}/s²", 1e-3))
     return found
 
 
@@ -97,35 +74,34 @@ def turned(rows: np.ndarray) -> np.ndarray:
 
 def derivatives(x: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Size of the first and second central difference in time, without both ends."""
-    h = np.diff(seconds(rows)).mean()
+    h = np.diff(time_s(rows)).mean()
     first = (x[2:] - x[:-2]) / (2 * h)
     second = (x[2:] - 2 * x[1:-1] + x[:-2]) / h**2
-    return np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1)
+    return norm(first, axis=1), norm(second, axis=1)
 
 
 def draw(context: Context, goal: np.ndarray, arm: np.ndarray) -> None:
-    t, distance = seconds(goal) - START, float(np.linalg.norm(OFFSET))
-    covered = np.linalg.norm(goal["p_BD"] - goal["p_BD"][0], axis=1)
-    moved = np.linalg.norm(arm["p_BT"] - goal["p_BD"][0], axis=1)
+    t, distance = time_s(goal) - START, norm(OFFSET)
+    covered = norm(goal["p_BD"] - goal["p_BD"][0], axis=1)
+    moved = norm(arm["p_BT"] - goal["p_BD"][0], axis=1)
     v, a = derivatives(goal["p_BD"], goal)
     panels = [
         ("way covered (m)", "Δ", distance, (t, covered)),
         ("speed (m/s)", "1.875 Δ/T", SPEED * distance / T, (t[1:-1], v)),
         ("acceleration (m/s²)", "(10/√3) Δ/T²", ACCELERATION * distance / T**2, (t[1:-1], a)),
     ]
-    felt = [moved, np.linalg.norm(arm["V_BT"][:, :3], axis=1), None]
+    felt = [moved, norm(arm["V_BT"][:, :3], axis=1), None]
     with context.picture(TITLE, columns=3, size=(13.0, 4.6)) as axes:
         for ax, panel, curve, arms in zip(axes, panels, minimum_jerk(t), felt, strict=True):
             unit, name, peak, (at, values) = panel
             if arms is not None:
                 style = {"color": ORANGE, "lw": 5, "alpha": 0.5}
-                ax.plot(seconds(arm) - START, arms, **style, label="tip of the arm")
+                ax.plot(time_s(arm) - START, arms, **style, label="tip of the arm")
             ax.plot(t, distance * curve, color=BLUE, lw=1.2, label="minimum jerk")
             ax.plot(at[::15], values[::15], **MEASURED, color=BLUE, label="goal, from the log")
             ax.axhline(peak, color=BLACK, ls="--", lw=1.2)
-            ax.annotate(name, (2.85, peak), (0, 4), textcoords="offset points", ha="right")
-            ax.set_xlabel("time since the request (s)")
-            ax.set_ylabel(unit)
+            note(ax, name, (2.85, peak), (0, 4), ha="right", color=BLACK)
+            name_axes(ax, "time since the request (s)", unit)
             ax.set_ylim(0, 1.1 * peak)
         axes[0].legend(loc="lower right")
 

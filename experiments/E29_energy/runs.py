@@ -9,12 +9,13 @@ from scipy.spatial.transform import Rotation
 
 from limber.experiments.context import Context
 from limber.experiments.inertia import gravity_rate
-from limber.experiments.truth import joints, motion, seconds, status
+from limber.experiments.timeline import tip_gains
+from limber.experiments.truth import joints, motion, status, time_s
 from limber.experiments.variants import variant
-from limber.robot import load_robot
+from limber.model.robot import load_robot
 
 K = np.array([300.0] * 3 + [2.0] * 3)
-FORCE_N, TORQUE_NM = [-30.0, 15.0, 40.0], [0.4, -0.3, 0.1]
+FORCE_N, TORQUE_NM = np.array([-30.0, 15.0, 40.0]), np.array([0.4, -0.3, 0.1])
 PUSH_S, LET_GO_S = 2.0, 6.0
 DAMPED_S, UNDAMPED_S = 3.0, 0.4  # looked at
 UNDAMPED_SHARE = 0.3  # of the push: without damping the wrist gets faster
@@ -48,59 +49,37 @@ class Fall:
 def at_rate(rate_hz: float) -> dict[str, Any]:
     """Two joints a bus and 8 Mbit/s: that lets ideal7 run at 2 kHz."""
     names = ["base", "shoulder", "elbow", "wrist"]
-    buses = [
-        {"name": name, "can": f"virtual:ideal7_{name}", "fd": True,
-         "bitrate_bps": 1000000, "data_bitrate_bps": 8000000}
-        for name in names
-    ]  # fmt: skip
+    rates = {"fd": True, "bitrate_bps": 1000000, "data_bitrate_bps": 8000000}
+    buses = [{"name": name, "can": f"virtual:ideal7_{name}", **rates} for name in names]
     joints = {f"joint_{i + 1}": {"bus": names[i // 2]} for i in range(7)}
     return {"rate_hz": rate_hz, "buses": buses, "joints": joints}
 
 
 def fall(context: Context, rate_hz: int, damped: bool) -> Fall:
     robot = variant(context.out, "ideal7", at_rate(rate_hz))
-    gains = {
-        "law": "cartesian_impedance",
-        "bias": "gravity",
-        "K_x_translation_N_per_m": K[:3].tolist(),
-        "K_x_rotation_Nm_per_rad": K[3:].tolist(),
-        "damping_ratio": ZETA,
-        "K_null_Nm_per_rad": 0.0,
-        "D_null_Nms_per_rad": D_JOINTS,
-        "spring_force_N": 1000.0,
-        "spring_moment_Nm": 200.0,
-    }
+    null = {"K_null_Nm_per_rad": 0.0, "D_null_Nms_per_rad": D_JOINTS}
+    bounds = {"spring_force_N": 1000.0, "spring_moment_Nm": 200.0}
+    gains = tip_gains(K[:3], K[3:], model_compensation="gravity", damping_ratio=ZETA)
     share = 1.0 if damped else UNDAMPED_SHARE
-    push = {
-        "id": 1,
-        "force_N": [share * f for f in FORCE_N],
-        "torque_Nm": [share * m for m in TORQUE_NM],
-    }
+    push = {"id": 1, "force_N": share * FORCE_N, "torque_Nm": share * TORQUE_NM}
     undamped = {"damping_ratio": 0.0, "D_null_Nms_per_rad": 0.0}
+    entries = [
+        # a choice holds at once: not before the numbers, which ramp, have come down
+        {"at_s": 1.5, "gains": {"projector": "none"}},
+        {"at_s": PUSH_S, "push": {**push, "ramp_s": 1.0, "for_s": 60.0}},
+        *([] if damped else [{"at_s": LET_GO_S - 0.5, "gains": undamped}]),
+        {"at_s": LET_GO_S, "push": {"id": 1, "force_N": [0.0, 0.0, 0.0], "for_s": 60.0}},
+    ]
     end = LET_GO_S + (DAMPED_S if damped else UNDAMPED_S)
-    scenario = {
-        "robot": robot,
-        "integrator": "reference",
-        "duration_s": end + 0.1,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            # a choice holds at once: not before the numbers, which ramp, have come down
-            {"at_s": 1.5, "gains": {"projector": "none"}},
-            {"at_s": PUSH_S, "push": {**push, "ramp_s": 1.0, "for_s": 60.0}},
-            *([] if damped else [{"at_s": LET_GO_S - 0.5, "gains": undamped}]),
-            {"at_s": LET_GO_S, "push": {"id": 1, "force_N": [0.0, 0.0, 0.0], "for_s": 60.0}},
-        ],
-    }
-    log = context.lab(scenario, f"{'damped' if damped else 'undamped'}_{rate_hz}")
+    name = f"{'damped' if damped else 'undamped'}_{rate_hz}"
+    log = context.run_law(name, robot, {**gains, **null, **bounds}, entries, end)
     told = status(log, LET_GO_S, end)
     rows = motion(log, LET_GO_S, end)
     rows = rows[np.abs(rows["F_push"]).max(axis=1) == 0]
-    goal = told["p_BD"][0], Rotation.from_quat(np.roll(told["quat_BD"][0], -1))
-    turned = Rotation.from_quat(np.roll(rows["quat_BT"], -1, axis=1))
+    goal = told["p_BD"][0], Rotation.from_quat(told["quat_BD"][0], scalar_first=True)
+    turned = Rotation.from_quat(rows["quat_BT"], scalar_first=True)
     return Fall(
-        t=seconds(rows) - seconds(rows)[0],
+        t=time_s(rows) - time_s(rows)[0],
         q=joints(rows),
         v=joints(rows, "v"),
         kinetic=rows["kinetic_energy_J"],

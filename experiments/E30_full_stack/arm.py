@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 from limber.experiments.elastic import ElasticArm, State
 from limber.experiments.inertia import gravity_gradient, joint_inertia, tip_inertia
-from limber.robot import load_robot
+from limber.model.robot import load_robot
 
 ROBOT = "panda"
 B = np.array([1.0, 1.0, 0.8, 0.8, 0.4, 0.3, 0.3])  # kg m²

@@ -6,11 +6,11 @@ import numpy as np
 
 from limber.experiments.context import Context
 from limber.experiments.probing import Probing
-from limber.experiments.truth import joints, motion, status
-from limber.experiments.variants import variant
-from limber.logs import Log
+from limber.experiments.timeline import UNBOUNDED, in_turn, tip_gains
+from limber.experiments.truth import Log, joints, motion, status, time_s
+from limber.experiments.variants import friction, variant
+from limber.model.robot import read_yaml
 from limber.paths import robot_folder
-from limber.robot import read_yaml
 
 from .arm import COULOMB_NM, D_J, D_NULL, K_J, K_NULL, K_X, KAPPA, ROBOT, ZETA, B
 from .ideal import PUSH_N, load
@@ -26,16 +26,14 @@ def flexible(rho: float, coulomb: np.ndarray) -> dict[str, Any]:
     for i, (name, joint) in enumerate(content["joints"].items()):
         motor = dict(content["motors"][joint["motor"]])
         motor.pop("actuator", None)
-        motor["rotor_inertia_kgm2"] = float(B[i] / motor["gear_ratio"] ** 2)
+        motor["rotor_inertia_kgm2"] = B[i] / motor["gear_ratio"] ** 2
         motors[f"motor_{i + 1}"] = motor
+        spring = {"stiffness_Nm_per_rad": K_J[i]}
         changed[name] = {
             "motor": f"motor_{i + 1}",
             "torque_rate_limit_Nm_per_s": 20_000,
-            "transmission": {
-                "spring": {"stiffness_Nm_per_rad": float(K_J[i])},
-                "damping_Nms_per_rad": float(D_J[i]),
-            },
-            "friction": {"coulomb_Nm": float(coulomb[i]), "viscous_Nms_per_rad": 0.0},
+            "transmission": {"spring": spring, "damping_Nms_per_rad": D_J[i]},
+            "friction": friction(coulomb[i]),
             "link_friction": None,
             "torque_loop": {"inertia_ratio": rho, "rate_hz": 4000},
         }
@@ -47,33 +45,14 @@ def run(
 ) -> Log:
     changes = flexible(rho, coulomb)
     weak = {
-        name: {"rotor_torque_constant_Nm_per_A": KAPPA * motor["rotor_torque_constant_Nm_per_A"]}
-        for name, motor in changes["motors"].items()
+        motor: {"rotor_torque_constant_Nm_per_A": KAPPA * values["rotor_torque_constant_Nm_per_A"]}
+        for motor, values in changes["motors"].items()
     }
-    gains = {
-        "law": "cartesian_impedance",
-        "position": "static",
-        "K_x_translation_N_per_m": float(K_X[0, 0]),
-        "K_x_rotation_Nm_per_rad": float(K_X[3, 3]),
-        "damping_ratio": ZETA,
-        "K_null_Nm_per_rad": K_NULL,
-        "D_null_Nms_per_rad": D_NULL,
-        "spring_force_N": 1000.0,
-        "spring_moment_Nm": 1000.0,
-    }
-    scenario = {
-        "robot": variant(context.out / name, ROBOT, changes),
-        "reality": {"motors": weak},
-        "integrator": "reference",
-        "duration_s": end_s + 0.05,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": 1.0, "gains": gains},
-            *more,
-        ],
-    }
-    return context.lab(scenario, name)
+    null = {"K_null_Nm_per_rad": K_NULL, "D_null_Nms_per_rad": D_NULL}
+    law = {"position_feedback": "static", "damping_ratio": ZETA, **null, **UNBOUNDED}
+    gains = tip_gains(K_X[0, 0], K_X[3, 3], **law)
+    robot = variant(context.out / name, ROBOT, changes)
+    return context.run_law(name, robot, gains, more, end_s, reality={"motors": weak})
 
 
 def stiffness(context: Context, rho: float) -> tuple[np.ndarray, np.ndarray]:
@@ -87,18 +66,12 @@ def loop(
     context: Context, rho: float, axis: np.ndarray, up_s: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """As ideal.loop."""
-    force = (PUSH_N * axis[:3]).tolist()
-    pushes = [
-        {
-            "at_s": FIRST_S + i * 2 * up_s,
-            "push": {"force_N": [*force], "ramp_s": up_s, "for_s": 2 * up_s},
-        }
-        for i in range(2)
-    ]
+    pushes = [{"force_N": PUSH_N * axis[:3]}] * 2
+    pushes = in_turn(FIRST_S, 2 * up_s, pushes, ramp_s=up_s, for_s=2 * up_s)
     end = FIRST_S + 3 * up_s
     log = run(context, f"loop_{rho:g}", rho, COULOMB_NM, pushes, end)
     status(log, FIRST_S, end)
     rows = motion(log, FIRST_S + up_s, end)
-    t = rows["time_ns"] * 1e-9 - FIRST_S
+    t = time_s(rows) - FIRST_S
     start = motion(log, FIRST_S - 0.05, FIRST_S)["p_BT"].mean(axis=0)
     return PUSH_N * load(t, up_s), (rows["p_BT"] - start) @ axis[:3]

@@ -1,13 +1,10 @@
 """The whole chain: law, drives, torque loops, springs and links, with a wrong torque constant."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLUE, ORANGE
-from limber.robot import load_robot, read_yaml
+from limber.experiments.context import Comparison, Context, at_most
+from limber.experiments.pictures import BLUE, ORANGE, Axes, name_axes
+from limber.model.robot import load_robot
 
 from . import bus, classes, ideal
 from .arm import K_X, KAPPA, ROBOT, Pose, share
@@ -26,37 +23,32 @@ UP_S = 2.0
 Loop = tuple[np.ndarray, np.ndarray]
 
 
-def run(context: Context) -> list[Check]:
-    checks, loops = [], {}
+def run(context: Context) -> list[Comparison]:
+    checks, loops, home = [], {}, load_robot(ROBOT).home
     for rho in RATIOS:
-        context.say(f"inertia ratio {rho:g}")
+        context.progress(f"inertia ratio {rho:g}")
         checks += stiffness(context, rho)
         loops[rho] = {
-            "ideal": ideal.loop(Pose(home(), rho), LOADED, UP_S),
+            "ideal": ideal.loop(Pose(home, rho), LOADED, UP_S),
             "bus": bus.loop(context, rho, LOADED, UP_S),
         }
     draw(context, loops)
     return [*checks, *friction(loops), *classes.checks(context)]
 
 
-def home() -> np.ndarray:
-    content = read_yaml(load_robot(ROBOT).folder / "robot.yaml")["joints"]
-    return np.array([joint["home_rad"] for joint in content.values()], float)
-
-
-def stiffness(context: Context, rho: float) -> list[Check]:
+def stiffness(context: Context, rho: float) -> list[Comparison]:
     """Against γK, and against what the springs add because their torque is off by γ."""
     rest, felt = bus.stiffness(context, rho)
-    made = []
-    for where, q, K in (("ideal", home(), ideal.stiffness(Pose(home(), rho))), ("bus", rest, felt)):
+    made, home = [], load_robot(ROBOT).home
+    for where, q, K in (("ideal", home, ideal.stiffness(Pose(home, rho))), ("bus", rest, felt)):
         pose = Pose(q, rho)
         C = np.column_stack([pose.moved(axis)[:3] for axis in np.eye(6)[:3]])
         for i, axis in enumerate(AXES):
             name = f"torque constant {KAPPA:g}, inertia ratio {rho:g}, {where}: tip along {axis}"
             measured = float(1 / np.linalg.inv(K)[i, i])
             gamma = share(rho) * K_X[i, i]
-            made.append(Check(f"{name}, γK", gamma, measured, "N/m", 0.05))
-            made.append(Check(f"{name}, with the springs", 1 / C[i, i], measured, "N/m", 0.01))
+            made.append(Comparison(f"{name}, γK", gamma, measured, "N/m", 0.05))
+            made.append(Comparison(f"{name}, with the springs", 1 / C[i, i], measured, "N/m", 0.01))
     return made
 
 
@@ -69,40 +61,40 @@ def figures(loop: Loop) -> tuple[float, float]:
     return float(down - up) * 1e3, float(x[-1] - x[half]) * 1e3
 
 
-def friction(loops: dict[float, dict[str, Loop]]) -> list[Check]:
+def friction(loops: dict[float, dict[str, Loop]]) -> list[Comparison]:
     made = []
     for rho, ways in loops.items():
         model, seen = figures(ways["ideal"]), figures(ways["bus"])
         name = f"with friction, inertia ratio {rho:g}: "
-        made.append(Check(f"{name}width of the loop, bus (prediction: ideal)", model[0], seen[0],
-                          "mm", 0.15))  # fmt: skip
-        made.append(Check(f"{name}full load moves the tip, bus (prediction: ideal)", model[1],
-                          seen[1], "mm", 0.05))  # fmt: skip
+        for what, values, share_off in (
+            ("width of the loop", (model[0], seen[0]), 0.15),
+            ("full load moves the tip", (model[1], seen[1]), 0.05),
+        ):
+            title = f"{name}{what}, bus (prediction: ideal)"
+            made.append(Comparison(title, *values, "mm", share_off))
     for where in ("ideal", "bus"):
         widths, moves = zip(*(figures(loops[rho][where]) for rho in RATIOS), strict=True)
         wanted = [ideal.PUSH_N / (share(rho) * K_X[1, 1]) * 1e3 for rho in RATIOS]
         short = [w - m for w, m in zip(wanted, moves, strict=True)]
         name = f"what friction leaves with the torque loop over without, {where}: "
-        made.append(Check(f"{name}width", 0.6, widths[1] / widths[0], "", 0.0, "at_most"))
-        made.append(Check(f"{name}short of the way", 0.6, short[1] / short[0], "", 0.0, "at_most"))
+        made.append(at_most(f"{name}width", 0.6, widths[1] / widths[0]))
+        made.append(at_most(f"{name}short of the way", 0.6, short[1] / short[0]))
     return made
 
 
 def draw(context: Context, loops: dict[float, dict[str, Loop]]) -> None:
     with context.picture(TITLE, columns=2, size=(13.0, 5.2)) as axes:
-        for ax, where in zip(axes, ("ideal", "bus"), strict=True):
+        titles = {"ideal": "Exact sensors, linearised arm", "bus": "Seven drives on the bus"}
+        for ax, (where, title) in zip(axes, titles.items(), strict=True):
             draw_loops({rho: ways[where] for rho, ways in loops.items()}, ax)
-            ax.set_title({"ideal": "Exact sensors, linearised arm",
-                          "bus": "Seven drives on the bus"}[where])  # fmt: skip
+            ax.set_title(title)
 
 
-def draw_loops(loops: dict[float, Loop], ax: Any) -> None:
+def draw_loops(loops: dict[float, Loop], ax: Axes) -> None:
     for (rho, (force, x)), color in zip(loops.items(), (ORANGE, BLUE), strict=True):
         word = "no torque loop" if rho == 1 else f"torque loop, ratio {rho:g}"
         middle = (x.max() + x.min()) / 2
         ax.plot((x - middle) * 1e3, force, color=color, label=word)
         reach = ideal.PUSH_N / (share(rho) * K_X[1, 1]) / 2 * 1e3
         ax.plot([-reach, reach], [0, ideal.PUSH_N], ":", color=color, label="γK without friction")
-    ax.set_xlabel("way of the tip, from the middle (mm)")
-    ax.set_ylabel("force along y (N)")
-    ax.legend(loc="upper left")
+    name_axes(ax, "way of the tip, from the middle (mm)", "force along y (N)", "upper left")

@@ -1,13 +1,9 @@
 """The same Cartesian gains on a perfect, a real, a flexible and a series elastic joint."""
 
-from typing import Any
-
 import numpy as np
 
-from limber.experiments.check import Check
-from limber.experiments.context import Context
-from limber.experiments.pictures import BLACK, BLUE, GREEN, MEASURED, ORANGE, PINK
-from limber.experiments.testbench import IDEAL
+from limber.experiments.context import Comparison, Context
+from limber.experiments.pictures import BLACK, BLUE, GREEN, MARKS, ORANGE, PINK, Axes, name_axes
 
 from . import runs
 from .joints import JOINTS, ZETA, Joint, K
@@ -25,10 +21,10 @@ OVERSHOOT = float(np.exp(-np.pi * ZETA / np.sqrt(1 - ZETA**2)))  # of the dampin
 Found = dict[str, tuple[Seen, Seen]]
 
 
-def run(context: Context) -> list[Check]:
+def run(context: Context) -> list[Comparison]:
     found: Found = {}
     for joint in JOINTS:
-        context.say(joint.name)
+        context.progress(joint.name)
         found[joint.name] = runs.ideal(joint), runs.bus(context, joint)
     with context.picture(TITLE, 2, 2, size=(13.0, 9.0)) as axes:
         draw_release(found, axes[0, 0])
@@ -41,44 +37,40 @@ def run(context: Context) -> list[Check]:
     return [check for joint in JOINTS for check in checks(joint, *found[joint.name])]
 
 
-def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Check]:
+def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Comparison]:
     made = []
     for where, seen in (("ideal", ideal), ("bus", bus)):
         name = f"{joint.name}, {where}: "
+        lags, sags = (joint.lag * 1e3, seen.lag * 1e3), (joint.sag * 1e3, seen.sag * 1e3)
+        stiffness = f"{name}stiffness, asked {K:g}"
         made += [
-            Check(f"{name}stiffness, asked {K:g}", joint.stiffness, seen.stiffness, "N m/rad",
-                  0.01),
-            Check(f"{name}behind a moving goal", joint.lag * 1e3, seen.lag * 1e3, "mrad", 0.02,
-                  "absolute"),
-            Check(f"{name}sag under its weight", joint.sag * 1e3, seen.sag * 1e3, "mrad", 0.1,
-                  "absolute"),
-        ]  # fmt: skip
+            Comparison(stiffness, joint.stiffness, seen.stiffness, "N m/rad", 0.01),
+            Comparison(f"{name}behind a moving goal", *lags, "mrad", 0.02, "absolute"),
+            Comparison(f"{name}sag under its weight", *sags, "mrad", 0.1, "absolute"),
+        ]
     name = f"{joint.name}, bus (prediction: ideal): overshoot when let go, asked {OVERSHOOT:.2f}"
-    return [*made, Check(name, ideal.overshoot, bus.overshoot, "", 0.05)]
+    return [*made, Comparison(name, ideal.overshoot, bus.overshoot, "", 0.05)]
 
 
-def draw_release(found: Found, ax: Any) -> None:
+def draw_release(found: Found, ax: Axes) -> None:
     for (name, (_, seen)), color in zip(found.items(), COLORS, strict=True):
         label = f"{name}: {100 * seen.overshoot:.0f} %"
         ax.plot(seen.t, seen.q * 1e3, color=color, label=label)
-    ax.set_title(
-        f"Pushed by 20 N m and let go, on the bus; overshoot, {100 * OVERSHOOT:.0f} % asked"
-    )
+    asked = f"{100 * OVERSHOOT:.0f} % asked"
+    ax.set_title(f"Pushed by 20 N m and let go, on the bus; overshoot, {asked}")
     ax.set_xlim(0, 1.0)
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel("angle of the link (mrad)")
-    ax.legend(loc="upper right")
+    name_axes(ax, "time (s)", "angle of the link (mrad)", "upper right")
 
 
 def bars(
-    found: Found, formula: list[float], name: str, asked: float, scale: float, ax: Any
+    found: Found, formula: list[float], name: str, asked: float, scale: float, ax: Axes
 ) -> None:
     """A bar is the formula; cross: ideal, circle: bus."""
     rows = np.arange(len(found))[::-1]
     ax.barh(rows, scale * np.array(formula), 0.55, color=COLORS, alpha=0.3)
-    for i, (style, word) in enumerate(((IDEAL, "ideal"), (MEASURED, "bus"))):
+    for i, (where, style) in enumerate(MARKS.items()):
         values = [scale * getattr(pair[i], name) for pair in found.values()]
-        ax.plot(values, rows, **style, color="0.15", label=word)
+        ax.plot(values, rows, **style, color="0.15", label=where)
     if asked:
         ax.axvline(asked, color="0.4", ls=":", lw=1.4)
         ax.set_xlim(0, 1.3 * asked)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from limber.experiments import testbench as bench
+from limber.experiments import variants
 from limber.experiments.elastic import Drives, ElasticArm, State, one_joint
 from limber.experiments.testbench import B, M
 
@@ -81,22 +82,13 @@ class Joint:
         """Of robot.yaml of the bench."""
         if self.rigid:
             return bench.joint(**bench.RIGID)
-        return bench.joint(
-            transmission={
-                "spring": {"stiffness_Nm_per_rad": self.spring},
-                "damping_Nms_per_rad": self.damper,
-            },
-            torque_loop={"inertia_ratio": self.rho, "rate_hz": 4000},
-        )
+        loop = {"inertia_ratio": self.rho, "rate_hz": 4000}
+        return bench.sprung(self.spring, self.damper, torque_loop=loop)
 
     def reality(self, friction: bool = True) -> dict[str, Any]:
         """What robot.yaml does not know: the torque constant and the motor's friction."""
-        true = self.kappa * bench.motor_yaml()["rotor_torque_constant_Nm_per_A"]
-        coulomb = {"coulomb_Nm": self.coulomb if friction else 0.0, "viscous_Nms_per_rad": 0.0}
-        return {
-            **bench.motor(rotor_torque_constant_Nm_per_A=true),
-            **bench.joint(friction=coulomb),
-        }
+        coulomb = variants.friction(self.coulomb if friction else 0.0)
+        return {**bench.torque_constant(self.kappa), **bench.joint(friction=coulomb)}
 
 
 JOINTS = (

@@ -10,9 +10,9 @@ import numpy as np
 
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
-from limber.experiments.elastic import run
-from limber.experiments.truth import motion, seconds, status
-from limber.logs import Log
+from limber.experiments.elastic import State, run
+from limber.experiments.timeline import UNBOUNDED, tip_gains
+from limber.experiments.truth import Log, motion, status, time_s
 
 from .joints import LEVER_M, WEIGHT_NM, D, Joint, K
 
@@ -58,19 +58,21 @@ def circle(t: float) -> tuple[float, float]:
 
 
 def ideal(joint: Joint) -> Seen:
-    def still(t: float, x: Any) -> np.ndarray:
-        return joint.law(x, 0.0, 0.0, 0.0)
-
-    def led(t: float, x: Any) -> np.ndarray:
-        return joint.law(x, *circle(t), 0.0)
-
-    def level(t: float, x: Any) -> np.ndarray:
-        return joint.law(x, 0.0, 0.0, WEIGHT_NM)
-
     arm = joint.plant()
     end = RAMP_S + HOLD_S + FREE_S
-    push = run(arm, still, end, lambda t: np.array([float(pushed(t))]), joint.drives())
-    path = run(arm, led, TURN_S + TURNING_S, drives=joint.drives())
+    drives = joint.drives()
+
+    def still(t: float, x: State) -> np.ndarray:
+        return joint.law(x, 0.0, 0.0, 0.0)
+
+    def led(t: float, x: State) -> np.ndarray:
+        return joint.law(x, *circle(t), 0.0)
+
+    def level(t: float, x: State) -> np.ndarray:
+        return joint.law(x, 0.0, 0.0, WEIGHT_NM)
+
+    push = run(arm, still, end, lambda t: np.array([float(pushed(t))]), drives)
+    path = run(arm, led, TURN_S + TURNING_S, drives=drives)
     rest = run(arm, level, REST_S, lambda t: np.array([-WEIGHT_NM]), joint.drives(False))
     late = path.t > TURN_S + 0.1
     wanted = np.array([circle(t)[0] for t in path.t[late]])
@@ -81,44 +83,35 @@ def ideal(joint: Joint) -> Seen:
 def bus(context: Context, joint: Joint) -> Seen:
     """With the gains at the tip: K/l² there is K at the joint."""
     name = joint.name.replace(",", "").replace(" ", "_")
-    gains = {
-        "law": "cartesian_impedance",
-        "position": "static" if joint.static else "motor",
-        "K_x_translation_N_per_m": [K / LEVER_M**2, K / LEVER_M**2, 0.0],
-        "K_x_rotation_Nm_per_rad": 0.0,
-        "damping": "given",
-        "D_x": np.diag([float(D) / LEVER_M**2] * 2 + [0.0] * 4).tolist(),
-        "spring_force_N": 1000.0,
-    }
+    K_tip, D_tip = K / LEVER_M**2, D / LEVER_M**2
+    gains = tip_gains(
+        [K_tip, K_tip, 0.0],
+        position_feedback="static" if joint.static else "motor",
+        damping="given",
+        D_x=np.diag([D_tip, D_tip, 0.0, 0.0, 0.0, 0.0]),
+        **UNBOUNDED,
+    )
     real = {"changes": joint.changes(), "reality": joint.reality()}
     end = START_S + RAMP_S + HOLD_S + FREE_S
     log = bench.on_bus(context, f"{name}_push", gains, pushes(), end, **real)
     before = bench.mean(log, START_S - 0.2, START_S)
     push = bench.truth(log, START_S, end)
-    turn = {"circle_centre_m": [0.0, LEVER_M, 0.0], "circle_axis": [0.0, 0.0, 1.0],
-            "duration_s": TURN_S}  # fmt: skip
+    turn = {"circle_centre_m": [0.0, LEVER_M, 0.0], "circle_axis": [0.0, 0.0, 1.0]}
+    goal = {"at_s": START_S, "goal": {**turn, "duration_s": TURN_S}}
     end = START_S + TURN_S + TURNING_S
-    log = bench.on_bus(
-        context, f"{name}_path", gains, [{"at_s": START_S, "goal": turn}], end, **real
-    )
+    log = bench.on_bus(context, f"{name}_path", gains, [goal], end, **real)
     behind = _behind(log, end - 0.5, end)
-    level = {
-        "changes": {
-            **joint.changes(),
-            "gravity_m_per_s2": [0.0, -WEIGHT_NM / bench.LINK_MASS_M, 0.0],
-        },
-        "reality": joint.reality(friction=False),
-        "start_q": [np.pi / 2],
-    }
+    level = bench.gravity(WEIGHT_NM / bench.LINK_MASS_M)
+    real = {"changes": {**joint.changes(), **level}, "reality": joint.reality(friction=False)}
     end = START_S + REST_S
-    log = bench.on_bus(context, f"{name}_level", gains, [], end, **level)
+    log = bench.on_bus(context, f"{name}_level", gains, [], end, **real, start_q=[np.pi / 2])
     return _seen(push["t"] - START_S, push["q"] - before, behind, _behind(log, end - 0.2, end))
 
 
 def _behind(log: Log, start_s: float, end_s: float) -> float:
     """Angle from the tip to its goal, on average."""
     told, rows = status(log, start_s, end_s), motion(log, start_s, end_s)
-    at = np.searchsorted(seconds(rows), seconds(told) - 1e-6)
+    at = np.searchsorted(time_s(rows), time_s(told) - 1e-6)
     (x, y), (x_d, y_d) = rows["p_BT"][at, :2].T, told["p_BD"][:, :2].T
     return float(np.arctan2(x * y_d - y * x_d, x * x_d + y * y_d).mean())
 

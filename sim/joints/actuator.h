@@ -12,7 +12,7 @@
 // damping D_h / c_l. Source: Merritt, Hydraulic Control Systems (1967), linearised valve.
 #pragma once
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber::sim {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/noise.h"
+#include "sim/joints/noise.h"
 
 namespace limber::sim {
 

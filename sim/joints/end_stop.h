@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/joints/friction.h"
 
 namespace limber::sim {

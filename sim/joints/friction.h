@@ -11,7 +11,7 @@
 // rotor critically.
 #pragma once
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber::sim {
 
@@ -38,7 +38,6 @@ class LugreFriction {
 
   void reset() noexcept { z_ = 0.0; }
   double bristle() const noexcept { return z_; }
-  double bristle_stiffness() const noexcept { return sigma0_; }
   /// Energy stored in the bristle, J.
   double bristle_energy() const noexcept { return 0.5 * sigma0_ * z_ * z_; }
 

@@ -6,7 +6,7 @@
 // On a rigid joint theta = q, the link carries B, and torque and friction act on the link.
 #pragma once
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/joints/actuator.h"
 #include "sim/joints/coupling.h"
 #include "sim/joints/drive_law.h"

@@ -7,9 +7,12 @@
 // Sources: Migliore, Brown, DeWeerth, "Biologically inspired joint stiffness control", ICRA 2005
 // (quadratic); Catalano et al., "VSA-CubeBot", ICRA 2011 (sinh); exponential as the tendons of
 // Hagen et al., Frontiers in Neuroscience 2021.
+//
+// The controller has its own spring laws (controller/elastic/spring_law.h), on purpose: neither
+// side inherits a mistake of the other, and a simulated run checks one against the other.
 #pragma once
 
-#include "robots/joint_chain.h"
+#include "robots/loader/joint_chain.h"
 
 namespace limber::sim {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/joints/friction.h"
 
 namespace limber::sim {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/joints/noise.h"
 #include "sim/joints/relax.h"
-#include "sim/noise.h"
 
 namespace limber::sim {
 

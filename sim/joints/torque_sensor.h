@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "robots/joint_chain.h"
+#include "robots/loader/joint_chain.h"
 
 namespace limber::sim {
 

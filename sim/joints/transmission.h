@@ -10,7 +10,7 @@
 // f(theta_2 + q), each tendon with a damper of its own.
 #pragma once
 
-#include "robots/joint_chain.h"
+#include "robots/loader/joint_chain.h"
 #include "sim/joints/spring.h"
 
 namespace limber::sim {

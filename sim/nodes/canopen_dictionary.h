@@ -61,7 +61,7 @@ class CanopenDictionary {
   /// Values as they are now are those of power-on.
   void close(DictionaryGuard* guard);
 
-  /// nullptr: there is none; absence() says what is missing.
+  /// nullptr: there is none; absence() gives the reason.
   DictionaryEntry* find(canopen::ObjectId id) noexcept;
   canopen::SdoAbort absence(canopen::ObjectId id) const noexcept;
   /// Of numbers that exist.

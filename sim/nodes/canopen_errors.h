@@ -1,4 +1,4 @@
-// The errors of an emulated CANopen node: which there are now, what the bus is told of them, and
+// The errors of an emulated CANopen node: which are active, what is reported on the bus, and
 // which there were.
 #pragma once
 
@@ -17,7 +17,7 @@ class CanopenErrors {
  public:
   explicit CanopenErrors(CanopenDictionary* dictionary);
 
-  /// True, with what the bus is to be told, if the error is a new one.
+  /// True, with the frame to report, if the error is a new one.
   bool raise(std::uint16_t code, std::uint8_t register_bit, canopen::Emergency* message) noexcept;
   /// True likewise if that was the last one.
   bool clear(std::uint16_t code, canopen::Emergency* message) noexcept;

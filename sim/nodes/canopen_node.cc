@@ -7,11 +7,14 @@ using canopen::NmtCommand;
 using canopen::NmtState;
 using canopen::SdoAbort;
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::uint16_t kFirstCommunication = 0x1000;
 constexpr std::uint16_t kLastCommunication = 0x1FFF;
 constexpr std::uint16_t kLastIndex = 0xFFFF;
 constexpr double kServoDrive = 0x0002'0192;  // device type: CiA 402, servo drive
+constexpr double kVendor = 0x6C69'6D62;      // "limb": CiA has given limber no number
+constexpr double kProduct = 402;
+constexpr double kRevision = 0x0001'0000;
 constexpr std::uint8_t kLastNode = 127;
 constexpr double kStayOperational = 1.0;
 constexpr double kStop = 2.0;
@@ -40,11 +43,20 @@ void CanopenNode::add_objects(const std::string& name) {
   read_only(canopen::kDeviceType, kU32, kServoDrive);
   read_only(canopen::kSyncCobId, kU32, canopen::kSyncId);
   dictionary_->add_text({0x1008, 0}, name, Access::kReadOnly);
+  dictionary_->add_text({0x1009, 0}, "simulated", Access::kReadOnly);  // hardware version
+  dictionary_->add_text({0x100A, 0}, "limber 1", Access::kReadOnly);   // software version
+  read_only({{0x1014, 0}, 4}, kU32, canopen::kEmergencyCode + node_);
   read_only({{canopen::kConsumerHeartbeat.id.index, 0}, 1}, kU8, 1);
   dictionary_->add_writable(canopen::kConsumerHeartbeat, kU32, 0, 0, 0x7FFFFF);
   dictionary_->add_writable(canopen::kHeartbeatPeriod_ms, kU16, 0, 0, 65535);
-  read_only({{0x1018, 0}, 1}, kU8, 1);
-  read_only({{0x1018, 1}, 4}, kU32, 0);  // vendor: none
+  read_only({{0x1018, 0}, 1}, kU8, 4);
+  read_only({{0x1018, 1}, 4}, kU32, kVendor);
+  read_only({{0x1018, 2}, 4}, kU32, kProduct);
+  read_only({{0x1018, 3}, 4}, kU32, kRevision);
+  read_only({{0x1018, 4}, 4}, kU32, node_);  // serial number
+  read_only({{0x1200, 0}, 1}, kU8, 2);       // SDO server
+  read_only({{0x1200, 1}, 4}, kU32, canopen::kSdoRequestCode + node_);
+  read_only({{0x1200, 2}, 4}, kU32, canopen::kSdoAnswerCode + node_);
   dictionary_->add_writable(canopen::kSyncCounterOverflow, kU8, 0, 0, 240);
   read_only({{canopen::kErrorBehaviour.id.index, 0}, 1}, kU8, 1);
   dictionary_->add_writable(canopen::kErrorBehaviour, kU8, 0, 0, kStop);
@@ -62,7 +74,7 @@ void CanopenNode::boot(std::uint16_t last_reset) noexcept {
   state_ = NmtState::kPreOperational;
 }
 
-void CanopenNode::obey(NmtCommand command) noexcept {
+void CanopenNode::on_nmt(NmtCommand command) noexcept {
   switch (command) {
     case NmtCommand::kStart:
       return enter(NmtState::kOperational);
@@ -103,8 +115,8 @@ bool CanopenNode::receive(const CanFrame& frame, std::int64_t now_ns, bool deaf,
   }
   if (deaf) return false;
   NmtCommand command;
-  if (canopen::decode_nmt(frame, node_, &command)) obey(command);
-  hear_heartbeat(frame);
+  if (canopen::decode_nmt(frame, node_, &command)) on_nmt(command);
+  watch_heartbeat(frame);
   if (operational()) on_rpdo(frame);
   return false;
 }
@@ -165,17 +177,17 @@ void CanopenNode::update(std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
   CanFrame frame;
   if (sdo_.give_up(now_ns, &frame)) outbox_.push(frame);
-  tell_heartbeat();
+  send_heartbeat();
   watch_heartbeat();
   if (!operational()) return;
   if (pdos_.timed_out(now_ns)) {
     raise(canopen::kRpdoTimeout, canopen::kErrorCommunication);
     application_->on_connection_lost(canopen::kRpdoTimeout);
   }
-  tell_events();
+  send_events();
 }
 
-void CanopenNode::tell_events() noexcept {
+void CanopenNode::send_events() noexcept {
   CanFrame frame;
   for (int k = 0; k < CanopenPdos::kPdos; ++k) {
     if (!pdos_.awaits_event(k)) continue;
@@ -184,14 +196,14 @@ void CanopenNode::tell_events() noexcept {
   }
 }
 
-void CanopenNode::tell_heartbeat() noexcept {
+void CanopenNode::send_heartbeat() noexcept {
   const double period_ms = dictionary_->value(canopen::kHeartbeatPeriod_ms);
-  if (period_ms == 0.0 || static_cast<double>(now_ns_ - told_ns_) < period_ms * kMs) return;
+  if (period_ms == 0.0 || static_cast<double>(now_ns_ - told_ns_) < period_ms * kNsPerMs) return;
   told_ns_ = now_ns_;
   outbox_.push(canopen::encode_heartbeat(state_, node_));
 }
 
-void CanopenNode::hear_heartbeat(const CanFrame& frame) noexcept {
+void CanopenNode::watch_heartbeat(const CanFrame& frame) noexcept {
   if (frame.id < canopen::kHeartbeatCode) return;
   const auto watched = static_cast<std::uint32_t>(dictionary_->value(canopen::kConsumerHeartbeat));
   const auto master = static_cast<std::uint8_t>(watched >> 16U);
@@ -206,7 +218,7 @@ void CanopenNode::hear_heartbeat(const CanFrame& frame) noexcept {
 
 void CanopenNode::watch_heartbeat() noexcept {
   const auto watched = static_cast<std::uint32_t>(dictionary_->value(canopen::kConsumerHeartbeat));
-  if (!watching_ || now_ns_ - heard_ns_ <= static_cast<std::int64_t>(watched & 0xFFFFU) * kMs)
+  if (!watching_ || now_ns_ - heard_ns_ <= static_cast<std::int64_t>(watched & 0xFFFFU) * kNsPerMs)
     return;
   watching_ = false;
   raise(canopen::kHeartbeatLost, canopen::kErrorCommunication);
@@ -218,23 +230,23 @@ void CanopenNode::watch_heartbeat() noexcept {
 
 // --- errors --------------------------------------------------------------------------------------
 
-void CanopenNode::tell(const canopen::Emergency& message) noexcept {
+void CanopenNode::send_emergency(const canopen::Emergency& message) noexcept {
   if (state_ != NmtState::kStopped) outbox_.push(canopen::encode_emergency(message, node_));
 }
 
 void CanopenNode::raise(std::uint16_t code, std::uint8_t register_bit) noexcept {
   canopen::Emergency message;
-  if (errors_.raise(code, register_bit, &message)) tell(message);
+  if (errors_.raise(code, register_bit, &message)) send_emergency(message);
 }
 
 void CanopenNode::clear(std::uint16_t code) noexcept {
   canopen::Emergency message;
-  if (!application_->holds_errors() && errors_.clear(code, &message)) tell(message);
+  if (!application_->holds_errors() && errors_.clear(code, &message)) send_emergency(message);
 }
 
 void CanopenNode::clear_errors() noexcept {
   canopen::Emergency message;
-  if (errors_.clear_all(&message)) tell(message);
+  if (errors_.clear_all(&message)) send_emergency(message);
 }
 
 }  // namespace limber::sim

@@ -38,11 +38,11 @@ class CanopenNode final : public DictionaryGuard {
   CanopenNode(CanopenDictionary* dictionary, CanopenApplication* application, std::uint8_t node,
               bool fd, const std::string& name);
 
-  /// With `deaf` the node hears SYNC and SDO reads only. True if `reply` is to be sent; more may
-  /// wait in take().
+  /// With `deaf` the node handles SYNC and SDO reads only. True if `reply` is to be sent; more may
+  /// wait in next_frame().
   bool receive(const CanFrame& frame, std::int64_t now_ns, bool deaf, CanFrame* reply) noexcept;
   void update(std::int64_t now_ns) noexcept;
-  bool take(CanFrame* frame) noexcept { return outbox_.pop(frame); }
+  bool next_frame(CanFrame* frame) noexcept { return outbox_.pop(frame); }
 
   void raise(std::uint16_t code, std::uint8_t register_bit) noexcept;
   void clear(std::uint16_t code) noexcept;
@@ -57,17 +57,17 @@ class CanopenNode final : public DictionaryGuard {
 
  private:
   void add_objects(const std::string& name);
-  void obey(canopen::NmtCommand command) noexcept;
+  void on_nmt(canopen::NmtCommand command) noexcept;
   void enter(canopen::NmtState state) noexcept;
   /// Power-on values for all objects up to that index.
   void boot(std::uint16_t last_reset) noexcept;
   bool on_sync(const CanFrame& frame, bool deaf, CanFrame* reply) noexcept;
   void on_rpdo(const CanFrame& frame) noexcept;
-  void hear_heartbeat(const CanFrame& frame) noexcept;
+  void watch_heartbeat(const CanFrame& frame) noexcept;
   void watch_heartbeat() noexcept;
-  void tell_heartbeat() noexcept;
-  void tell_events() noexcept;
-  void tell(const canopen::Emergency& message) noexcept;
+  void send_heartbeat() noexcept;
+  void send_events() noexcept;
+  void send_emergency(const canopen::Emergency& message) noexcept;
   bool operational() const noexcept { return state_ == canopen::NmtState::kOperational; }
 
   CanopenDictionary* dictionary_;

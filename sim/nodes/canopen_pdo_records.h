@@ -9,6 +9,11 @@
 
 namespace limber::sim {
 
+/// Longer PDOs are FD frames.
+inline constexpr int kClassicBytes = 8;
+/// Transmission types from here on: when the application has something new.
+inline constexpr int kOnEvent = 254;
+
 /// One PDO as its records have it.
 struct PdoSettings {
   static constexpr int kMostMapped = 16;
@@ -36,7 +41,7 @@ inline int mapped_length(std::uint32_t entry) noexcept {
 /// the cycle.
 class CanopenPdoRecords {
  public:
-  static constexpr int kPdos = 4;
+  static constexpr int kPdos = canopen::kPdos;
 
   CanopenPdoRecords(CanopenDictionary* dictionary, std::uint8_t node, bool fd);
 

@@ -1,11 +1,6 @@
 #include "sim/nodes/canopen_pdos.h"
 
 namespace limber::sim {
-namespace {
-
-constexpr int kOnEvent = 254;
-
-}  // namespace
 
 void CanopenPdos::load(CanopenPdoRecords* records) noexcept {
   for (std::size_t k = 0; k < kPdos; ++k) {
@@ -69,7 +64,7 @@ bool CanopenPdos::timed_out(std::int64_t now_ns) noexcept {
 // --- TPDOs ---------------------------------------------------------------------------------------
 
 CanFrame CanopenPdos::pack(const PdoSettings& pdo) noexcept {
-  canopen::FieldWriter fields(pdo.id, fd_);
+  canopen::FieldWriter fields(pdo.id, fd_ && pdo.bytes > kClassicBytes);
   for (std::size_t i = 0; i < static_cast<std::size_t>(pdo.count); ++i) {
     const DictionaryEntry* object = dictionary_->find(mapped_object(pdo.mapped[i]));
     for (const std::uint8_t byte : object->bytes()) fields.put(byte, 1);

@@ -19,7 +19,7 @@ class CanopenPdos {
 
   CanopenPdos(CanopenDictionary* dictionary, bool fd) : dictionary_(dictionary), fd_(fd) {}
 
-  /// Takes over what the records say; call after each write to one.
+  /// Copies the records; call after each write to one.
   void load(CanopenPdoRecords* records) noexcept;
   /// Nothing heard or sent so far.
   void restart() noexcept;

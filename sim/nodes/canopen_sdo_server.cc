@@ -42,7 +42,7 @@ SdoMessage CanopenSdoServer::work(const SdoMessage& request) noexcept {
     case SdoKind::kStartWrite:
       return start_writing(request);
     case SdoKind::kWriteSegment:
-      if (direction_ == Direction::kWriting) return take_segment(request);
+      if (direction_ == Direction::kWriting) return store_segment(request);
       break;
     case SdoKind::kReadSegment:
       if (direction_ == Direction::kReading) return give_segment(request);
@@ -107,7 +107,7 @@ SdoMessage CanopenSdoServer::start_writing(const SdoMessage& request) noexcept {
   return {SdoKind::kWrite, request.object};
 }
 
-SdoMessage CanopenSdoServer::take_segment(const SdoMessage& request) noexcept {
+SdoMessage CanopenSdoServer::store_segment(const SdoMessage& request) noexcept {
   if (request.toggle != toggle_) return abort(object_, SdoAbort::kToggle);
   if (at_ + request.bytes > buffer_.size()) return abort(object_, SdoAbort::kLength);
   std::copy_n(request.segment.begin(), request.bytes, buffer_.begin() + static_cast<int>(at_));

@@ -30,7 +30,7 @@ class CanopenSdoServer {
   canopen::SdoMessage write(const canopen::SdoMessage& request) noexcept;
   canopen::SdoMessage read(const canopen::SdoMessage& request) noexcept;
   canopen::SdoMessage start_writing(const canopen::SdoMessage& request) noexcept;
-  canopen::SdoMessage take_segment(const canopen::SdoMessage& request) noexcept;
+  canopen::SdoMessage store_segment(const canopen::SdoMessage& request) noexcept;
   canopen::SdoMessage give_segment(const canopen::SdoMessage& request) noexcept;
   canopen::SdoMessage finish_writing() noexcept;
   canopen::SdoMessage abort(canopen::ObjectId object, canopen::SdoAbort code) noexcept;

@@ -11,8 +11,8 @@ constexpr int kFirstStaying = 5;  // quick stop options
 
 }  // namespace
 
-void Cia402Machine::obey(std::uint16_t controlword, int quick_stop_option,
-                         bool reset_allowed) noexcept {
+void Cia402Machine::on_controlword(std::uint16_t controlword, int quick_stop_option,
+                                   bool reset_allowed) noexcept {
   const Command command = cia402::command_of(controlword, controlword_);
   controlword_ = controlword;
   if (command == Command::kFaultReset && !reset_allowed) return;

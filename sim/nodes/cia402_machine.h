@@ -13,7 +13,8 @@ class Cia402Machine {
  public:
   /// Works a controlword through. With `reset_allowed` false a fault stays. Quick stop option as in
   /// 605Ah: 0 switches off at once, 1 to 4 when the joint stands, 5 to 8 stay in quick stop.
-  void obey(std::uint16_t controlword, int quick_stop_option, bool reset_allowed) noexcept;
+  void on_controlword(std::uint16_t controlword, int quick_stop_option,
+                      bool reset_allowed) noexcept;
   /// Switched on or enabled: as the controlword does.
   void quick_stop(int quick_stop_option) noexcept;
   void disable_voltage() noexcept;

@@ -32,7 +32,7 @@ Cia402Node::Cia402Node(const JointConfig& joint, bool fd, std::int64_t mode_dela
       loop_(joint.torque_loop),
       rated_torque_Nm_(kMilli * dictionary_.value(cia402::kRatedTorque_mNm)),
       rated_current_A_(kMilli * dictionary_.value(cia402::kRatedCurrent_mA)) {
-  take_settings();
+  apply_settings();
 }
 
 // --- frames --------------------------------------------------------------------------------------
@@ -45,8 +45,8 @@ bool Cia402Node::receive(const CanFrame& frame, const JointReading& joint, std::
   return node_.receive(frame, now_ns, deaf, reply) && !has(scenario_event_t::FAULT_SILENT);
 }
 
-bool Cia402Node::take(CanFrame* frame) noexcept {
-  while (node_.take(frame)) {
+bool Cia402Node::next_frame(CanFrame* frame) noexcept {
+  while (node_.next_frame(frame)) {
     if (!has(scenario_event_t::FAULT_SILENT)) return true;
   }
   return false;
@@ -56,7 +56,7 @@ Cia402Node::Sensed Cia402Node::sense() const noexcept {
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return frozen_;
   const DriveConfig& drive = joint_.drive;
   const auto turns = [&](double angle) { return (drive.sign * angle + drive.offset_rad) / kTurn; };
-  const double counts = std::ldexp(1.0, drive.encoder_bits);
+  const double counts = drive.counts_per_turn;
   const double link_counts = std::ldexp(1.0, joint_.link_encoder.bits);
   return {std::floor(turns(reading_.theta) * counts),
           std::nearbyint(drive.sign * reading_.theta_dot / kTurn * counts),
@@ -110,16 +110,17 @@ Refusal Cia402Node::refuses(const DictionaryEntry& entry, double value) noexcept
 }
 
 void Cia402Node::on_written(canopen::ObjectId id) noexcept {
-  if (id == cia402::kControlword.id) obey();
+  if (id == cia402::kControlword.id) apply_controlword();
   if (id == cia402::kMode.id) mode_wanted_ns_ = now_ns_;
-  if (id.index == cia402::kInertiaRatio.id.index) take_settings();
-  take_demand();
+  if (id.index == cia402::kInertiaRatio.id.index) apply_settings();
+  apply_demand();
 }
 
-void Cia402Node::obey() noexcept {
+void Cia402Node::apply_controlword() noexcept {
   const State before = machine_.state();
-  machine_.obey(static_cast<std::uint16_t>(dictionary_.value(cia402::kControlword)),
-                option(cia402::kQuickStopOption), !has(scenario_event_t::FAULT_DRIVE_ERROR));
+  machine_.on_controlword(static_cast<std::uint16_t>(dictionary_.value(cia402::kControlword)),
+                          option(cia402::kQuickStopOption),
+                          !has(scenario_event_t::FAULT_DRIVE_ERROR));
   const State after = machine_.state();
   if (before == State::kFault && after != State::kFault) node_.clear_errors();
   if (before == State::kOperationEnabled || after != State::kOperationEnabled) return;
@@ -127,13 +128,13 @@ void Cia402Node::obey() noexcept {
   dictionary_.set(cia402::kTorqueOffset, 0.0);
 }
 
-void Cia402Node::take_settings() noexcept {
+void Cia402Node::apply_settings() noexcept {
   const double stiffness = dictionary_.value(cia402::kSpringStiffness_Nm_per_rad);
   const double damping = dictionary_.value(cia402::kSpringDamping_Nms_per_rad);
   loop_.set(dictionary_.value(cia402::kInertiaRatio), stiffness > 0.0 ? damping / stiffness : 0.0);
 }
 
-void Cia402Node::take_demand() noexcept {
+void Cia402Node::apply_demand() noexcept {
   const double wanted =
       dictionary_.value(cia402::kTargetTorque) + dictionary_.value(cia402::kTorqueOffset);
   const double most = std::min(dictionary_.value(cia402::kMaxTorque), 32767.0);
@@ -202,12 +203,11 @@ void Cia402Node::on_connection_lost(std::uint16_t code) noexcept {
 void Cia402Node::on_reset() noexcept {
   machine_.reset();
   mode_in_force_ = kNoMode;
-  take_settings();
-  take_demand();
+  apply_settings();
+  apply_demand();
 }
 
-void Cia402Node::inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
-  if (fault < 0 || fault >= kFaults) return;
+void Cia402Node::on_fault(int fault, const JointReading& joint) noexcept {
   if (fault == scenario_event_t::FAULT_FROZEN_ENCODER) {
     reading_ = joint;
     frozen_ = sense();
@@ -217,7 +217,6 @@ void Cia402Node::inject(int fault, const JointReading& joint, std::int64_t until
     fail(false);
     node_.raise(canopen::kOverCurrent, canopen::kErrorCurrent);
   }
-  fault_until_ns_[fault] = until_ns;
 }
 
 }  // namespace limber::sim

@@ -6,10 +6,9 @@
 // its link encoder counts as the joint does.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/nodes/canopen_dictionary.h"
 #include "sim/nodes/canopen_node.h"
 #include "sim/nodes/cia402_machine.h"
@@ -20,8 +19,8 @@ namespace limber::sim {
 
 /// Commanded torque u = (6071h + 60B2h) thousandths of the rated torque, within 6072h; zero when
 /// operation becomes enabled. In a quick stop the phases are shorted; in a fault, too, if 605Eh
-/// says so and the fault is not in the power stage itself. Lost connections act while enabled, as
-/// 6007h says. After construction every member is allowed in the cycle.
+/// selects it and the fault is not in the power stage itself. Lost connections act while enabled,
+/// as 6007h selects. After construction every member is allowed in the cycle.
 class Cia402Node final : public MotorNode, private CanopenApplication {
  public:
   static constexpr std::int64_t kModeDelay_ns = 2'000'000;
@@ -34,21 +33,19 @@ class Cia402Node final : public MotorNode, private CanopenApplication {
 
   bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                CanFrame* reply) noexcept override;
-  bool take(CanFrame* frame) noexcept override;
+  bool next_frame(CanFrame* frame) noexcept override;
   void update(const JointReading& joint, std::int64_t now_ns) noexcept override;
   /// Of the torque loop, where the joint has a torque sensor.
   double loop_rate_hz() const noexcept override;
   DriveLaw law() const noexcept override;
   bool enabled() const noexcept override;
-  /// DRIVE_ERROR is an over-current (2310h); DROP_COMMANDS refuses to store what SDO writes.
-  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept override;
-  void clear_faults() noexcept override { fault_until_ns_.fill(0); }
 
   cia402::State state() const noexcept { return machine_.state(); }
 
  private:
-  static constexpr int kFaults = 4;
-  /// What the encoders say: counts and counts/s.
+  /// DRIVE_ERROR is an over-current (2310h); DROP_COMMANDS refuses to store what SDO writes.
+  void on_fault(int fault, const JointReading& joint) noexcept override;
+  /// Encoder readings: counts and counts/s.
   struct Sensed {
     double position, velocity, link_position, link_velocity;
   };
@@ -62,13 +59,12 @@ class Cia402Node final : public MotorNode, private CanopenApplication {
 
   Sensed sense() const noexcept;
   std::uint16_t statusword() const noexcept;
-  void obey() noexcept;
-  void take_settings() noexcept;
-  void take_demand() noexcept;
+  void apply_controlword() noexcept;
+  void apply_settings() noexcept;
+  void apply_demand() noexcept;
   void fail(bool can_brake) noexcept;
   int option(const cia402::Object& object) noexcept;
   double motor_torque() const noexcept;
-  bool has(int fault) const noexcept { return now_ns_ < fault_until_ns_[fault]; }
 
   JointConfig joint_;
   std::int64_t mode_delay_ns_;
@@ -80,13 +76,11 @@ class Cia402Node final : public MotorNode, private CanopenApplication {
   double rated_current_A_;
 
   JointReading reading_;
-  std::int64_t now_ns_ = 0;
   double demand_permille_ = 0.0;
   bool limited_ = false;
   bool braking_ = false;  ///< in a fault
   double mode_in_force_ = 0.0;
   std::int64_t mode_wanted_ns_ = 0;
-  std::array<std::int64_t, kFaults> fault_until_ns_{};
   Sensed frozen_{};
 };
 

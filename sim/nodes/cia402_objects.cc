@@ -24,6 +24,20 @@ void count_of(CanopenDictionary* dictionary, const cia402::Object& record, doubl
   read_only(dictionary, {{record.id.index, 0}, 1}, kU8, last);
 }
 
+/// The fewest turns with a whole number of counts; 1 if 32 bits are not enough.
+double whole_turns(double counts_per_turn) {
+  for (double turns = 1.0; turns * counts_per_turn < 0x1p32; ++turns) {
+    const double counts = turns * counts_per_turn;
+    if (std::abs(counts - std::round(counts)) < 1e-9 * counts) return turns;
+  }
+  return 1.0;
+}
+
+double supply_V(const DriveConfig& drive) {
+  constexpr double kUsual_V = 48.0;
+  return std::isfinite(drive.actuator.supply_V) ? drive.actuator.supply_V : kUsual_V;
+}
+
 void add_commands(CanopenDictionary* dictionary) {
   constexpr double kI16 = 32767.0;
   const auto add = [dictionary](const cia402::Object& object, ValueType type, double value,
@@ -48,6 +62,7 @@ void add_measured(CanopenDictionary* dictionary, const LinkEncoderConfig& link_e
   add(cia402::kTorqueDemand, kI16);
   add(cia402::kTorqueActual, kI16);
   add(cia402::kCurrentActual, kI16);
+  add(cia402::kDigitalInputs, kU32);
   if (!link_encoder.present) return;
   count_of(dictionary, cia402::kLinkPosition, 1);
   add(cia402::kLinkPosition, kI32);
@@ -62,17 +77,26 @@ void add_scales(CanopenDictionary* dictionary, const DriveConfig& drive) {
   read_only(dictionary, cia402::kRatedTorque_mNm, kU32,
             std::round(kMillis * drive.rated_torque_Nm));
   read_only(dictionary, cia402::kRatedCurrent_mA, kU32, std::round(kMillis * rated_current_A));
+  read_only(dictionary, cia402::kSupply_mV, kU32, std::round(kMillis * supply_V(drive)),
+            Mapping::kYes);
   dictionary->add_writable(cia402::kMaxTorque, kU16, std::min(peak, kMostPermille), 0.0,
                            kMostPermille, Mapping::kYes);
+  // The encoder seems to sit on the joint; a count per turn that is not whole needs several turns.
+  const double turns = whole_turns(drive.counts_per_turn);
   count_of(dictionary, cia402::kEncoderCounts, 2);
-  read_only(dictionary, cia402::kEncoderCounts, kU32, std::ldexp(1.0, drive.encoder_bits));
-  read_only(dictionary, {{cia402::kEncoderCounts.id.index, 2}, 4}, kU32, 1);  // per revolution
+  read_only(dictionary, cia402::kEncoderCounts, kU32, std::round(turns * drive.counts_per_turn));
+  read_only(dictionary, cia402::kEncoderTurns, kU32, turns);
+  count_of(dictionary, cia402::kGearMotorTurns, 2);
+  read_only(dictionary, cia402::kGearMotorTurns, kU32, 1);
+  read_only(dictionary, cia402::kGearJointTurns, kU32, 1);
 }
 
 void add_behaviour(CanopenDictionary* dictionary, const DriveConfig& drive) {
   const bool brakes = drive.watchdog_reaction == NodeWatchdogReaction::kDamp;
   dictionary->add_writable(cia402::kQuickStopOption, kI16, 2, 0, 8);
-  dictionary->add_writable(cia402::kDisableOption, kI16, 0, 0, 0);
+  for (const cia402::Object& let_go :
+       {cia402::kShutdownOption, cia402::kDisableOption, cia402::kHaltOption})
+    dictionary->add_writable(let_go, kI16, 0, 0, 0);
   dictionary->add_writable(cia402::kFaultOption, kI16, brakes ? kBraking : 0.0, 0, kBraking);
   dictionary->add_writable(cia402::kConnectionLostOption, kI16,
                            static_cast<double>(cia402::Reaction::kFault), 0, 3);

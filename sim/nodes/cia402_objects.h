@@ -1,7 +1,7 @@
 // The object dictionary of an emulated CiA 402 drive, without CANopen's own objects.
 #pragma once
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/nodes/canopen_dictionary.h"
 
 namespace limber::sim {

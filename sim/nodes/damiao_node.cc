@@ -26,7 +26,7 @@ DamiaoNode::DamiaoNode(const JointConfig& joint, bool fd)
 DamiaoNode::Sensed DamiaoNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_position_, 0.0, torque};
-  const double step = 2.0 * std::numbers::pi / std::ldexp(1.0, drive_.encoder_bits);
+  const double step = 2.0 * std::numbers::pi / drive_.counts_per_turn;
   const double angle = drive_.sign * joint.theta + drive_.offset_rad;
   return {std::floor(angle / step) * step + zero_, drive_.sign * joint.theta_dot, torque};
 }
@@ -156,7 +156,7 @@ DriveLaw DamiaoNode::law() const noexcept {
       peak > 0.0 ? std::min(peak, registers_.range().torque_Nm) : registers_.range().torque_Nm;
   law.tau_ff = drive_.sign * command_.torque_Nm;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
-    // The loop runs on what the encoder says, which no longer depends on the joint.
+    // The loop runs on the frozen reading, which no longer depends on the joint.
     law.tau_ff +=
         drive_.sign * (command_.kp_Nm_per_rad * (command_.position_rad - frozen_position_) +
                        command_.kd_Nms_per_rad * command_.velocity_rad_per_s);
@@ -169,13 +169,9 @@ DriveLaw DamiaoNode::law() const noexcept {
   return law;
 }
 
-void DamiaoNode::inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
-  if (fault < 0 || fault >= kFaults) return;
+void DamiaoNode::on_fault(int fault, const JointReading& joint) noexcept {
   if (fault == scenario_event_t::FAULT_FROZEN_ENCODER) frozen_position_ = sense(joint).position;
   if (fault == scenario_event_t::FAULT_DRIVE_ERROR) leave(mit::DriveError::kOverCurrent);
-  fault_until_ns_[fault] = until_ns;
 }
-
-void DamiaoNode::clear_faults() noexcept { fault_until_ns_.fill(0); }
 
 }  // namespace limber::sim

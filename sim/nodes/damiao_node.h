@@ -6,12 +6,11 @@
 // offset of the robot's description, then set-zero).
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/mit.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/nodes/damiao_registers.h"
 #include "sim/nodes/motor_node.h"
 
@@ -35,15 +34,12 @@ class DamiaoNode final : public MotorNode {
   DriveLaw law() const noexcept override;
   bool enabled() const noexcept override { return state_ == mit::DriveError::kEnabled; }
 
-  /// DRIVE_ERROR is an over-current.
-  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept override;
-  void clear_faults() noexcept override;
-
   mit::DriveError state() const noexcept { return state_; }
   const DamiaoRegisters& registers() const noexcept { return registers_; }
 
  private:
-  static constexpr int kFaults = 4;
+  /// DRIVE_ERROR is an over-current.
+  void on_fault(int fault, const JointReading& joint) noexcept override;
   /// The drive's own view of its joint.
   struct Sensed {
     double position, velocity, torque;
@@ -56,7 +52,6 @@ class DamiaoNode final : public MotorNode {
   bool on_register(const CanFrame& frame, const mit::RegisterRequest& request,
                    const JointReading& joint, CanFrame* reply) noexcept;
   void leave(mit::DriveError state) noexcept;
-  bool has(int fault) const noexcept { return now_ns_ < fault_until_ns_[fault]; }
 
   DriveConfig drive_;
   DamiaoRegisters registers_;
@@ -64,9 +59,7 @@ class DamiaoNode final : public MotorNode {
   mit::Command command_;
   bool shorted_ = false;
   double zero_ = 0.0;  // set-zero: added to the drive angle
-  std::int64_t now_ns_ = 0;
   std::int64_t last_frame_ns_ = 0;
-  std::array<std::int64_t, kFaults> fault_until_ns_{};
   double frozen_position_ = 0.0;
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber::sim {
 
@@ -18,7 +18,7 @@ class DamiaoRegisters {
   /// Raw 32-bit content; 0 for numbers the drive does not have.
   std::uint32_t read(std::uint8_t reg) const noexcept;
   /// Takes the value if the register is writable and the value makes sense, else keeps the old one.
-  /// Identifiers and bit rate stay as the robot's description says: the emulated node does not move
+  /// Identifiers and bit rate stay as in the robot's description: the emulated node does not move
   /// on the bus.
   void write(std::uint8_t reg, std::uint32_t raw) noexcept;
 

@@ -11,11 +11,11 @@ namespace {
 using moteus::Mode;
 using moteus::Register;
 
-constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;  // rad
 constexpr double kConfiguredWatchdog_s = 0.1;
 constexpr std::int64_t kEnablingMode_ns = 1'000'000;  // in each of modes 2, 3, 4
 constexpr int kDriverFault = 33;
-constexpr double kTemperature_degC = 30.0;
+constexpr double kBoardTemperature_degC = 30.0;
 constexpr double kVoltage_V = 48.0;
 constexpr double kModel = 0x0200;
 constexpr double kFirmware = 0x0100;
@@ -30,10 +30,10 @@ MoteusNode::MoteusNode(const JointConfig& joint)
 MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_turns_, 0.0, torque};
-  const double counts = std::ldexp(1.0, drive_.encoder_bits);
-  const double turns = (drive_.sign * joint.theta + drive_.offset_rad) / kTurn;
-  return {std::floor(turns * counts) / counts + zero_turns_, drive_.sign * joint.theta_dot / kTurn,
-          torque};
+  const double counts = drive_.counts_per_turn;
+  const double turns = (drive_.sign * joint.theta + drive_.offset_rad) / kTurn_rad;
+  return {std::floor(turns * counts) / counts + zero_turns_,
+          drive_.sign * joint.theta_dot / kTurn_rad, torque};
 }
 
 // --- frames --------------------------------------------------------------------------------------
@@ -50,7 +50,7 @@ bool MoteusNode::receive(const CanFrame& frame, const JointReading& joint, std::
   moteus::Subframe subframe;
   Request request;
   while (reader.next(&subframe)) work(subframe, joint, &request, &answer);
-  if (request.wanted) obey(request.mode, joint);
+  if (request.wanted) change_mode(request.mode, joint);
   *reply = answer.frame();
   reply->fd = frame.fd || reply->length > 8;
   reply->bitrate_switch = frame.bitrate_switch;
@@ -142,7 +142,7 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
       return is(kHomedOutput);
     case Register::kMotorTemperature:
     case Register::kTemperature:
-      return is(kTemperature_degC);
+      return is(kBoardTemperature_degC);
     case Register::kVoltage:
       return is(kVoltage_V);
     case Register::kFault:
@@ -164,7 +164,7 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
 
 // --- modes ---------------------------------------------------------------------------------------
 
-void MoteusNode::obey(Mode wanted, const JointReading& joint) noexcept {
+void MoteusNode::change_mode(Mode wanted, const JointReading& joint) noexcept {
   const bool latched = mode_ == Mode::kFault || mode_ == Mode::kTimeout;
   if (wanted == Mode::kStopped) {
     if (!has(scenario_event_t::FAULT_DRIVE_ERROR)) leave(Mode::kStopped, 0);
@@ -218,30 +218,28 @@ DriveLaw MoteusNode::law() const noexcept {
   const double most = command_.get(Register::kCommandMaxTorque);
   const double kp_scale = command_.get(Register::kCommandKpScale);
   const double kd_scale = std::min(kp_scale, command_.get(Register::kCommandKdScale));
-  const double speed = kTurn * command_.get(Register::kCommandVelocity);
+  const double speed = kTurn_rad * command_.get(Register::kCommandVelocity);
   const double kp = kp_scale * drive_.range.kp_Nm_per_rad;
   const double kd = kd_scale * drive_.range.kd_Nms_per_rad;
   law.limit = most >= 0.0 ? std::min(drive_.peak_torque_Nm, most) : drive_.peak_torque_Nm;
   law.tau_ff = drive_.sign * command_.get(Register::kCommandTorque);
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
-    // The loop runs on what the encoder says, which no longer depends on the joint.
-    law.tau_ff += drive_.sign * (kp * kTurn * (wanted_turns() - frozen_turns_) + kd * speed);
+    // The loop runs on the frozen reading, which no longer depends on the joint.
+    law.tau_ff += drive_.sign * (kp * kTurn_rad * (wanted_turns() - frozen_turns_) + kd * speed);
     return law;
   }
   law.kp = kp;
   law.kd = kd;
-  law.q_des = drive_.sign * (kTurn * (wanted_turns() - zero_turns_) - drive_.offset_rad);
+  law.q_des = drive_.sign * (kTurn_rad * (wanted_turns() - zero_turns_) - drive_.offset_rad);
   law.v_des = drive_.sign * speed;
   return law;
 }
 
 // --- faults --------------------------------------------------------------------------------------
 
-void MoteusNode::inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
-  if (fault < 0 || fault >= kFaults) return;
+void MoteusNode::on_fault(int fault, const JointReading& joint) noexcept {
   if (fault == scenario_event_t::FAULT_FROZEN_ENCODER) frozen_turns_ = sense(joint).turns;
   if (fault == scenario_event_t::FAULT_DRIVE_ERROR) leave(Mode::kFault, kDriverFault);
-  fault_until_ns_[fault] = until_ns;
 }
 
 }  // namespace limber::sim

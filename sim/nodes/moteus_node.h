@@ -2,15 +2,14 @@
 // obeying.
 //
 // A frame is worked through subframe by subframe; it is answered with the state before it takes
-// effect, and if an answer was asked for there is one, even an empty one. The node speaks the
+// effect, and if an answer was requested there is one, even an empty one. The node speaks the
 // drive's own angle (sign and offset of the robot's description, then set-output), in turns.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "drivers/protocols/moteus_frame.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/nodes/moteus_command.h"
 #include "sim/nodes/motor_node.h"
 
@@ -31,19 +30,17 @@ class MoteusNode final : public MotorNode {
   /// command's maximum torque and the drive's peak. There is no integrator.
   DriveLaw law() const noexcept override;
   bool enabled() const noexcept override { return mode_ == moteus::Mode::kPosition; }
-  /// DRIVE_ERROR is a fault of the motor driver (33).
-  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept override;
-  void clear_faults() noexcept override { fault_until_ns_.fill(0); }
 
   moteus::Mode mode() const noexcept { return mode_; }
 
  private:
-  static constexpr int kFaults = 4;
+  /// DRIVE_ERROR is a fault of the motor driver (33).
+  void on_fault(int fault, const JointReading& joint) noexcept override;
   /// The drive's own view of its joint.
   struct Sensed {
     double turns, turns_per_s, torque;
   };
-  /// What a frame asks for at its end.
+  /// The mode change that a frame requests, made at its end.
   struct Request {
     bool wanted = false;
     moteus::Mode mode = moteus::Mode::kStopped;
@@ -57,24 +54,21 @@ class MoteusNode final : public MotorNode {
   void answer_read(const moteus::Subframe& subframe, const JointReading& joint,
                    moteus::FrameWriter* answer) const noexcept;
   bool read(std::uint16_t reg, const JointReading& joint, double* value) const noexcept;
-  void obey(moteus::Mode wanted, const JointReading& joint) noexcept;
+  void change_mode(moteus::Mode wanted, const JointReading& joint) noexcept;
   void leave(moteus::Mode mode, int fault) noexcept;
   double watchdog_s() const noexcept;
   double wanted_turns() const noexcept;
-  bool has(int fault) const noexcept { return now_ns_ < fault_until_ns_[fault]; }
 
   DriveConfig drive_;
   std::uint8_t id_;
   moteus::Mode mode_ = moteus::Mode::kStopped;
   int fault_ = 0;
   MoteusCommand written_;     ///< as the registers are
-  MoteusCommand command_;     ///< as obeyed
+  MoteusCommand command_;     ///< at work
   double start_turns_ = 0.0;  ///< wanted angle when the command came
   double zero_turns_ = 0.0;   ///< set-output: added to the drive angle
-  std::int64_t now_ns_ = 0;
   std::int64_t command_ns_ = 0;
   std::int64_t enabling_ns_ = 0;
-  std::array<std::int64_t, kFaults> fault_until_ns_{};
   double frozen_turns_ = 0.0;
 };
 

@@ -1,11 +1,13 @@
 // An emulated motor drive on the bus, whatever its protocol.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limber/scenario_event_t.hpp>
 #include <memory>
 
 #include "drivers/can/can_frame.h"
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 #include "sim/joints/drive_law.h"
 
 namespace limber::sim {
@@ -31,8 +33,8 @@ class MotorNode {
   /// Handles a frame at simulated time `now`. True if `reply` is to be sent.
   virtual bool receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                        CanFrame* reply) noexcept = 0;
-  /// What the node says unasked (start-up, heartbeat, emergency); false when there is no more.
-  virtual bool take(CanFrame* frame) noexcept {
+  /// The next unsolicited frame (start-up, heartbeat, emergency); false when there is no more.
+  virtual bool next_frame(CanFrame* frame) noexcept {
     static_cast<void>(frame);
     return false;
   }
@@ -49,17 +51,34 @@ class MotorNode {
   virtual bool enabled() const noexcept = 0;
 
   /// scenario_event_t FAULT_* until a simulated time:
-  /// - SILENT: obeys, but its replies never reach the bus.
+  /// - SILENT: acts on commands, but its replies never reach the bus.
   /// - FROZEN_ENCODER: position stays what it was, speed reads 0, for the bus and for the drive's
   ///   own law.
   /// - DRIVE_ERROR: leaves enabled mode with an error that cannot be cleared while it lasts.
   /// - DROP_COMMANDS: answers, but takes nothing in; the watchdog is not fed.
-  virtual void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept = 0;
-  virtual void clear_faults() noexcept = 0;
+  void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
+    if (fault < 0 || fault >= kFaults) return;
+    on_fault(fault, joint);
+    fault_until_ns_[static_cast<std::size_t>(fault)] = until_ns;
+  }
+  void clear_faults() noexcept { fault_until_ns_.fill(0); }
+
+ protected:
+  /// What happens in the drive at the moment a fault begins.
+  virtual void on_fault(int fault, const JointReading& joint) noexcept = 0;
+  bool has(int fault) const noexcept {
+    return now_ns_ < fault_until_ns_[static_cast<std::size_t>(fault)];
+  }
+
+  std::int64_t now_ns_ = 0;  ///< simulated time; receive() and update() keep it
+
+ private:
+  static constexpr int kFaults = scenario_event_t::FAULT_DROP_COMMANDS + 1;
+  std::array<std::int64_t, kFaults> fault_until_ns_{};
 };
 
-/// The node that speaks the protocol of the joint's drive. `joint` is what the drive has been told
-/// of its joint (robot.yaml), not what the joint is. Set-up only.
+/// The node that speaks the protocol of the joint's drive. `joint` is the joint as its drive
+/// is configured for it (robot.yaml), not as it is. Set-up only.
 std::unique_ptr<MotorNode> make_motor_node(const JointConfig& joint, bool fd);
 
 }  // namespace limber::sim

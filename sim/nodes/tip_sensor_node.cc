@@ -5,7 +5,7 @@
 
 #include "drivers/protocols/limber_ft.h"
 #include "drivers/protocols/robotous_rft.h"
-#include "sim/noise.h"
+#include "sim/joints/noise.h"
 
 namespace limber::sim {
 namespace {

@@ -25,7 +25,7 @@ class TipSensorNode {
   void update(const Vector6& F, double h, std::int64_t now_ns) noexcept;
 
   /// Handles a frame; the frames to send in answer, none if it is not a request for this node.
-  /// The noise of an instant depends on seed and simulated time alone, not on what was asked
+  /// The noise of an instant depends on seed and simulated time alone, not on what was requested
   /// before.
   std::span<const CanFrame> receive(const CanFrame& frame) noexcept;
 

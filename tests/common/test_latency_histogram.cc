@@ -2,7 +2,7 @@
 
 #include "common/latency_histogram.h"
 
-namespace limber {
+namespace limber::test_latency_histogram {
 namespace {
 
 TEST(LatencyHistogram, IsEmptyAtFirst) {
@@ -41,4 +41,4 @@ TEST(LatencyHistogram, HugeValuesLandInTheLastBin) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_latency_histogram

@@ -4,7 +4,7 @@
 #include "common/yaml_reader.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_yaml_reader {
 namespace {
 
 YamlMap read(const std::string& text) { return YamlMap::from_text(text, "f.yaml"); }
@@ -128,4 +128,4 @@ TEST(Suggest, FindsSlipsAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_yaml_reader

@@ -3,8 +3,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "controller/arm_terms.h"
-#include "robots/load_robot.h"
+#include "controller/model/arm_terms.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::testing {
 

@@ -8,6 +8,7 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
     : robot(arm),
       model(robot),
       terms(model.size()),
+      point(model.size()),
       state(model.size()),
       goal(model.size()),
       gains(controller::default_gains(robot.robot)),
@@ -19,8 +20,8 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
 }
 
 LawInputs LawBench::inputs() const {
-  return {.state = state,
-          .measured = state,
+  return {.point = point,
+          .state = state,
           .terms = terms,
           .goal = goal,
           .gains = gains,
@@ -31,15 +32,15 @@ LawInputs LawBench::inputs() const {
 }
 
 void LawBench::start(const VectorJ& q, const VectorJ& v) {
-  state.q = q;
-  state.v = v;
+  point.q = state.q = q;
+  point.v = state.v = v;
   model.evaluate(q, v, &terms);
   law_->start(inputs());
 }
 
 const controller::LawOutput& LawBench::at(const VectorJ& q, const VectorJ& v) {
-  state.q = q;
-  state.v = v;
+  point.q = state.q = q;
+  point.v = state.v = v;
   model.evaluate(q, v, &terms);
   output.reset();
   law_->compute(inputs(), &output);
@@ -52,7 +53,8 @@ VectorJ LawBench::with_gravity(const VectorJ& q, const VectorJ& v) {
 
 VectorJ LawBench::composed(const VectorJ& q, const VectorJ& v) {
   VectorJ tau = at(q, v).tau();
-  const controller::Composition add = controller::with_bias(entry.composition, gains.settings.bias);
+  const controller::Compensation add =
+      controller::chosen_compensation(entry.compensation, gains.settings.model_compensation);
   if (add.gravity) tau += terms.g;
   if (add.coriolis) tau += terms.Cv;
   return tau;

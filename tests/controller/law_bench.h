@@ -22,10 +22,22 @@ class LawBench {
   void start(const VectorJ& q, const VectorJ& v);
   /// The goal is where the arm is at q.
   void set_goal(const VectorJ& q);
+  /// The value of a parameter of a law, by its key.
+  template <typename Value>
+  void set(const char* key, const Value& value) {
+    gains.parameters.set(*find_row(controller::law_catalog().parameters, key), value);
+  }
+  const MatrixJ& matrix(const char* key) const {
+    return gains.parameters.matrix(*find_row(controller::law_catalog().parameters, key));
+  }
+  /// nullptr, or why the law cannot work with the gains.
+  const char* check() const { return law_->check(gains); }
+  const controller::Law& law() const { return *law_; }
 
   LoadedRobot robot;
   controller::ArmModel model;
   controller::ArmTerms terms;
+  controller::ControlPoint point;
   controller::ArmState state;
   controller::Goal goal;
   controller::Gains gains;

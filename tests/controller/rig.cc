@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "controller/state_judge.h"
-#include "scenarios/gains_yaml.h"
+#include "controller/modes/state_judge.h"
+#include "robots/loader/default_gains.h"
 
 namespace limber::testing {
 namespace {
@@ -14,6 +14,7 @@ ArmControllerOptions options_for(const std::string& law, int bridged_cycles) {
   options.law = law;
   options.bridged_cycles = bridged_cycles;
   options.measure_time = false;
+  options.simulated = true;
   return options;
 }
 
@@ -41,7 +42,7 @@ Rig::Rig(const LoadedRobot& given, const std::string& law, int bridged_cycles)
   }
 }
 
-const joint_torque_t& Rig::step() {
+const joint_command_t& Rig::step() {
   ++state.seq;
   state.time_ns = state.seq * state.period_ns;
   const int n = state.num_joints;
@@ -54,7 +55,7 @@ const joint_torque_t& Rig::step() {
   } else {
     plant.v.setZero();
   }
-  const joint_torque_t before = answer;
+  const joint_command_t before = answer;
   answer = controller.step(state);
   for (int i = 0; i < n; ++i) jump_ = std::max(jump_, std::abs(answer.tau[i] - before.tau[i]));
   limits_ |= controller.status().limits;
@@ -95,14 +96,14 @@ void Rig::move(const VectorJ& sent) {
 
 void Rig::follow_request() {
   switch (answer.request) {
-    case joint_torque_t::REQUEST_ON:
-    case joint_torque_t::REQUEST_ACKNOWLEDGE:
+    case joint_command_t::REQUEST_ON:
+    case joint_command_t::REQUEST_ACKNOWLEDGE:
       state.drive_state = joint_state_t::DRIVE_ON;
       break;
-    case joint_torque_t::REQUEST_OFF:
+    case joint_command_t::REQUEST_OFF:
       state.drive_state = joint_state_t::DRIVE_OFF;
       break;
-    case joint_torque_t::REQUEST_HOLD:
+    case joint_command_t::REQUEST_HOLD:
       state.drive_state = joint_state_t::DRIVE_HOLD;
       break;
     default:
@@ -116,18 +117,18 @@ void Rig::run(double seconds) {
 
 void Rig::to_hold() {
   run(0.12);
-  ask(mode_request_t::REQUEST_HOLD);
+  request(mode_request_t::REQUEST_HOLD);
   run(1.5);
 }
 
 void Rig::to_active() {
   to_hold();
-  ask(mode_request_t::REQUEST_ACTIVE);
+  request(mode_request_t::REQUEST_ACTIVE);
   run(0.7);
   clear_jumps();
 }
 
-const char* Rig::ask(std::int8_t request, std::int64_t client) {
+const char* Rig::request(std::int8_t request, std::int64_t client) {
   mode_request_t message{};
   message.client = client;
   message.request = request;

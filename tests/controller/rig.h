@@ -20,13 +20,13 @@ class Rig {
                int bridged_cycles = 2);
 
   /// One cycle; returns the answer.
-  const joint_torque_t& step();
+  const joint_command_t& step();
   void run(double seconds);
   /// From the start to HOLD, or ACTIVE, with the drives on and the torque settled.
   void to_hold();
   void to_active();
 
-  const char* ask(std::int8_t request, std::int64_t client = kClient);
+  const char* request(std::int8_t request, std::int64_t client = kClient);
   compliance_gains_t gains() const;  ///< the robot's default gains as a message
   compliance_goal_t goal() const;    ///< GOAL_OFFSET of zero
   std::int8_t mode() const { return controller.status().mode; }
@@ -43,7 +43,7 @@ class Rig {
   std::optional<ElasticPlant> elastic;  ///< of an arm with springs; q, v and F_ext are plant's
   VectorJ viscous;  ///< friction of the plant's joints, N m s/rad; none unless set
   joint_state_t state{};
-  joint_torque_t answer{};
+  joint_command_t answer{};
 
  private:
   void follow_request();

@@ -4,7 +4,7 @@
 #include "common/config_error.h"
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_arm_controller {
 namespace {
 
 using limber::testing::kClient;
@@ -55,14 +55,14 @@ TEST(ArmController, IdleGivesNoTorqueButSaysWhatGravityNeeds) {
 TEST(ArmController, HoldStartsFromTheTorquePresentAndKeepsTheArm) {
   Rig rig(arm());
   rig.run(0.12);
-  ASSERT_EQ(rig.ask(mode_request_t::REQUEST_HOLD), nullptr);
+  ASSERT_EQ(rig.request(mode_request_t::REQUEST_HOLD), nullptr);
   rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_HOLD);
-  EXPECT_EQ(rig.answer.request, +joint_torque_t::REQUEST_ON);
+  EXPECT_EQ(rig.answer.request, +joint_command_t::REQUEST_ON);
   EXPECT_EQ(rig.tau().norm(), 0.0) << "drives not on yet";
   const VectorJ q = rig.plant.q;
   rig.step();
-  EXPECT_EQ(rig.answer.request, +joint_torque_t::REQUEST_KEEP);
+  EXPECT_EQ(rig.answer.request, +joint_command_t::REQUEST_KEEP);
   EXPECT_LT(rig.tau().norm(), 1e-9) << "first torque with drives on";
   rig.clear_jumps();
   double moved = 0.0;
@@ -81,13 +81,13 @@ TEST(ArmController, TakesOverFromDrivesThatHold) {
   Rig rig(arm());
   rig.run(0.12);
   rig.state.drive_state = joint_state_t::DRIVE_HOLD;
-  rig.ask(mode_request_t::REQUEST_HOLD);
+  rig.request(mode_request_t::REQUEST_HOLD);
   // The driver says what its drives apply until the take-over is complete.
   ++rig.state.seq;
   for (int i = 0; i < 7; ++i) rig.state.tau_applied[i] = 0.5 * i;
   rig.state.time_ns = rig.state.seq * rig.state.period_ns;
   rig.answer = rig.controller.step(rig.state);
-  EXPECT_EQ(rig.answer.request, +joint_torque_t::REQUEST_ACKNOWLEDGE);
+  EXPECT_EQ(rig.answer.request, +joint_command_t::REQUEST_ACKNOWLEDGE);
   for (int i = 0; i < 7; ++i) EXPECT_EQ(rig.answer.tau[i], 0.5 * i);
   rig.state.drive_state = joint_state_t::DRIVE_ON;
   ++rig.state.seq;
@@ -102,7 +102,7 @@ TEST(ArmController, ActiveStartsWhereTheArmIs) {
   rig.run(1.0);
   rig.clear_jumps();
   const VectorJ before = rig.tau();
-  ASSERT_EQ(rig.ask(mode_request_t::REQUEST_ACTIVE), nullptr);
+  ASSERT_EQ(rig.request(mode_request_t::REQUEST_ACTIVE), nullptr);
   rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
   EXPECT_LT((rig.tau() - before).cwiseAbs().maxCoeff(), 1e-6);
@@ -119,13 +119,13 @@ TEST(ArmController, IdleRequestTurnsTheDrivesOffInStepsTheGatePasses) {
   Rig rig(arm());
   rig.to_hold();
   rig.clear_jumps();
-  ASSERT_EQ(rig.ask(mode_request_t::REQUEST_IDLE), nullptr);
+  ASSERT_EQ(rig.request(mode_request_t::REQUEST_IDLE), nullptr);
   rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_IDLE);
-  EXPECT_EQ(rig.answer.request, +joint_torque_t::REQUEST_OFF);
+  EXPECT_EQ(rig.answer.request, +joint_command_t::REQUEST_OFF);
   EXPECT_LE(rig.jump(), 0.8 * kGateStep + 1e-12);
   rig.step();
-  EXPECT_EQ(rig.answer.request, +joint_torque_t::REQUEST_KEEP);
+  EXPECT_EQ(rig.answer.request, +joint_command_t::REQUEST_KEEP);
   EXPECT_EQ(rig.tau().norm(), 0.0);
 }
 
@@ -138,7 +138,7 @@ TEST(ArmController, SoftStopEndsInHold) {
   rig.run(0.6);
   const double moving = Eigen::Map<const Vector6>(rig.controller.status().V_BT).head<3>().norm();
   EXPECT_GT(moving, 0.1);
-  ASSERT_EQ(rig.ask(mode_request_t::REQUEST_STOP, kClient + 1), nullptr) << "from anybody";
+  ASSERT_EQ(rig.request(mode_request_t::REQUEST_STOP, kClient + 1), nullptr) << "from anybody";
   rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_SOFT_STOP);
   EXPECT_EQ(rig.controller.status().reason, +Status::REASON_STOP_REQUESTED);
@@ -229,14 +229,35 @@ TEST(ArmController, TimelineActsByArmTime) {
   EXPECT_NEAR(rig.controller.status().p_BD[0] - x, 0.02, 1e-4);
   EXPECT_EQ(rig.controller.status().requests_refused, 0);
 
-  rig.ask(mode_request_t::REQUEST_STOP);
+  rig.request(mode_request_t::REQUEST_STOP);
   rig.run(0.4);
-  rig.ask(mode_request_t::REQUEST_IDLE, kScenarioClient);
+  rig.request(mode_request_t::REQUEST_IDLE, kScenarioClient);
   rig.run(0.1);
   ++rig.state.session;  // the driver starts again, and so does the timeline
   rig.state.seq = -1;
   rig.run(0.3);
   EXPECT_EQ(rig.mode(), +Status::MODE_HOLD);
+}
+
+// The drives of a busy machine may take longer than the scenario allows for.
+TEST(ArmController, ModesOfATimelineWaitForTheDrives) {
+  std::vector<TimedMessage> timeline;
+  mode_request_t request{};
+  request.client = kScenarioClient;
+  request.request = mode_request_t::REQUEST_HOLD;
+  timeline.push_back({0, request});  // the controller is in INIT for 100 ms
+  request.request = mode_request_t::REQUEST_ACTIVE;
+  timeline.push_back({0, request});  // and the drives are not on
+  compliance_goal_t goal{};
+  goal.client = kScenarioClient;
+  goal.num_joints = 7;
+  goal.kind = compliance_goal_t::GOAL_OFFSET;
+  timeline.push_back({1'000'000, goal});
+  Rig rig(arm());
+  rig.controller.set_timeline(&timeline);
+  rig.run(0.2);
+  EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
+  EXPECT_EQ(rig.controller.status().requests_refused, 0);
 }
 
 TEST(ArmController, WhatCannotBeControlledIsRefusedAtTheStart) {
@@ -252,4 +273,4 @@ TEST(ArmController, WhatCannotBeControlledIsRefusedAtTheStart) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_arm_controller

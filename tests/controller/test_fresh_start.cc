@@ -3,7 +3,7 @@
 
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_fresh_start {
 namespace {
 
 using limber::testing::Rig;
@@ -47,7 +47,7 @@ TEST(FreshStart, HoldingKnowsNoChoices) {
   rig.to_hold();
   const VectorJ q = rig.plant.q;
   Gains gains = rig.gains();
-  gains.bias = Gains::BIAS_NONE;
+  gains.model_compensation = Gains::COMPENSATION_NONE;
   gains.joint_damping = Gains::DAMPING_GIVEN;  // and none is given
   ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
   rig.run(1.0);
@@ -58,12 +58,12 @@ TEST(FreshStart, HoldingKnowsNoChoices) {
 TEST(FreshStart, AtRestTheGoalIsWhereTheArmIs) {
   Rig rig(limber::testing::slider());
   rig.to_active();
-  rig.ask(mode_request_t::REQUEST_HOLD);
+  rig.request(mode_request_t::REQUEST_HOLD);
   rig.run(0.5);
   rig.plant.F_ext[0] = 10.0;
   rig.run(0.5);
   ASSERT_GT(rig.controller.status().p_BT[0] - rig.controller.status().p_BD[0], 0.05);
-  rig.ask(mode_request_t::REQUEST_IDLE);
+  rig.request(mode_request_t::REQUEST_IDLE);
   rig.run(0.1);
   const Status& status = rig.controller.status();
   ASSERT_EQ(rig.mode(), +Status::MODE_IDLE);
@@ -80,15 +80,15 @@ TEST(FreshStart, HoldLeavesNothingOfTheLawBefore) {
   rig.run(0.3);
   rig.plant.F_ext[0] = 0.0;
   ASSERT_GT(rig.controller.status().passivity_energy_J, 0.01);
-  rig.ask(mode_request_t::REQUEST_HOLD);
+  rig.request(mode_request_t::REQUEST_HOLD);
   rig.run(3.0);
   ASSERT_EQ(rig.mode(), +Status::MODE_HOLD);
   EXPECT_EQ(rig.controller.status().passivity_energy_J, 0.0);
-  rig.ask(mode_request_t::REQUEST_ACTIVE);
+  rig.request(mode_request_t::REQUEST_ACTIVE);
   rig.run(0.01);
   ASSERT_EQ(rig.mode(), +Status::MODE_ACTIVE);
   EXPECT_NEAR(rig.controller.status().passivity_energy_J, 0.0, 1e-6);
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_fresh_start

@@ -7,7 +7,7 @@
 
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_passivity_in_cycle {
 namespace {
 
 using limber::testing::kSliderMass;
@@ -80,4 +80,4 @@ TEST(PassivityInCycle, DampingKeepsTheAmplitude) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_passivity_in_cycle

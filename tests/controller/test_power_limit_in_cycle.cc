@@ -6,7 +6,7 @@
 
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_power_limit_in_cycle {
 namespace {
 
 using limber::testing::kSliderMass;
@@ -64,4 +64,4 @@ TEST(PowerLimitInCycle, WithoutOneItDoes) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_power_limit_in_cycle

@@ -10,10 +10,10 @@
 #include "controller/laws/registry.h"
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_switching {
 namespace {
 
-using controller::Follows;
+using controller::GoalType;
 using limber::testing::Rig;
 using Gains = compliance_gains_t;
 using Goal = compliance_goal_t;
@@ -42,7 +42,7 @@ class Switching : public ::testing::Test {
   std::vector<std::string> names() const {
     std::vector<std::string> able;
     for (const controller::LawEntry& law : controller::laws()) {
-      if (refuse_law(law, controller::sensors_of(rig.robot.robot)) == nullptr) {
+      if (check_law(law, controller::sensors_of(rig.robot.robot)) == nullptr) {
         able.emplace_back(law.name);
       }
     }
@@ -69,7 +69,8 @@ class Switching : public ::testing::Test {
   Gains gains_of(const std::string& law) const {
     Gains gains = rig.gains();
     gains.law = law;
-    if (law == "deflection_pd") gains.bias = Gains::BIAS_GRAVITY;  // it carries nothing
+    if (law == "deflection_pd")
+      gains.model_compensation = Gains::COMPENSATION_GRAVITY;  // it carries nothing
     if (law == "admittance") gains.contact = Gains::CONTACT_JOINT_TORQUE;
     return gains;
   }
@@ -93,10 +94,10 @@ class Switching : public ::testing::Test {
 
   // A goal of the kind the law follows, on its way for a while.
   void move_goal(const std::string& law, bool at_tip) {
-    if (entry(law).follows == Follows::kNothing) return;
+    if (entry(law).goal_type == GoalType::kNone) return;
     Goal goal = rig.goal();
     sign = -sign;
-    if (at_tip || !follows_joints(entry(law).follows)) {
+    if (at_tip || !follows_joints(entry(law).goal_type)) {
       goal.offset[1] = 0.02 * sign;
       goal.offset[5] = 0.1 * sign;
     } else {
@@ -152,7 +153,7 @@ void Switching::walk_all_pairs() {
 // From joints to tip and back under every law for the joints, in the middle of a motion.
 TEST_F(Switching, KindsOfGoalsNeverJump) {
   for (const std::string& law : names()) {
-    if (!follows_joints(entry(law).follows)) continue;
+    if (!follows_joints(entry(law).goal_type)) continue;
     switch_to(law);
     push(1.0);
     rig.run(0.6);
@@ -177,8 +178,9 @@ const Change kChanges[] = {
     {"log_simple", [](Gains* g) { g->orientation = Gains::ORIENTATION_LOG_SIMPLE; }},
     {"quat_simple", [](Gains* g) { g->orientation = Gains::ORIENTATION_QUAT_SIMPLE; }},
     {"goal axes", [](Gains* g) { g->frame = Gains::FRAME_GOAL; }},
-    {"gravity", [](Gains* g) { g->bias = Gains::BIAS_GRAVITY; }},
-    {"gravity and Coriolis", [](Gains* g) { g->bias = Gains::BIAS_GRAVITY_CORIOLIS; }},
+    {"gravity", [](Gains* g) { g->model_compensation = Gains::COMPENSATION_GRAVITY; }},
+    {"gravity and Coriolis",
+     [](Gains* g) { g->model_compensation = Gains::COMPENSATION_GRAVITY_CORIOLIS; }},
     {"factorisation",
      [](Gains* g) { g->damping = g->joint_damping = Gains::DAMPING_FACTORISATION; }},
     {"without inertia",
@@ -192,15 +194,15 @@ const Change kChanges[] = {
      }},
     {"first term", [](Gains* g) { g->stiffness_terms = Gains::STIFFNESS_FIRST; }},
     {"geometric term", [](Gains* g) { g->stiffness_terms = Gains::STIFFNESS_GEOMETRIC; }},
-    {"present pose", [](Gains* g) { g->stiffness_pose = Gains::POSE_CURRENT; }},
-    {"goal pose", [](Gains* g) { g->stiffness_pose = Gains::POSE_GOAL; }},
-    {"mean of poses", [](Gains* g) { g->stiffness_pose = Gains::POSE_MEAN; }},
-    {"partials", [](Gains* g) { g->damping_partials = Gains::PARTIALS_IN_STIFFNESS; }},
+    {"present pose", [](Gains* g) { set_parameter("stiffness_pose", {0.0F}, g); }},
+    {"goal pose", [](Gains* g) { set_parameter("stiffness_pose", {1.0F}, g); }},
+    {"mean of poses", [](Gains* g) { set_parameter("stiffness_pose", {3.0F}, g); }},
+    {"partials", [](Gains* g) { set_parameter("damping_partials", {1.0F}, g); }},
     {"kinematic projector", [](Gains* g) { g->projector = Gains::PROJECTOR_KINEMATIC; }},
     {"no projector", [](Gains* g) { g->projector = Gains::PROJECTOR_NONE; }},
     {"contact from the joints", [](Gains* g) { g->contact = Gains::CONTACT_JOINT_TORQUE; }},
-    {"inertia fed forward", [](Gains* g) { g->inertia_feedforward = 1; }},
-    {"velocity not followed", [](Gains* g) { g->follow_velocity = 0; }},
+    {"inertia fed forward", [](Gains* g) { set_parameter("inertia_feedforward", {1.0F}, g); }},
+    {"velocity not followed", [](Gains* g) { set_parameter("follow_velocity", {0.0F}, g); }},
     {"spring bounds",
      [](Gains* g) {
        g->spring_force_N = 1.0F;
@@ -210,7 +212,7 @@ const Change kChanges[] = {
      [](Gains* g) {
        for (int i = 0; i < 6; ++i)
          g->M_x[i][i] = i < 3 ? 1.0F : 0.005F;  // what acceleration feedback bears
-       for (float& M : g->M_q) M = 0.2F;
+       set_parameter("M_q_kgm2", std::vector<float>(7, 0.2F), g);
        g->ramp_s = 0.3;
      }},
     {"periods",
@@ -222,20 +224,16 @@ const Change kChanges[] = {
 // There and back, while the arm is pushed away from its goal.
 TEST_F(Switching, SettingsNeverJump) {
   for (const std::string& law : names()) {
-    if (entry(law).follows == Follows::kNothing) continue;  // and knows no gains
+    if (entry(law).goal_type == GoalType::kNone) continue;  // and knows no gains
     switch_to(law);
     push(1.0);
     rig.run(0.6);
     for (const Change& change : kChanges) {
       Gains gains = gains_of(law);
       change.make(&gains);
-      const controller::Gains parsed = [&] {
-        controller::Gains result(7);
-        read_gains(gains, &result);
-        return result;
-      }();
-      const auto refuse = entry(law).refuse;
-      if (refuse != nullptr && refuse(parsed, 7) != nullptr) continue;
+      controller::Gains parsed(7);
+      read_gains(gains, &parsed);
+      if (entry(law).make(rig.robot)->check(parsed) != nullptr) continue;
       ASSERT_EQ(rig.controller.on_gains(gains), nullptr) << law << ", " << change.name;
       expect_smooth(law + ", " + change.name, 0.1);
       switch_to(law);  // the defaults again
@@ -245,4 +243,4 @@ TEST_F(Switching, SettingsNeverJump) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_switching

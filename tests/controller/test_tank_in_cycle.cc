@@ -6,7 +6,7 @@
 
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_tank_in_cycle {
 namespace {
 
 using limber::testing::Rig;
@@ -115,4 +115,4 @@ TEST(TankInCycle, EnergyStaysBelowStartAndTank) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_tank_in_cycle

@@ -7,7 +7,7 @@
 
 #include "tests/controller/rig.h"
 
-namespace limber {
+namespace limber::test_term_periods {
 namespace {
 
 using limber::testing::Rig;
@@ -106,7 +106,7 @@ TEST(TermPeriods, ALawStartsWithTermsOfNow) {
   rig.run(1.0);
   const double before = Vector6::Map(rig.controller.status().e).head<3>().norm();
   Gains gains = rig.gains();
-  gains.law = "eq7";
+  gains.law = "mapped_joint_impedance";
   gains.period_cycles[Gains::PERIOD_K] = gains.period_cycles[Gains::PERIOD_D] = 1000;
   ASSERT_EQ(rig.controller.on_gains(gains), nullptr);
   rig.run(0.6);
@@ -116,12 +116,12 @@ TEST(TermPeriods, ALawStartsWithTermsOfNow) {
 TEST(TermPeriods, RefusesPeriodsOutOfRange) {
   Rig rig(limber::testing::seven_joint_arm());
   rig.to_active();
-  for (const std::int16_t period : {-1, 1001}) {
+  for (const std::int16_t period : {-1, 0, 1001}) {
     Gains gains = rig.gains();
     gains.period_cycles[Gains::PERIOD_K] = period;
-    EXPECT_STREQ(rig.controller.on_gains(gains), "period_cycles must be within 0..1000");
+    EXPECT_STREQ(rig.controller.on_gains(gains), "period_cycles must be within 1..1000 cycles");
   }
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_term_periods

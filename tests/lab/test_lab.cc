@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "common/config_error.h"
+#include "controller/laws/registry.h"
 #include "lab/lab.h"
 #include "tests/support/allocation_counter.h"
 
-namespace limber {
+namespace limber::test_lab {
 namespace {
 
 const std::string kScenarios = std::string(LIMBER_SOURCE_DIR) + "/scenarios/";
@@ -18,7 +20,7 @@ const std::string kScenarios = std::string(LIMBER_SOURCE_DIR) + "/scenarios/";
 struct Stage {
   explicit Stage(const std::string& name)
       : robot(load_robot(scenario_robot(kScenarios + name))),
-        scenario(load_scenario(kScenarios + name, robot)),
+        scenario(load_scenario(kScenarios + name, robot, &controller::law_catalog())),
         lab(robot, scenario) {}
 
   void run_to(double time_s) {
@@ -57,6 +59,65 @@ TEST(Lab, NeverAllocatesInTheCycle) {
     stage.run_to(3.0);  // enabling, HOLD, ACTIVE, gains, pushes, a wall, a goal
     EXPECT_EQ(testing::allocations() - before, 0) << name;
   }
+}
+
+// The shipped arms at their shipped rates on a wire with bit time: nothing is late, and the count
+// agrees with the prediction.
+TEST(Lab, EveryArmRunsOnItsWire) {
+  for (const char* name :
+       {"push.yaml", "desktop2r_push.yaml", "planar2r_push.yaml", "ideal7_push.yaml",
+        "iiwa14_push.yaml", "panda_push.yaml", "baxter_push.yaml", "antagonist2r_stiffness.yaml"}) {
+    Stage stage(name);
+    stage.run_to(1.0);
+    const driver_status_t before = stage.lab.driver_status();
+    for (int i = 0; i < 1000; ++i) {
+      stage.lab.step();
+      const joint_state_t& state = stage.lab.state();
+      for (int j = 0; j < state.num_joints; ++j) ASSERT_EQ(state.age_cycles[j], 0) << name;
+      ASSERT_EQ(state.drive_state, +joint_state_t::DRIVE_ON) << name;
+    }
+    const driver_status_t after = stage.lab.driver_status();
+    for (int b = 0; b < after.num_buses; ++b) {
+      EXPECT_NEAR(after.bus_load_counted[b] / after.bus_load_predicted[b], 1.0, 0.02) << name;
+      const sim::Wire* wire = stage.lab.simulator().wire(b);
+      ASSERT_NE(wire, nullptr) << name;
+      EXPECT_EQ(wire->count().errors, 0) << name;
+    }
+    for (int j = 0; j < after.num_joints; ++j) {
+      EXPECT_EQ(after.replies_lost[j], before.replies_lost[j]) << name;
+      EXPECT_EQ(after.replies_late[j], before.replies_late[j]) << name;
+    }
+  }
+}
+
+TEST(Lab, ASlowAdapterIsRefusedWithTheRateThatWorks) {
+  LoadedRobot robot = load_robot("openarm");
+  const Scenario scenario = load_scenario(kScenarios + "push.yaml", robot, nullptr);
+  robot.robot.buses[0].adapter = CanAdapter::kUsb;
+  try {
+    Lab lab(robot, scenario);
+    FAIL() << "1 kHz through USB";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("the highest rate is 805 Hz"), std::string::npos)
+        << error.what();
+  }
+  robot.robot.rate_hz = 800.0;
+  EXPECT_NO_THROW(Lab(robot, scenario));
+}
+
+// One frame of a thousand is dropped by its receiver, one of five hundred is destroyed and sent
+// again: the arm stays on.
+TEST(Lab, ANoisyWireIsBridged) {
+  Stage clean("push.yaml");
+  Scenario noisy = clean.scenario;
+  noisy.wire.loss = 1e-4;
+  noisy.wire.corruption = 2e-3;
+  Lab lab(clean.robot, noisy);
+  while (lab.time_ns() < 4'000'000'000) lab.step();
+  EXPECT_EQ(lab.state().drive_state, +joint_state_t::DRIVE_ON);
+  EXPECT_GT(lab.driver_status().error_frames[0], 50);
+  EXPECT_GT(lab.simulator().wire(0)->count().lost, 0);
+  EXPECT_EQ(lab.controller_status().mode, +controller_status_t::MODE_ACTIVE);
 }
 
 TEST(Lab, EveryStateIsAnsweredAndObeyed) {
@@ -101,4 +162,4 @@ TEST(Lab, ArmIsCarriedUntilItsDrivesHoldIt) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_lab

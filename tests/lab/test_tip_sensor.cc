@@ -6,13 +6,14 @@
 #include <cstring>
 #include <string>
 
-#include "controller/arm_terms.h"
+#include "controller/laws/registry.h"
+#include "controller/model/arm_terms.h"
 #include "controller/observers/tip_force.h"
 #include "lab/lab.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_tip_sensor {
 namespace {
 
 using testing::Mutation;
@@ -73,7 +74,7 @@ timeline:
 struct Stage {
   Stage(const std::string& sensor, const std::string& entries)
       : robot(load(sensor)),
-        scenario(load_scenario(write_scenario(entries), robot)),
+        scenario(load_scenario(write_scenario(entries), robot, &controller::law_catalog())),
         lab(robot, scenario),
         model(robot),
         terms(robot.robot.size()),
@@ -233,9 +234,10 @@ TEST(TipSensorInTheLab, ASilentSensorIsReportedAndTheArmGoesOn) {
   EXPECT_EQ(stage.lab.state().drive_state, int{joint_state_t::DRIVE_ON});
   stage.run_to(2.2);
   EXPECT_EQ(stage.lab.state().sensor_state, int{joint_state_t::SENSOR_FRESH});
-  // The state at 2 s was asked for before the fault, the one at 2.1 s after it.
-  EXPECT_EQ(stage.lab.driver_status().sensor_replies_lost, 99);
+  // The request of the state at 2 s is on the wire when the fault begins, that of 2.1 s when it
+  // ends.
+  EXPECT_EQ(stage.lab.driver_status().sensor_replies_lost, 100);
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_tip_sensor

@@ -6,7 +6,7 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <vector>
 
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::testing {
 

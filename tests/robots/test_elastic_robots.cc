@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/can/bus_load.h"
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/robots/arm_terms.h"
 
-namespace limber {
+namespace limber::test_elastic_robots {
 namespace {
 
 using testing::Terms;
@@ -175,14 +174,5 @@ TEST(ElasticRobots, AntagonistsCarryTheArm) {
   }
 }
 
-TEST(ElasticRobots, BusesHaveRoomLeft) {
-  for (const char* name :
-       {"iiwa14", "panda", "baxter", "testbench", "antagonist2r", "antagonist7"}) {
-    const Robot robot = load_robot(name).robot;
-    for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus)
-      EXPECT_LT(predicted_bus_load(robot, bus), 0.85) << name << " " << bus;
-  }
-}
-
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_elastic_robots

@@ -1,8 +1,8 @@
 // The stages of a joint in robot.yaml: what a good file means, one slip each, and reality on top.
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_joint_chain_yaml {
 namespace {
 
 using testing::Mutation;
@@ -26,11 +26,35 @@ TEST_F(GoodChain, DriveSpeaksCia402) {
   EXPECT_EQ(turn_.drive.protocol, DriveProtocol::kCia402);
   EXPECT_EQ(turn_.drive.command_id, 0x203U);
   EXPECT_EQ(turn_.drive.reply_id, 0x183U);
-  EXPECT_EQ(turn_.drive.command_bytes, 4);
-  EXPECT_EQ(turn_.drive.reply_bytes, 24);  // link encoder: two more words
-  EXPECT_EQ(roll_.drive.reply_bytes, 16);
+  EXPECT_EQ(turn_.drive.frames.command, 4);
+  EXPECT_EQ(turn_.drive.frames.replies, std::vector<int>{24});  // link encoder: two more words
+  EXPECT_EQ(roll_.drive.frames.replies, std::vector<int>{16});
+  EXPECT_EQ(roll_.antagonist.frames.replies, std::vector<int>{16});
+  EXPECT_EQ(turn_.drive.counts_per_turn, 4194304.0);
   EXPECT_EQ(turn_.drive.rated_torque_Nm, 2.0);
   EXPECT_NEAR(turn_.drive.range.torque_Nm, 65.534, 1e-9);
+}
+
+// Classic CAN, 8 bytes at most: status and position; velocity and torque, and the current where a
+// sensor has taken the torque's place; the link's side.
+TEST(ClassicChain, DrivesReportInSeveralFrames) {
+  std::string yaml = good_yaml();
+  yaml = testing::apply(yaml, {"", ", fd: true, bitrate_bps: 1000000, data_bitrate_bps: 5000000",
+                               ", bitrate_bps: 1000000", ""})
+             .text;
+  yaml =
+      testing::apply(yaml, {"", "encoder_bits: 22", "counts_per_turn: 2622532.2666667", ""}).text;
+  yaml = testing::apply(yaml, {"", "    hold: {kp_Nm_per_rad: 5,",
+                               "    link_encoder: {bits: 20}\n    hold: {kp_Nm_per_rad: 5,", ""})
+             .text;
+  const testing::TemporaryFolder folder;
+  folder.write("robot.yaml", yaml);
+  const Robot robot = load_robot(folder.path()).robot;
+  EXPECT_EQ(robot.joints[0].drive.frames.command, 4);
+  EXPECT_EQ(robot.joints[0].drive.frames.replies, (std::vector<int>{6, 8, 8}));
+  EXPECT_EQ(robot.joints[2].drive.frames.replies, (std::vector<int>{6, 6, 8}));
+  EXPECT_EQ(robot.joints[2].antagonist.frames.replies, (std::vector<int>{6, 6}));
+  EXPECT_EQ(robot.joints[0].drive.counts_per_turn, 2622532.2666667);
 }
 
 TEST_F(GoodChain, ElectricActuator) {
@@ -147,8 +171,12 @@ const Mutation kSlips[] = {
      "gains:",
      "1411 is taken by turn on the same bus", 5},
     {"AntagonistProtocol", "{id: 5,", "{motor: oil, id: 5,", "another protocol"},
-    {"ClassicBus", "bus: left\n    id: 3", "bus: right\n    id: 3",
-     "'right' is classic; cia402 drives need CAN-FD"},
+    {"TwoKindsOfCounts", "    encoder_bits: 22", "    encoder_bits: 22\n    counts_per_turn: 16384",
+     "counts_per_turn says it already: one of them"},
+    {"NoCounts", "    encoder_bits: 22\n", "", "'encoder_bits' is missing", testing::kNoLine},
+    {"CountsOfNothing", "encoder_bits: 22", "counts_per_turn: 0", "from 256 to 268435456"},
+    {"CountsForMit", "    encoder_bits: 14", "    encoder_bits: 14\n    counts_per_turn: 16384",
+     "is for motors with protocol: cia402 only", 1},
     {"TransmissionKind", "kind: elastic, spring: {law: linear", "kind: soft, spring: {law: linear",
      "expected one of: rigid, elastic, antagonistic"},
     {"AntagonisticNeedsTwo", "kind: elastic, spring: {law: linear",
@@ -202,4 +230,4 @@ TEST(Reality, SlipNamesBothFiles) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_joint_chain_yaml

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_load_robot {
 namespace {
 
 using testing::Terms;
@@ -146,16 +146,16 @@ TEST(LoadRobot, MoteusDrivesAreRead) {
   EXPECT_EQ(turn.protocol, DriveProtocol::kMoteus);
   EXPECT_EQ(turn.command_id, 0x8003U);
   EXPECT_EQ(turn.reply_id, 0x300U);
-  EXPECT_EQ(turn.command_bytes, 48);
-  EXPECT_EQ(turn.reply_bytes, 32);
+  EXPECT_EQ(turn.frames.command, 48);
+  EXPECT_EQ(turn.frames.replies, std::vector<int>{32});
   EXPECT_NEAR(turn.range.kp_Nm_per_rad * 2.0 * M_PI, 400.0, 1e-9);
   EXPECT_NEAR(turn.range.kd_Nms_per_rad * 2.0 * M_PI, 20.0, 1e-9);
   EXPECT_EQ(turn.timeout_torque_Nm, 3.0);
-  EXPECT_EQ(turn.encoder_bits, 32);
+  EXPECT_EQ(turn.counts_per_turn, 4294967296.0);
   EXPECT_EQ(robot.joints[0].torque_limit_Nm, 15.0);  // peak; the URDF says 20
   EXPECT_EQ(robot.joints[0].velocity_limit, 5.0);    // URDF: frames have no end
   EXPECT_EQ(robot.joints[1].drive.protocol, DriveProtocol::kDamiaoMit);
-  EXPECT_EQ(robot.joints[1].drive.command_bytes, 8);
+  EXPECT_EQ(robot.joints[1].drive.frames.command, 8);
   EXPECT_EQ(robot.joints[2].drive.command_id, 0x800CU);
   EXPECT_EQ(robot.joints[2].drive.reply_id, 0xC00U);
 }
@@ -213,4 +213,4 @@ TEST_F(ArmOfTheTests, DriveSideIsRead) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_load_robot

@@ -8,12 +8,12 @@
 #include <limits>
 #include <sstream>
 
-#include "robots/load_robot.h"
-#include "robots/sample_pose.h"
+#include "robots/loader/load_robot.h"
+#include "robots/loader/sample_pose.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_load_urdf {
 namespace {
 
 using testing::Terms;
@@ -324,4 +324,4 @@ TEST(LoadUrdf, BareUrdfHasNoDrivesAndAHomeInside) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_load_urdf

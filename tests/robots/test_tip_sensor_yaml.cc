@@ -1,10 +1,10 @@
 // The `tip_sensor:` section: what a good one means, and one slip in it each.
 #include <cmath>
 
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_tip_sensor_yaml {
 namespace {
 
 using testing::Mutation;
@@ -143,12 +143,12 @@ TEST_P(MoteusSensorRefusal, NamesTheDriveThatListens) {
 }
 
 const Mutation kListeners[] = {
-    {"Request", "id: 100", "id: 259", "259 has the low seven bits 3, to which turn"},
-    {"Reply", "reply_id: 101", "reply_id: 396", "396 has the low seven bits 12, to which roll"},
-    {"Everybody", "id: 100", "id: 639", "639 has the low seven bits 127, to which turn"},
+    {"Request", "id: 100", "id: 259", "259 would reach turn on the same bus"},
+    {"Reply", "reply_id: 101", "reply_id: 396", "396 would reach roll on the same bus"},
+    {"Everybody", "id: 100", "id: 639", "639 would reach turn on the same bus"},
 };
 INSTANTIATE_TEST_SUITE_P(Moteus, MoteusSensorRefusal, ::testing::ValuesIn(kListeners),
                          testing::MutationName());
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_tip_sensor_yaml

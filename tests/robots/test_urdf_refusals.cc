@@ -1,10 +1,10 @@
 // One slip in a good URDF each: the complaint names file, line and element.
 #include <cmath>
 
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_urdf_refusals {
 namespace {
 
 using testing::Mutation;
@@ -246,4 +246,4 @@ TEST(UrdfRefusals, JointsThatMoveNoMass) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_urdf_refusals

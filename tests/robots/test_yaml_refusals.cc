@@ -1,8 +1,8 @@
 // One slip in a good robot.yaml each: the complaint names file, line and key.
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_yaml_refusals {
 namespace {
 
 using testing::Mutation;
@@ -209,4 +209,4 @@ TEST(RobotYamlRefusals, UnknownRobot) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_yaml_refusals

@@ -1,10 +1,11 @@
 // Files garbled at random are accepted or refused with a ConfigError; nothing else may happen.
 #include <random>
 
-#include "scenarios/scenario.h"
+#include "controller/laws/registry.h"
+#include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_garbled_files {
 namespace {
 
 constexpr int kRounds = 1000;
@@ -83,9 +84,9 @@ TEST(GarbledFiles, Scenario) {
   const testing::TemporaryFolder folder;
   const LoadedRobot robot = load_robot(kArm);
   expect_nothing_worse_than_a_refusal(testing::read_text(kScenario), [&](const std::string& text) {
-    load_scenario(folder.write("scenario.yaml", text), robot);
+    load_scenario(folder.write("scenario.yaml", text), robot, &controller::law_catalog());
   });
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_garbled_files

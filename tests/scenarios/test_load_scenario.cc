@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenarios/scenario.h"
+#include "controller/laws/registry.h"
+#include "scenarios/loader/scenario.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_load_scenario {
 namespace {
 
 const std::string kGood = LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml";
@@ -25,7 +26,7 @@ class GoodScenario : public ::testing::Test {
   }
 
   const LoadedRobot robot_ = load_robot(scenario_robot(kGood));
-  const Scenario scenario_ = load_scenario(kGood, robot_);
+  const Scenario scenario_ = load_scenario(kGood, robot_, &controller::law_catalog());
 };
 
 TEST_F(GoodScenario, HeadIsRead) {
@@ -151,7 +152,8 @@ TEST_F(GoodScenario, World) {
 Scenario load_text(const std::string& rest, const LoadedRobot& robot) {
   const testing::TemporaryFolder folder;
   return load_scenario(
-      folder.write("short.yaml", "format: limber-scenario/1\nrobot: desktop2r\n" + rest), robot);
+      folder.write("short.yaml", "format: limber-scenario/1\nrobot: desktop2r\n" + rest), robot,
+      &controller::law_catalog());
 }
 
 TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
@@ -220,7 +222,7 @@ TEST(LoadScenario, ShippedScenariosLoad) {
   for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/scenarios")) {
     if (entry.path().extension() != ".yaml") continue;
     const LoadedRobot robot = load_robot(scenario_robot(entry.path()));
-    const Scenario scenario = load_scenario(entry.path(), robot);
+    const Scenario scenario = load_scenario(entry.path(), robot, &controller::law_catalog());
     EXPECT_FALSE(scenario.timeline.empty()) << entry.path();
     ++count;
   }
@@ -250,4 +252,4 @@ TEST(Timeline, EmptyOrAbsentHasNothing) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_load_scenario

@@ -1,8 +1,9 @@
 // One slip in a good scenario each: the complaint names file, line and key.
-#include "scenarios/scenario.h"
+#include "controller/laws/registry.h"
+#include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
 
-namespace limber {
+namespace limber::test_scenario_refusals {
 namespace {
 
 using testing::Mutation;
@@ -19,7 +20,7 @@ const LoadedRobot& arm() {
 std::string refusal(const std::string& text, std::string* file) {
   const testing::TemporaryFolder folder;
   *file = folder.write("s.yaml", text);
-  return testing::complaint_of([&] { load_scenario(*file, arm()); });
+  return testing::complaint_of([&] { load_scenario(*file, arm(), &controller::law_catalog()); });
 }
 
 class ScenarioRefusal : public ::testing::TestWithParam<Mutation> {};
@@ -64,7 +65,8 @@ const Mutation kEntries[] = {
     {"EntryUnknownKey", "mode: hold", "mood: hold", "unknown key 'mood'; did you mean 'mode'?"},
     {"EntryIsText", "{at_s: 8, wall: off}", "wall off", "found 'wall off'; expected a mapping"},
     {"ModeUnknown", "mode: hold", "mode: run", "expected one of: idle, hold, active, stop"},
-    {"LawName", "law: cartesian_impedance", "law: Cartesian Impedance", "only a-z, 0-9 and _"},
+    {"LawName", "law: cartesian_impedance", "law: Cartesian Impedance",
+     "did you mean 'cartesian_impedance'?"},
     {"Orientation", "orientation: quat", "orientation: euler",
      "one of: log, quat, log_simple, quat_simple, rpy"},
     {"StiffnessNegative", "[100, 200, 300]", "[100, -200, 300]", "'-200' is out of range"},
@@ -149,9 +151,9 @@ TEST(ScenarioRefusals, TimelineIsAList) {
 }
 
 TEST(ScenarioRefusals, NoSuchFile) {
-  testing::complaint_of([] { load_scenario("/nowhere.yaml", arm()); });
+  testing::complaint_of([] { load_scenario("/nowhere.yaml", arm(), &controller::law_catalog()); });
   testing::complaint_of([] { scenario_robot("/nowhere.yaml"); });
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_scenario_refusals

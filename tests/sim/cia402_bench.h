@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/protocols/cia402_pdos.h"
 #include "sim/nodes/cia402_node.h"
 #include "tests/sim/test_arms.h"
 #include "tests/support/frame_text.h"
@@ -22,7 +23,7 @@ inline JointConfig cia402_joint() {
   joint.drive.rated_torque_Nm = 28.0;
   joint.drive.torque_constant_Nm_per_A = 2.0;
   joint.drive.peak_torque_Nm = 84.0;
-  joint.drive.encoder_bits = 14;
+  joint.drive.counts_per_turn = 16384;
   joint.drive.short_circuit_damping_Nms = 0.7;
   joint.transmission.kind = TransmissionKind::kElastic;
   joint.transmission.spring.stiffness_Nm_per_rad = 5000.0;
@@ -57,7 +58,7 @@ class Cia402Bench {
   std::string heard() {
     std::string all;
     CanFrame frame;
-    while (node->take(&frame)) all += (all.empty() ? "" : " ") + text(frame);
+    while (node->next_frame(&frame)) all += (all.empty() ? "" : " ") + text(frame);
     return all;
   }
   void advance(std::int64_t ns) {

@@ -10,7 +10,7 @@
 #include "drivers/can/lockstep_frame.h"
 #include "drivers/can/memory_bus.h"
 #include "drivers/protocols/mit.h"
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 #include "sim/simulator.h"
 
 namespace limber::testing {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/types.h"
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::testing {
 

@@ -10,7 +10,7 @@
 #include "tests/sim/test_arms.h"
 #include "tests/support/allocation_counter.h"
 
-namespace limber {
+namespace limber::test_simulator_joints {
 namespace {
 
 using mit::Special;
@@ -276,4 +276,4 @@ TEST_P(JointSimulator, CyclesDoNotAllocate) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_simulator_joints

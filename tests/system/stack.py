@@ -14,8 +14,8 @@ import lcm
 
 from limber.lcmtypes.controller_status_t import controller_status_t
 from limber.lcmtypes.driver_status_t import driver_status_t
+from limber.lcmtypes.joint_command_t import joint_command_t
 from limber.lcmtypes.joint_state_t import joint_state_t
-from limber.lcmtypes.joint_torque_t import joint_torque_t
 from limber.lcmtypes.mode_request_t import mode_request_t
 from limber.lcmtypes.sim_truth_t import sim_truth_t
 
@@ -25,7 +25,7 @@ USER_URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152"
 ARM_URL = "udpm://239.255.76.68:7668?ttl=0&recv_buf_size=2097152"
 TYPES = {
     "JOINT_STATE": joint_state_t,
-    "JOINT_TORQUE": joint_torque_t,
+    "JOINT_TORQUE": joint_command_t,
     "CONTROLLER_STATUS": controller_status_t,
     "DRIVER_STATUS": driver_status_t,
     "SIM_TRUTH": sim_truth_t,
@@ -41,7 +41,8 @@ class Listener:
         self.raw: dict[str, list[bytes]] = defaultdict(list)
         self._lock = threading.Lock()
         self._stop = False
-        self.lcm.subscribe(".*", self._on_message).set_queue_capacity(0)
+        self._subscription = self.lcm.subscribe(".*", self._on_message)
+        self._subscription.set_queue_capacity(0)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -54,8 +55,11 @@ class Listener:
             self.lcm.handle_timeout(50)
 
     def close(self) -> None:
+        """Frees the LCM instance: while its callback refers to it, its own thread queues on."""
         self._stop = True
         self._thread.join()
+        self.lcm.unsubscribe(self._subscription)
+        del self.lcm, self._subscription
 
     def count(self, channel: str) -> int:
         with self._lock:

@@ -3,86 +3,40 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 
 import canopen
 import pytest
-from canopen.objectdictionary import ODRecord, ODVariable, datatypes
+import yaml
+from canopen.objectdictionary import datatypes
 from canopen.profiles.p402 import BaseNode402
+
+from local_drive import bus, multicast_group
+from stack import ROOT
 
 NODE = 1
 PORT = 43113
-U8, U16, U32 = datatypes.UNSIGNED8, datatypes.UNSIGNED16, datatypes.UNSIGNED32
-I8, I16, I32 = datatypes.INTEGER8, datatypes.INTEGER16, datatypes.INTEGER32
-REAL, TEXT = datatypes.REAL32, datatypes.VISIBLE_STRING
-VARIABLES = {
-    0x1000: U32,
-    0x1008: TEXT,
-    0x1017: U16,
-    0x6007: I16,
-    0x6040: U16,
-    0x6041: U16,
-    0x6060: I8,
-    0x6061: I8,
-    0x6064: I32,
-    0x6071: I16,
-    0x6076: U32,
-    0x6077: I16,
-    0x6403: TEXT,
-    0x6502: U32,
-}
-COMMUNICATION = [U8, U32, U8, U16, None, U16]  # by subindex
-RECORDS = {
-    0x1400: COMMUNICATION,
-    0x1600: [U8] + 8 * [U32],
-    0x1800: COMMUNICATION,
-    0x1A00: [U8] + 8 * [U32],
-    0x2010: [U8, REAL, REAL, REAL, U32, U32],
-    0x60E4: [U8, I32],
-}
+AREAS = [*range(0x1000, 0x2100), *range(0x6000, 0x6800)]  # where the drive may have objects
+TESTBENCH = ROOT / "robots" / "testbench"
+EDS = str(TESTBENCH / "drive.eds")
 
 
-def variable(index: int, sub: int, data_type: int) -> ODVariable:
-    entry = ODVariable(f"{index:04X}:{sub:02X}", index, sub)
-    entry.data_type = data_type
-    return entry
+def classic_testbench(folder: Path) -> str:
+    """The testbench with a drive on classic CAN, 8 bytes a frame."""
+    robot = yaml.safe_load((TESTBENCH / "robot.yaml").read_text(encoding="utf-8"))
+    robot["urdf"] = str(TESTBENCH / "robot.urdf")
+    robot["buses"] = [{"name": "arm", "can": "virtual:testbench", "bitrate_bps": 1000000}]
+    (folder / "robot.yaml").write_text(yaml.safe_dump(robot), encoding="utf-8")
+    return str(folder)
 
 
-def dictionary() -> canopen.ObjectDictionary:
-    objects = canopen.ObjectDictionary()
-    objects.node_id = NODE
-    for index, data_type in VARIABLES.items():
-        objects.add_object(variable(index, 0, data_type))
-    for index, members in RECORDS.items():
-        record = ODRecord(f"{index:04X}", index)
-        for sub, data_type in enumerate(members):
-            if data_type is not None:
-                record.add_member(variable(index, sub, data_type))
-        objects.add_object(record)
-    return objects
-
-
-def multicast_group(name: str) -> str:
-    """As drivers/can/virtual_bus.h says."""
-    value = 2166136261
-    for letter in name.encode():
-        value = (value ^ letter) * 16777619 % 2**32
-    value ^= value >> 16
-    return f"239.74.{value >> 8 & 255}.{value & 255}"
-
-
-@pytest.fixture
-def drive(stack):
+@pytest.fixture(params=["fd", "classic"])
+def drive(stack, request, tmp_path):
     """A client's view of the drive, pre-operational."""
-    network = canopen.Network()
-    network.connect(
-        interface="udp_multicast",
-        channel=multicast_group("testbench"),
-        port=PORT,
-        hop_limit=0,
-        fd=True,
-    )
-    stack.robot = "testbench"
-    node = network.add_node(BaseNode402(NODE, dictionary()))
+    fd = request.param == "fd"
+    stack.robot = "testbench" if fd else classic_testbench(tmp_path)
+    network = bus(PORT, multicast_group("testbench"), fd=fd)
+    node = network.add_node(BaseNode402(NODE, canopen.import_od(EDS, NODE)))
     booted = threading.Event()
     node.nmt.add_heartbeat_callback(lambda state: booted.set() if state == 0 else None)
     stack.start("sim", "--realtime")
@@ -193,3 +147,43 @@ def test_a_silent_master_is_a_fault(drive):
     drive.sdo[0x6040].raw = 0x80
     assert drive.state == "SWITCH ON DISABLED"
     assert drive.emcy.active == []
+
+
+def test_the_eds_is_what_the_drive_serves(drive):
+    """Every object of the shipped EDS is there, as long, as writable and with that value."""
+    for entry in variables(drive.object_dictionary):
+        data = drive.sdo.upload(entry.index, entry.subindex)
+        if entry.data_type in datatypes.NUMBER_TYPES:
+            assert 8 * len(data) == len(entry), entry.name
+        if entry.default is not None:
+            assert entry.decode_raw(data) == entry.default, entry.name
+        if not entry.writable:
+            with pytest.raises(canopen.SdoAbortedError) as refusal:
+                drive.sdo.download(entry.index, entry.subindex, data)
+            assert refusal.value.code == 0x06010002, entry.name
+
+
+def test_the_eds_leaves_nothing_out(drive):
+    known = {(entry.index, entry.subindex) for entry in variables(drive.object_dictionary)}
+    served = set()
+    for index in AREAS:
+        subs = range(0x20) if (index, 1) in known else range(1)
+        served |= {(index, sub) for sub in subs if is_served(drive, index, sub)}
+    assert served == known
+
+
+def variables(objects: canopen.ObjectDictionary) -> list[canopen.objectdictionary.ODVariable]:
+    nested = (
+        [entry] if isinstance(entry, canopen.objectdictionary.ODVariable) else entry.values()
+        for index, entry in objects.items()
+        if index >= 0x1000  # below are types for gaps in PDOs
+    )
+    return [variable for entries in nested for variable in entries]
+
+
+def is_served(drive: BaseNode402, index: int, sub: int) -> bool:
+    try:
+        drive.sdo.upload(index, sub)
+    except canopen.SdoAbortedError:
+        return False
+    return True

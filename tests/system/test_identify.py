@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import yaml
 
-from limber.bodies import read_inertials
 from limber.identify import excitation, friction, gravity, payload, stiffness, torque_constant
 from limber.identify.arm import Arm, load_arm
 from limber.identify.motion import Motion, read_motion
 from limber.identify.static_poses import static_poses
 from limber.identify.urdf_edit import with_inertials
+from limber.model.bodies import read_inertials
 from stack import BIN, ROOT
 
 CONSTANT = "rotor_torque_constant_Nm_per_A"
@@ -92,7 +92,7 @@ def test_bench(bench):
 
 def test_bias_of_the_torque_sensor(bench):
     arm, motion = bench
-    found, _ = gravity.identify(arm, motion)
+    found = gravity.identify(arm, motion)
     bias = next(value for value in found.values if value.name == "torque at no load")
     assert bias.value == pytest.approx(0.4, abs=STANDARD_ERRORS * bias.std) and bias.std < 0.05
 
@@ -150,17 +150,13 @@ def test_heavier_links_of_a_series_elastic_arm(tmp_path):
     arm = load_arm(str(robot))
     inertials = read_inertials(arm.robot.urdf)
     changes = {}
-    for i, body in enumerate(arm.dynamics.bodies):
+    for i, body in enumerate(arm.robot.dynamics.bodies):
         link = inertials[body.heaviest]
         changes[body.heaviest] = (link.mass * (1.0 + 0.05 * i), link.com + 0.01)
     (robot / "heavier.urdf").write_text(with_inertials(arm.robot.urdf, changes))
     tour = {"reality": {"urdf": "heavier.urdf"}}
     log = record(tmp_path, robot, tour, spread=0.8, poses=4, seconds=32.0)
-    _, weights = gravity.identify(arm, read_motion([log], arm))
-    proposed = {}
-    for i in range(arm.dynamics.size):
-        link, mass, com = gravity.changed_link(arm, weights, i)
-        proposed[link] = (mass, com)
+    proposed = gravity.identify(arm, read_motion([log], arm)).inertials
     (robot / "proposed.urdf").write_text(with_inertials(arm.robot.urdf, proposed))
     q = excitation.poses(arm, 0.7, 20, seed=8)  # others than in the tour
     torques = {}
@@ -169,7 +165,7 @@ def test_heavier_links_of_a_series_elastic_arm(tmp_path):
         (robot / "robot.yaml").write_text(
             text.replace(f"urdf: {arm.robot.urdf.name}", f"urdf: {name}.urdf"), encoding="utf-8"
         )
-        torques[name] = load_arm(str(robot)).dynamics.gravity_torque(q)
+        torques[name] = load_arm(str(robot)).robot.dynamics.gravity_torque(q)
         (robot / "robot.yaml").write_text(text, encoding="utf-8")
     off = np.abs(torques["robot"] - torques["heavier"]).max(axis=0)
     left = np.abs(torques["proposed"] - torques["heavier"]).max(axis=0)
@@ -183,7 +179,7 @@ def test_payload(tmp_path):
     robot = ROOT / "robots" / "openarm"
     log = record(tmp_path, robot, tour, spread=0.8, poses=3, seconds=SLOW_PART_S)
     arm = load_arm(str(robot))
-    found = static_poses([log], arm.dynamics)
+    found = static_poses([log], arm.robot.dynamics)
     said = payload.identify(arm.robot.chain, found.q, found.tau, arm.robot.gravity)
     assert abs(said.mass_kg - 0.8) < STANDARD_ERRORS * said.mass_std < 0.2
     off = np.abs(said.com_m - carried["position_m"])

@@ -2,6 +2,7 @@
 
 import math
 import time
+from contextlib import closing
 
 import lcm
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.driver_status_t import driver_status_t as Driver
+from limber.lcmtypes.joint_command_t import joint_command_t
 from limber.lcmtypes.joint_state_t import joint_state_t as State
-from limber.lcmtypes.joint_torque_t import joint_torque_t
 from stack import ARM_URL, Listener
 
 # Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
@@ -49,14 +50,14 @@ def test_second_controller(stack):
 
 
 def test_replayed_commands(stack):
-    arm = Listener(ARM_URL)
-    active(stack)
-    old = list(arm.raw["JOINT_TORQUE"])[-500:]
-    before = np.array(stack.truth.q)
-    replayed = refused(stack, Driver.VERDICT_REPLAYED) + refused(stack, Driver.VERDICT_STALE)
-    for data in old:
-        arm.lcm.publish("JOINT_TORQUE", data)
-        time.sleep(0.0005)
+    with closing(Listener(ARM_URL)) as arm:
+        active(stack)
+        old = list(arm.raw["JOINT_TORQUE"])[-500:]
+        before = np.array(stack.truth.q)
+        replayed = refused(stack, Driver.VERDICT_REPLAYED) + refused(stack, Driver.VERDICT_STALE)
+        for data in old:
+            arm.lcm.publish("JOINT_TORQUE", data)
+            time.sleep(0.0005)
     stack.until(
         lambda: (
             refused(stack, Driver.VERDICT_REPLAYED) + refused(stack, Driver.VERDICT_STALE)
@@ -66,13 +67,12 @@ def test_replayed_commands(stack):
         "replayed commands to be counted",
     )
     still_obeyed(stack, before)
-    arm.close()
 
 
 def forge(stack, **changes) -> bytes:
     """An answer as the bound controller could give it now, with some fields changed."""
     genuine = stack.user.latest("JOINT_TORQUE")
-    message = joint_torque_t.decode(genuine.encode())
+    message = joint_command_t.decode(genuine.encode())
     message.state_seq = stack.state.seq + 1
     for name, value in changes.items():
         setattr(message, name, value)

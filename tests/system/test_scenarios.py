@@ -33,7 +33,7 @@ DROP = ["--bounding-set=-sys_nice,-ipc_lock", "--inh-caps=-sys_nice,-ipc_lock"]
 def numbers(folder) -> dict[str, dict]:
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     for result in summary["results"]:
-        assert {"name", "value", "unit", "asked", "tolerance", "pass"} <= result.keys()
+        assert {"name", "value", "unit", "expected", "tolerance", "pass"} <= result.keys()
     return {result["name"]: result for result in summary["results"]}
 
 
@@ -58,8 +58,8 @@ def test_stiffness_without_friction(name, tmp_path):
     assert len(judged) >= 4
     for result in judged:
         assert result["pass"] is True, result
-        if result["asked"]:
-            assert abs(result["value"] / result["asked"] - 1) <= 0.02, result
+        if result["expected"]:
+            assert abs(result["value"] / result["expected"] - 1) <= 0.02, result
 
 
 def test_demo_in_lock_step(tmp_path):

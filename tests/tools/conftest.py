@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from limber import messages
-from limber.logs import HEADER, SYNC
-from limber.scenario import load_scenario
+from limber.log.reader import HEADER, SYNC
+from limber.model.scenario import load_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE_HZ = 200
@@ -63,7 +63,7 @@ def scenario(scenario_file):
     return lambda robot, text: load_scenario(scenario_file(robot, text))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def limber() -> Callable[..., subprocess.CompletedProcess]:
     """Runs the command line as a user would."""
 

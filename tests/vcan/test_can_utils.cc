@@ -10,11 +10,11 @@
 #include <regex>
 #include <string>
 
-#include "drivers/can/bus_load.h"
+#include "drivers/can/frame_time.h"
 #include "drivers/protocols/mit.h"
 #include "tests/vcan/lab.h"
 
-namespace limber {
+namespace limber::test_can_utils {
 namespace {
 
 using testing::kSecond;
@@ -137,4 +137,4 @@ TEST(CanUtils, CanbusloadCountsTheSameBits) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_can_utils

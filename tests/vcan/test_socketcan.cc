@@ -13,7 +13,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/vcan/lab.h"
 
-namespace limber {
+namespace limber::test_socketcan {
 namespace {
 
 using testing::is_silent;
@@ -310,4 +310,4 @@ TEST(SocketCanRefusal, FdOnAnInterfaceWithoutIt) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_socketcan

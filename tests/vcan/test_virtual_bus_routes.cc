@@ -13,7 +13,7 @@
 #include "tests/drivers/can/private_network.h"
 #include "tests/vcan/lab.h"
 
-namespace limber {
+namespace limber::test_virtual_bus_routes {
 namespace {
 
 /// Runs a check in a process and network of its own.
@@ -91,4 +91,4 @@ TEST(VirtualBusRoutes, FramesDoNotLeaveTheHost) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_virtual_bus_routes

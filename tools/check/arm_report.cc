@@ -8,15 +8,13 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 
 #include "common/config_error.h"
-#include "drivers/can/bus_load.h"
-#include "robots/sample_pose.h"
+#include "drivers/bus_load.h"
+#include "robots/loader/adapter.h"
+#include "robots/loader/sample_pose.h"
 #include "tools/check/chain_report.h"
 
 namespace limber {
 namespace {
-
-constexpr double kPlannedLoad = 0.8;
-constexpr double kRefusedLoad = 0.9;  // as the driver
 
 KDL::JntArray to_kdl(const std::vector<double>& pose) {
   KDL::JntArray q(static_cast<unsigned>(pose.size()));
@@ -77,25 +75,26 @@ void warn_of_gravity(const Robot& robot, ArmReport* report) {
   }
 }
 
-void add_buses(const Robot& robot, ArmReport* report) {
-  std::string refused;
-  for (int i = 0; i < static_cast<int>(robot.buses.size()); ++i) {
-    const BusConfig& bus = robot.buses[static_cast<std::size_t>(i)];
-    const BusReport figures{predicted_bus_load(robot, i),
-                            highest_safe_rate_hz(robot, i, kPlannedLoad)};
-    report->buses.push_back(figures);
-    const std::string load = fmt::format(
-        "bus '{}': {:.0f} % of the wire at {} Hz, every frame at its longest; {:.0f} Hz "
-        "would be 80 %",
-        bus.name, 100.0 * figures.load, robot.rate_hz, figures.highest_rate_hz);
-    if (!(figures.load <= kRefusedLoad)) {
-      refused += fmt::format("{}{}; lower rate_hz, use CAN-FD or more buses",
-                             refused.empty() ? "" : "\n", load);
-    } else if (!(figures.load <= kPlannedLoad)) {
-      report->warnings.push_back(load);
-    }
+BusReport bus_report(const Robot& robot, int index) {
+  BusReport report{expected_bus_load(robot, index),
+                   predicted_bus_load(robot, index),
+                   predicted_end_s(robot, index),
+                   reply_window_s(robot),
+                   {}};
+  Robot other = robot;
+  BusConfig& bus = other.buses[static_cast<std::size_t>(index)];
+  for (std::size_t i = 0; i < kAdapters.size(); ++i) {
+    bus.adapter = kAdapters[i].adapter;
+    if (!bus.fd || kAdapters[i].fd) report.highest_rate_hz[i] = highest_rate_hz(other, index);
   }
-  if (!refused.empty()) throw ConfigError(refused);
+  return report;
+}
+
+void add_buses(const Robot& robot, ArmReport* report) {
+  for (int i = 0; i < static_cast<int>(robot.buses.size()); ++i) {
+    checked_bus_load(robot, i);
+    report->buses.push_back(bus_report(robot, i));
+  }
 }
 
 }  // namespace

@@ -1,16 +1,20 @@
 // What limber-check says of an arm that has loaded: figures, and what a user should think about.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "robots/load_robot.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber {
 
 struct BusReport {
-  double load = 0.0;  ///< share of the wire at the robot's rate, every frame at its longest
-  double highest_rate_hz = 0.0;  ///< at 80 % load
+  double load = 0.0;       ///< share of the wire at the robot's rate, frames of the usual length
+  double most_load = 0.0;  ///< every frame at its longest
+  double end_s = 0.0;      ///< last reply after the start of a cycle, at the latest
+  double window_s = 0.0;   ///< how long the driver waits for it
+  std::array<double, 3> highest_rate_hz = {};  ///< by class of adapter; 0: it cannot carry the bus
 };
 
 struct ArmReport {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tools/check/json.h"
@@ -45,7 +46,7 @@ std::string loop_text(const JointConfig& joint) {
 }
 
 std::string sensors_text(const JointConfig& joint) {
-  std::string text = fmt::format("motor {} bit", joint.drive.encoder_bits);
+  std::string text = fmt::format("motor {:.3g} bit", std::log2(joint.drive.counts_per_turn));
   if (joint.link_encoder.present) text += fmt::format(", link {} bit", joint.link_encoder.bits);
   if (joint.torque_sensor.present) text += ", torque";
   return text;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "robots/robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber {
 

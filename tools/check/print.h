@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/scenario.h"
+#include "scenarios/loader/scenario.h"
 #include "tools/check/arm_report.h"
 
 namespace limber {

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "robots/loader/adapter.h"
+#include "sim/wire/bus_timeline.h"
 #include "tools/check/chain_report.h"
 #include "tools/check/json.h"
 #include "tools/check/print.h"
@@ -25,9 +27,18 @@ std::string bus_text(const BusConfig& bus, const BusReport& report, double rate_
   const std::string speed = bus.fd ? fmt::format("CAN-FD {:g}/{:g} Mbit/s", bus.bitrate_bps * 1e-6,
                                                  bus.data_bitrate_bps * 1e-6)
                                    : fmt::format("CAN {:g} Mbit/s", bus.bitrate_bps * 1e-6);
-  return fmt::format("  {}  {}  {}: at most {:.1f} % busy at {} Hz; 80 % would be {:.0f} Hz\n",
-                     bus.name, bus.can, speed, 100.0 * report.load, rate_hz,
-                     report.highest_rate_hz);
+  std::string rates;
+  for (std::size_t i = 0; i < kAdapters.size(); ++i) {
+    if (report.highest_rate_hz[i] > 0.0)
+      rates += fmt::format("{}{} {:.0f} Hz", rates.empty() ? "" : ", ", kAdapters[i].word,
+                           std::floor(report.highest_rate_hz[i]));
+  }
+  return fmt::format(
+      "  {}  {}  {}: {:.1f} % busy at {} Hz (at most {:.1f} %), last reply after {:.2f} ms of "
+      "{:.2f} ms; "
+      "highest rate by adapter: {}\n",
+      bus.name, bus.can, speed, 100.0 * report.load, rate_hz, 100.0 * report.most_load,
+      1e3 * report.end_s, 1e3 * report.window_s, rates);
 }
 
 std::string tip_sensor_text(const Robot& robot) {
@@ -138,18 +149,40 @@ std::string arm_text(const LoadedRobot& robot, const ArmReport& report) {
   return text;
 }
 
+auto adapter_rates(const BusReport& report) {
+  std::vector<std::pair<std::string, std::string>> rates;
+  for (std::size_t i = 0; i < kAdapters.size(); ++i)
+    rates.emplace_back(kAdapters[i].word, json::number(std::floor(report.highest_rate_hz[i])));
+  return rates;
+}
+
+// One cycle on the simulated wire, frame by frame.
+std::string timeline_json(const Robot& robot, int bus) {
+  std::vector<std::string> frames;
+  for (const sim::FrameTimes& frame : sim::bus_timeline(robot, bus)) {
+    frames.push_back(json::object({{"name", json::text(frame.name)},
+                                   {"id", json::number(frame.id)},
+                                   {"reply", frame.reply ? "true" : "false"},
+                                   {"start_s", json::number(frame.start_s)},
+                                   {"end_s", json::number(frame.end_s)}}));
+  }
+  return json::list(frames);
+}
+
 std::string arm_json(const LoadedRobot& robot, const ArmReport& report) {
   const Robot& arm = robot.robot;
   std::vector<std::string> joints;
   for (std::size_t i = 0; i < arm.joints.size(); ++i) joints.push_back(joint_json(arm, report, i));
   std::vector<std::string> buses;
   for (std::size_t i = 0; i < report.buses.size(); ++i) {
-    buses.push_back(
-        json::object({{"name", json::text(arm.buses[i].name)},
-                      {"can", json::text(arm.buses[i].can)},
-                      {"fd", arm.buses[i].fd ? "true" : "false"},
-                      {"predicted_load", json::number(report.buses[i].load)},
-                      {"highest_rate_hz", json::number(report.buses[i].highest_rate_hz)}}));
+    buses.push_back(json::object({{"name", json::text(arm.buses[i].name)},
+                                  {"can", json::text(arm.buses[i].can)},
+                                  {"fd", arm.buses[i].fd ? "true" : "false"},
+                                  {"predicted_load", json::number(report.buses[i].load)},
+                                  {"predicted_end_s", json::number(report.buses[i].end_s)},
+                                  {"reply_window_s", json::number(report.buses[i].window_s)},
+                                  {"highest_rate_hz", json::object(adapter_rates(report.buses[i]))},
+                                  {"cycle", timeline_json(arm, static_cast<int>(i))}}));
   }
   return json::object(
              {{"ok", "true"},

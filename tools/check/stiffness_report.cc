@@ -7,10 +7,10 @@
 #include <cmath>
 #include <variant>
 
-#include "controller/arm_terms.h"
-#include "controller/gains.h"
-#include "controller/sampling_limits.h"
-#include "scenarios/gains_yaml.h"
+#include "controller/gains/gains.h"
+#include "controller/gains/sampling_limits.h"
+#include "controller/model/arm_terms.h"
+#include "robots/loader/default_gains.h"
 #include "tools/check/json.h"
 
 namespace limber {

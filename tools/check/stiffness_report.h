@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "robots/load_robot.h"
-#include "scenarios/scenario.h"
+#include "robots/loader/load_robot.h"
+#include "scenarios/loader/scenario.h"
 
 namespace limber {
 

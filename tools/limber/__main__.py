@@ -1,5 +1,5 @@
 """`python -m limber` is the `limber` program."""
 
-from limber.cli import main
+from limber.cli.main import main
 
 main()

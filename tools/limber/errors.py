@@ -7,13 +7,13 @@ RUN_FAILED = 3
 
 
 class LimberError(Exception):
-    """Something the user should read; never shown as a traceback."""
+    """An error for the user: shown as one line, never as a traceback."""
 
     exit_code = RUN_FAILED
 
 
 class InputError(LimberError):
-    """An argument or a file is wrong; the message says what would be right."""
+    """An argument or a file is wrong; the message includes what is expected."""
 
     exit_code = WRONG_INPUT
 

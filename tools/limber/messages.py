@@ -30,11 +30,7 @@ FINGERPRINT = "_fingerprint"
 
 @dataclass(frozen=True)
 class Channel:
-    name: str
     type_name: str
-    sender: str
-    plane: str
-    rate: str
     timeout_s: float
 
 
@@ -53,15 +49,12 @@ def _table() -> dict[str, Any]:
 
 @cache
 def channels() -> dict[str, Channel]:
-    """Channels of the user plane by name: what a log holds and what `watch` hears."""
-    table = {}
-    for key, row in _table()["channels"].items():
-        if row["plane"] == "user":
-            name = row.get("name", key)
-            table[name] = Channel(
-                name, row["type"], row["from"], row["plane"], str(row["rate"]), row["timeout_s"]
-            )
-    return table
+    """Channels of the user plane by name: those of a log and of `limber watch`."""
+    return {
+        row.get("name", key): Channel(row["type"], row["timeout_s"])
+        for key, row in _table()["channels"].items()
+        if row["plane"] == "user"
+    }
 
 
 def user_plane_url() -> str:

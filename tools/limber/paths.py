@@ -6,6 +6,7 @@ from pathlib import Path
 from limber.errors import InputError, RunError
 
 ROOT = Path(__file__).resolve().parents[2]
+RELEASE = ROOT / "build" / "release" / "bin"  # what `limber bench` builds
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 
@@ -19,7 +20,7 @@ def program(name: str) -> Path:
     path = programs_folder() / name
     if not os.access(path, os.X_OK):
         raise RunError(
-            f"{path} is not there: run ./limber to build it, or set LIMBER_BIN to where it is"
+            f"{path} does not exist: run ./limber to build it, or set LIMBER_BIN to its folder"
         )
     return path
 
@@ -51,7 +52,7 @@ def robot_folder(name_or_path: str, beside: Path | None = None) -> Path:
 def existing_file(path: Path, what: str) -> Path:
     if not path.is_file():
         kind = "is a folder" if path.is_dir() else "does not exist"
-        raise InputError(f"{path} {kind}: a {what} is wanted")
+        raise InputError(f"{path} {kind}; expected a {what}")
     return path
 
 

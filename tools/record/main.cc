@@ -1,9 +1,7 @@
 // limber-record: the user plane into an LCM event log.
-#include <signal.h>
+#include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
 #include <string>
@@ -11,16 +9,13 @@
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "common/lcm_port.h"
+#include "common/program.h"
 #include "tools/record/recorder.h"
 
 namespace {
 
-volatile sig_atomic_t stop_requested = 0;
-
-void request_stop(int) { stop_requested = 1; }
-
-/// What is on its way when the user says stop still belongs to the run: go on until the line has
-/// been quiet this long.
+/// What is under way when the user stops the recording still belongs to the run: it goes on until
+/// the line has been quiet this long.
 constexpr std::int64_t kQuiet_ns = 200'000'000;
 constexpr std::int64_t kDrainLimit_ns = 5'000'000'000;
 
@@ -40,20 +35,20 @@ void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Si
   sink->last_ns = limber::monotonic_ns();
 }
 
-void record(const std::string& path, const std::string& url, double duration_s) {
+int record(const std::string& path, const std::string& url, double duration_s) {
+  const auto& stop = limber::stop_on_signals();
   limber::Recorder recorder(path);
   lcm::LCM lcm(limber::checked_lcm_url(url));
   if (!lcm.good()) throw limber::ConfigError(limber::no_multicast_route(url));
   Sink sink{&recorder, limber::monotonic_ns(), {}};
   lcm.subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
-  std::fprintf(stderr, "recording %s to %s\n", url.c_str(), path.c_str());
+  spdlog::info("recording {} to {}", url, path);
   const std::int64_t start_ns = limber::monotonic_ns();
   const int descriptor = lcm.getFileno();
   std::int64_t stopped_ns = 0;
   while (true) {
     const std::int64_t now = limber::monotonic_ns();
-    if (stopped_ns == 0 &&
-        (stop_requested || (duration_s > 0 && now - start_ns > duration_s * 1e9)))
+    if (stopped_ns == 0 && (stop != 0 || (duration_s > 0 && now - start_ns > duration_s * 1e9)))
       stopped_ns = now;
     if (stopped_ns != 0 && (now - sink.last_ns > kQuiet_ns || now - stopped_ns > kDrainLimit_ns))
       break;
@@ -61,33 +56,20 @@ void record(const std::string& path, const std::string& url, double duration_s) 
     if (!sink.failure.empty()) throw std::runtime_error(sink.failure);
   }
   std::printf("%s\n", recorder.report().c_str());
+  return limber::kExitDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Records every message of the user plane to an LCM event log, without dropping any."};
+  limber::CommandLine line(
+      "limber-record",
+      "Records every message of the user plane to an LCM event log, without dropping any.");
   std::string path;
   double duration_s = 0.0;
-  app.add_option("--out", path, "log file to write")->required();
-  app.add_option("--duration", duration_s, "stop after this many seconds (default: on Ctrl-C)")
-      ->check(CLI::Range(0.0, 1e6));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  signal(SIGINT, request_stop);
-  signal(SIGTERM, request_stop);
-  try {
-    record(path, limber::user_plane_url(), duration_s);
-  } catch (const limber::ConfigError& error) {
-    std::fprintf(stderr, "limber-record: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber-record: %s\n", error.what());
-    return 3;
-  }
-  return 0;
+  line.text("--out", &path, "log file to write").required();
+  line.number("--duration", &duration_s, 0.0, 1e6,
+              "stop after this many seconds (default: on Ctrl-C)");
+  return limber::run_program(line, argc, argv,
+                             [&] { return record(path, limber::user_plane_url(), duration_s); });
 }

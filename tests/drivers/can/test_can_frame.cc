@@ -6,7 +6,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/can/lockstep_frame.h"
 
-namespace limber {
+namespace limber::test_can_frame {
 namespace {
 
 TEST(FdLength, RoundsUpToTheLengthsOfTheStandard) {
@@ -100,4 +100,4 @@ TEST(Lockstep, TickIsNoTockAndNoMotorFrameIsEither) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_can_frame

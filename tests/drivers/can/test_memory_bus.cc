@@ -6,7 +6,7 @@
 #include "drivers/can/memory_bus.h"
 #include "tests/support/allocation_counter.h"
 
-namespace limber {
+namespace limber::test_memory_bus {
 namespace {
 
 CanFrame numbered(std::uint32_t id) {
@@ -115,4 +115,4 @@ TEST(MemoryBus, DoesNotAllocateOnceAttached) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_memory_bus

@@ -9,7 +9,7 @@
 #include "common/config_error.h"
 #include "drivers/can/can_bus.h"
 
-namespace limber {
+namespace limber::test_open_can_bus {
 namespace {
 
 std::string refusal(const std::string& address) {
@@ -42,4 +42,4 @@ TEST(OpenCanBus, SocketCanTellsWhatThisKernelLacks) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_open_can_bus

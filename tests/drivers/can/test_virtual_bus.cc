@@ -22,7 +22,7 @@
 #include "tests/drivers/can/private_network.h"
 #include "tests/support/allocation_counter.h"
 
-namespace limber {
+namespace limber::test_virtual_bus {
 namespace {
 
 constexpr const char* kPort = "43213";  // beside the default, in case the network is not private
@@ -320,4 +320,4 @@ TEST(PythonCan, HearsUsAndWeHearIt) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_virtual_bus

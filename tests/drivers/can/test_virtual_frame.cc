@@ -12,7 +12,7 @@
 #include "drivers/can/virtual_frame.h"
 #include "tests/support/allocation_counter.h"
 
-namespace limber {
+namespace limber::test_virtual_frame {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -121,7 +121,7 @@ TEST(VirtualFrame, DecodesWhatPythonCanWrites) {
   CanFrame frame;
   ASSERT_TRUE(decode_datagram(from_hex(kClassicBytes), &frame));
   expect_same(frame, classic_frame());
-  EXPECT_EQ(frame.timestamp_ns, 0) << "the sender's clock is not ours";
+  EXPECT_EQ(frame.timestamp_ns, 1'500'000'000) << "which a bus overwrites, but in lock step";
   ASSERT_TRUE(decode_datagram(from_hex(kFdBytes), &frame));
   expect_same(frame, fd_frame());
   ASSERT_TRUE(decode_datagram(from_hex(kRemoteBytes), &frame));
@@ -353,4 +353,4 @@ TEST(VirtualFrame, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_virtual_frame

@@ -11,7 +11,7 @@
 
 #include "drivers/gate/torque_gate.h"
 
-namespace limber {
+namespace limber::test_torque_gate {
 namespace {
 
 using Status = driver_status_t;
@@ -42,11 +42,11 @@ class TorqueGateTest : public ::testing::Test {
     for (int i = 0; i < 3; ++i) good_.tau[i] = situation_.torque_present[i];
   }
 
-  int check(const joint_torque_t& command) const {
+  int check(const joint_command_t& command) const {
     return check_command(limits_, memory_, situation_, command);
   }
-  int check_with(const std::function<void(joint_torque_t&)>& change) const {
-    joint_torque_t command = good_;
+  int check_with(const std::function<void(joint_command_t&)>& change) const {
+    joint_command_t command = good_;
     change(command);
     return check(command);
   }
@@ -54,7 +54,7 @@ class TorqueGateTest : public ::testing::Test {
   GateLimits limits_;
   GateMemory memory_;
   GateSituation situation_;
-  joint_torque_t good_{};
+  joint_command_t good_{};
 };
 
 TEST_F(TorqueGateTest, AcceptsWhatIsInOrder) { EXPECT_EQ(check(good_), kAccepted); }
@@ -202,7 +202,7 @@ TEST_F(TorqueGateTest, WhatIsOffCannotBeHeld) {
   situation_.powered = false;
   situation_.followed = false;
   for (int request = 0; request <= 4; ++request) {
-    const bool hold = request == joint_torque_t::REQUEST_HOLD;
+    const bool hold = request == joint_command_t::REQUEST_HOLD;
     EXPECT_EQ(check_with([=](auto& c) { c.request = static_cast<std::int8_t>(request); }),
               hold ? Status::VERDICT_NOT_ON + 0 : kAccepted);
   }
@@ -258,7 +258,7 @@ TEST_F(TorqueGateTest, ALimitThatIsNoNumberLetsNothingPass) {
 
 // Each flaw alone gives its own verdict; of any two, the one that is checked first is named.
 TEST_F(TorqueGateTest, FirstFailureNamesTheVerdict) {
-  using Change = std::function<void(joint_torque_t&)>;
+  using Change = std::function<void(joint_command_t&)>;
   const std::vector<std::pair<int, Change>> flaws = {
       {+Status::VERDICT_SIZE, [](auto& c) { c.num_joints = 4; }},
       {+Status::VERDICT_SESSION, [](auto& c) { c.session = 1; }},
@@ -267,7 +267,7 @@ TEST_F(TorqueGateTest, FirstFailureNamesTheVerdict) {
       {+Status::VERDICT_STALE, [](auto& c) { c.state_seq = 101; }},
       {+Status::VERDICT_NOT_FINITE, [](auto& c) { c.tau_gravity[0] = kNan; }},
       {+Status::VERDICT_REQUEST, [](auto& c) { c.request = 9; }},
-      {+Status::VERDICT_NOT_ON, [](auto& c) { c.request = joint_torque_t::REQUEST_HOLD; }},
+      {+Status::VERDICT_NOT_ON, [](auto& c) { c.request = joint_command_t::REQUEST_HOLD; }},
       {+Status::VERDICT_TORQUE, [](auto& c) { c.tau_gravity[1] = 21.0; }},
       {+Status::VERDICT_RATE, [](auto& c) { c.tau[2] = 1.0; }},
   };
@@ -280,7 +280,7 @@ TEST_F(TorqueGateTest, FirstFailureNamesTheVerdict) {
   EXPECT_EQ(seen.size(), 10U);
   for (std::size_t i = 0; i < flaws.size(); ++i) {
     for (std::size_t j = i + 1; j < flaws.size(); ++j) {
-      joint_torque_t command = good_;
+      joint_command_t command = good_;
       flaws[i].second(command);
       flaws[j].second(command);
       // Two flaws in the same field are one flaw.
@@ -295,7 +295,7 @@ TEST_F(TorqueGateTest, FirstFailureNamesTheVerdict) {
 
 TEST_F(TorqueGateTest, FirstControllerIsBoundAndFreedByItsSilence) {
   TorqueGate gate(limits_);
-  joint_torque_t other = good_;
+  joint_command_t other = good_;
   other.controller = kController + 1;
   EXPECT_EQ(gate.judge(good_, situation_), kAccepted);
   EXPECT_EQ(gate.memory().controller, kController);
@@ -326,7 +326,7 @@ TEST_F(TorqueGateTest, ARefusedCommandChangesNothing) {
   gate.next_cycle();
   situation_.state_seq = 101;
   const GateMemory before = gate.memory();
-  joint_torque_t bad = good_;
+  joint_command_t bad = good_;
   bad.state_seq = 101;
   bad.tau[0] = kNan;
   EXPECT_EQ(gate.judge(bad, situation_), Status::VERDICT_NOT_FINITE + 0);
@@ -338,7 +338,7 @@ TEST_F(TorqueGateTest, ARefusedCommandChangesNothing) {
 }
 
 TEST_F(TorqueGateTest, ThreeRefusalsOfTheHolderWithinTheWindowAreTooMany) {
-  joint_torque_t bad = good_;
+  joint_command_t bad = good_;
   for (int gap : {1, 49, 50}) {  // the third lies 2 gaps after the first; the window is 100 cycles
     TorqueGate gate(limits_);
     ASSERT_EQ(gate.judge(good_, situation_), kAccepted);
@@ -357,9 +357,9 @@ TEST_F(TorqueGateTest, ThreeRefusalsOfTheHolderWithinTheWindowAreTooMany) {
 TEST_F(TorqueGateTest, StrangersAndDuplicatesDoNotTripTheHolder) {
   TorqueGate gate(limits_);
   ASSERT_EQ(gate.judge(good_, situation_), kAccepted);
-  joint_torque_t stranger = good_;
+  joint_command_t stranger = good_;
   stranger.controller = 99;
-  joint_torque_t old_session = good_;
+  joint_command_t old_session = good_;
   old_session.session = 1;
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(gate.judge(stranger, situation_), Status::VERDICT_CONTROLLER + 0);
@@ -385,4 +385,4 @@ TEST(EventWindowTest, CountsTheNthWithinTheSpan) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::test_torque_gate

@@ -10,7 +10,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::canopen {
+namespace limber::canopen::test_canopen {
 namespace {
 
 using limber::testing::parse;
@@ -249,4 +249,4 @@ TEST(Canopen, NeverAllocates) {
 }
 
 }  // namespace
-}  // namespace limber::canopen
+}  // namespace limber::canopen::test_canopen

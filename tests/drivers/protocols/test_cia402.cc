@@ -1,17 +1,18 @@
 // CiA 402 against its tables: statuswords, controlwords, every state with every command, and the
-// two PDOs byte by byte (node 3, rated torque 28 N m where nothing else is said).
+// PDOs byte by byte (node 3, rated torque 28 N m where nothing else is said).
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
-#include "drivers/protocols/cia402.h"
+#include "drivers/protocols/cia402_pdos.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::cia402 {
+namespace limber::cia402::test_cia402 {
 namespace {
 
 using limber::testing::parse;
@@ -121,52 +122,69 @@ TEST(Cia402Pdos, EnableWithTorque) {
   EXPECT_FALSE(decode_command(parse("203#0F0038"), &command));
 }
 
-TEST(Cia402Pdos, StateWithoutLinkEncoder) {
-  const DriveState state = {0x1637, 81920, -256, -15, 30, 0, 0};
-  const CanFrame frame = encode_state(state, false, 0x183);
-  EXPECT_EQ(text(frame), "183#37160040010000FFFFFFF1FF1E000000");
-  EXPECT_EQ(frame.length, state_bytes(false));
-  DriveState read;
-  ASSERT_TRUE(decode_state(frame, false, &read));
-  EXPECT_EQ(read.statusword, 0x1637);
-  EXPECT_EQ(read.position_counts, 81920);
-  EXPECT_EQ(read.velocity_counts_per_s, -256);
-  EXPECT_EQ(read.torque_permille, -15);
-  EXPECT_EQ(read.current_permille, 30);
-  EXPECT_FALSE(decode_state(frame, true, &read));  // too short for both encoders
+constexpr DriveState kState = {0x1637, 81920, -256, -15, 30, -5, -6};
+
+/// The frames that tell kState.
+std::vector<std::string> frames_of(const StateLayout& layout) {
+  std::vector<std::string> frames;
+  for (int k = 0; k < tpdos_of(layout); ++k)
+    frames.push_back(
+        text(encode_state(kState, state_objects(layout, k), canopen::tpdo_id(k, 3), layout.fd)));
+  return frames;
 }
 
-TEST(Cia402Pdos, StateWithLinkEncoder) {
-  const CanFrame frame = encode_state({0x0250, 1, 2, 3, 4, -5, -6}, true, 0x183);
-  EXPECT_EQ(text(frame),
-            "183#5002"
-            "01000000"
-            "02000000"
-            "0300"
-            "0400"
-            "FBFFFFFF"
-            "FAFFFFFF"
-            "0000");
-  EXPECT_EQ(frame.length, state_bytes(true));
-  DriveState read;
-  ASSERT_TRUE(decode_state(frame, true, &read));
-  EXPECT_EQ(read.link_position_counts, -5);
-  EXPECT_EQ(read.link_velocity_counts_per_s, -6);
-  CanFrame remote = frame;
-  remote.remote = true;
-  EXPECT_FALSE(decode_state(remote, true, &read));
+TEST(Cia402Pdos, StateInClassicFrames) {
+  using Frames = std::vector<std::string>;
+  EXPECT_EQ(frames_of({}), Frames({"183#371600400100", "283#00FFFFFFF1FF"}));
+  EXPECT_EQ(frames_of({.torque_sensor = true}),
+            Frames({"183#371600400100", "283#00FFFFFFF1FF1E00"}));
+  EXPECT_EQ(frames_of({.link_encoder = true}),
+            Frames({"183#371600400100", "283#00FFFFFFF1FF", "383#FBFFFFFFFAFFFFFF"}));
+  EXPECT_EQ(frames_of({.link_encoder = true, .torque_sensor = true}),
+            Frames({"183#371600400100", "283#00FFFFFFF1FF1E00", "383#FBFFFFFFFAFFFFFF"}));
+}
+
+TEST(Cia402Pdos, StateInOneFdFrame) {
+  using Frames = std::vector<std::string>;
+  EXPECT_EQ(frames_of({.fd = true}), Frames({"183#37160040010000FFFFFFF1FF1E000000"}));
+  EXPECT_EQ(frames_of({.fd = true, .torque_sensor = true}), frames_of({.fd = true}));
+  EXPECT_EQ(frames_of({.fd = true, .link_encoder = true}),
+            Frames({"183#37160040010000FFFFFFF1FF1E00FBFFFFFFFAFFFFFF0000"}));
+}
+
+TEST(Cia402Pdos, EveryFrameIsReadBack) {
+  for (unsigned bits = 0; bits < 8; ++bits) {
+    const StateLayout layout = {(bits & 1U) != 0, (bits & 2U) != 0, (bits & 4U) != 0};
+    DriveState read;
+    for (int k = 0; k < tpdos_of(layout); ++k) {
+      const auto objects = state_objects(layout, k);
+      CanFrame frame = encode_state(kState, objects, 0x183, layout.fd);
+      ASSERT_TRUE(decode_state(frame, objects, &read));
+      const DriveState before = read;
+      frame.remote = true;
+      EXPECT_FALSE(decode_state(frame, objects, &read));
+      frame.remote = false;
+      frame.length = static_cast<std::uint8_t>(layout.fd ? 12 : frame.length - 1);
+      EXPECT_FALSE(decode_state(frame, objects, &read));  // too short
+      EXPECT_EQ(read.statusword, before.statusword);
+    }
+    EXPECT_EQ(read.statusword, 0x1637);
+    EXPECT_EQ(read.position_counts, 81920);
+    EXPECT_EQ(read.velocity_counts_per_s, -256);
+    EXPECT_EQ(read.torque_permille, -15);
+    EXPECT_EQ(read.current_permille, layout.fd || layout.torque_sensor ? 30 : 0);
+    EXPECT_EQ(read.link_position_counts, layout.link_encoder ? -5 : 0);
+    EXPECT_EQ(read.link_velocity_counts_per_s, layout.link_encoder ? -6 : 0);
+  }
 }
 
 TEST(Cia402Pdos, ObjectsAddUpToTheFrames) {
   int bytes = 0;
   for (const Object& object : command_objects()) bytes += object.bytes;
-  EXPECT_EQ(bytes, kCommandBytes);
-  for (const bool link_encoder : {false, true}) {
-    bytes = 0;
-    for (const Object& object : state_objects(link_encoder)) bytes += object.bytes;
-    EXPECT_EQ(fd_length(bytes), state_bytes(link_encoder));
-  }
-  EXPECT_EQ(state_objects(true)[5].mapping(), 0x60E40120U);
+  EXPECT_EQ(bytes, 4);
+  EXPECT_EQ(state_objects({.fd = true, .link_encoder = true}, 0)[5].mapping(), 0x60E40120U);
+  EXPECT_TRUE(state_objects({.fd = true, .link_encoder = true}, 1).empty());
+  EXPECT_TRUE(state_objects({}, 2).empty());
 }
 
 TEST(Cia402Pdos, ThousandthsRoundAndSaturate) {
@@ -185,10 +203,11 @@ TEST(Cia402Pdos, NeverAllocate) {
   const std::int64_t before = testing::allocations();
   DriveState state;
   DriveCommand command;
-  EXPECT_TRUE(decode_state(encode_state({}, true, 0x183), true, &state));
+  const auto objects = state_objects({.link_encoder = true}, 2);
+  EXPECT_TRUE(decode_state(encode_state({}, objects, 0x383, false), objects, &state));
   EXPECT_TRUE(decode_command(encode_command({}, 0x203, true), &command));
   EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace
-}  // namespace limber::cia402
+}  // namespace limber::cia402::test_cia402

@@ -7,7 +7,7 @@
 #include "drivers/protocols/limber_ft.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::limber_ft {
+namespace limber::limber_ft::test_limber_ft {
 namespace {
 
 using testing::text;
@@ -106,4 +106,4 @@ TEST(LimberFt, TakesNoOtherFrame) {
 }
 
 }  // namespace
-}  // namespace limber::limber_ft
+}  // namespace limber::limber_ft::test_limber_ft

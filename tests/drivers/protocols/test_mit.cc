@@ -12,7 +12,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::mit {
+namespace limber::mit::test_mit {
 namespace {
 
 constexpr CommandRange kDm4310{12.5, 30.0, 10.0, 500.0, 5.0};
@@ -378,4 +378,4 @@ TEST(Mit, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace limber::mit
+}  // namespace limber::mit::test_mit

@@ -14,7 +14,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::moteus {
+namespace limber::moteus::test_moteus {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -362,4 +362,4 @@ TEST(MoteusMessages, NeverAllocate) {
 }
 
 }  // namespace
-}  // namespace limber::moteus
+}  // namespace limber::moteus::test_moteus

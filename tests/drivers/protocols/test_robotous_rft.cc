@@ -6,7 +6,7 @@
 #include "drivers/protocols/robotous_rft.h"
 #include "tests/support/frame_text.h"
 
-namespace limber::robotous_rft {
+namespace limber::robotous_rft::test_robotous_rft {
 namespace {
 
 using testing::parse;
@@ -98,4 +98,4 @@ TEST(RobotousRft, TakesNothingButTheAnswerToOneSample) {
 }
 
 }  // namespace
-}  // namespace limber::robotous_rft
+}  // namespace limber::robotous_rft::test_robotous_rft

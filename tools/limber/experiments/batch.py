@@ -1,4 +1,4 @@
-"""Runs many experiments, two at a time, each in a process of its own; one failure stops nobody."""
+"""Runs many experiments, two at a time; each has a process, so a failure stops no other."""
 
 import json
 import os
@@ -13,15 +13,16 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from limber import tables
 from limber.errors import OK, OUT_OF_TOLERANCE, RUN_FAILED
 from limber.experiments.catalog import Experiment
-from limber.experiments.run import RESULT, number
+from limber.experiments.run_one import RESULT, numbers
 from limber.paths import output_folder
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """`rows` as in result.json; none where the experiment failed, and then `error` says why."""
+    """`rows` as in result.json; none, and the reason in `error`, if the experiment failed."""
 
     experiment: Experiment
     rows: list[dict]
@@ -37,7 +38,7 @@ def run_many(experiments: list[Experiment], out: Path, jobs: int, console: Conso
     """Returns the exit code: 0 if all checks of all experiments pass."""
     outcomes = sorted(_outcomes(experiments, out, jobs, console), key=lambda o: o.experiment.id)
     console.print(summary(outcomes))
-    console.print(f"results: {out}", highlight=False, soft_wrap=True)
+    console.print(f"results: {out}", soft_wrap=True)
     if any(outcome.error for outcome in outcomes):
         return RUN_FAILED
     return OK if all(outcome.passed for outcome in outcomes) else OUT_OF_TOLERANCE
@@ -61,7 +62,7 @@ def _outcomes(
                 progress.update(task, advance=1)
                 verdict = "ok" if outcome.passed else outcome.error or "NO"
                 line = f"{outcome.experiment.id} {outcome.seconds:6.1f} s  {verdict}"
-                progress.console.print(line, highlight=False, soft_wrap=True)
+                progress.console.print(line, soft_wrap=True)
         except KeyboardInterrupt:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
@@ -88,28 +89,21 @@ def _in_process(experiment: Experiment, out: Path) -> Outcome:
     if code in (OK, OUT_OF_TOLERANCE):
         rows = json.loads((folder / RESULT).read_text(encoding="utf-8"))
         return Outcome(experiment, rows, "", seconds)
-    said = (folder / "run.txt").read_text(encoding="utf-8").strip().splitlines()
-    return Outcome(experiment, [], said[-1] if said else f"ended with code {code}", seconds)
+    lines = (folder / "run.txt").read_text(encoding="utf-8").strip().splitlines()
+    return Outcome(experiment, [], lines[-1] if lines else f"ended with code {code}", seconds)
 
 
 def summary(outcomes: list[Outcome]) -> Table:
     """One line an experiment, with the first check that fails, else the first of all."""
-    drawn = Table(title="Experiments", title_justify="left", box=None, padding=(0, 2, 0, 0))
-    for name in ("", "claim", "predicted", "measured", "checks", ""):
-        drawn.add_column(name, no_wrap=name != "claim")
+    columns = ("<", "~claim", "<predicted", "<measured", "<checks", "<")
+    drawn = tables.table(*columns, title="Experiments")
     for outcome in outcomes:
         good = sum(row["pass"] for row in outcome.rows)
         shown = next((row for row in outcome.rows if not row["pass"]), None)
         shown = shown or (outcome.rows[0] if outcome.rows else None)
-        numbers = [number(shown[key], shown["unit"]) if shown else "" for key in _NUMBERS]
+        checks = f"{good} of {len(outcome.rows)}"
+        claim = outcome.experiment.id, outcome.experiment.title
         drawn.add_row(
-            outcome.experiment.id,
-            outcome.experiment.title,
-            *numbers,
-            f"{good} of {len(outcome.rows)}",
-            "[green]ok[/]" if outcome.passed else "[bold red]NO[/]",
+            *claim, *(numbers(shown) if shown else ("", "")), checks, tables.verdict(outcome.passed)
         )
     return drawn
-
-
-_NUMBERS = ("predicted", "measured")

@@ -10,14 +10,10 @@ from dataclasses import dataclass
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 from limber.errors import InputError, LimberError
-from limber.experiments.check import Check
+from limber.experiments.comparison import Comparison
 from limber.paths import ROOT
-
-if TYPE_CHECKING:
-    from limber.experiments.context import Context
 
 FOLDER_NAME = re.compile(r"(E\d\d)_[a-z0-9_]+")
 FIELDS = {"TITLE": str, "CLAIM": str, "SECTION": str, "PLANT": str, "FAST": bool}
@@ -25,7 +21,7 @@ FIELDS = {"TITLE": str, "CLAIM": str, "SECTION": str, "PLANT": str, "FAST": bool
 
 @dataclass(frozen=True)
 class Experiment:
-    """What an experiment.py says of itself."""
+    """The constants and run() of an experiment.py."""
 
     id: str
     folder: Path
@@ -34,7 +30,7 @@ class Experiment:
     section: str
     plant: str
     fast: bool
-    run: Callable[["Context"], list[Check]]
+    run: Callable[..., list[Comparison]]  # with a Context
 
 
 def catalog(root: Path | None = None) -> list[Experiment]:
@@ -75,9 +71,9 @@ def _load(folder: Path) -> Experiment:
         raise InputError(f"{folder.name}: {type(error).__name__}: {error}") from error
     for name, kind in FIELDS.items():
         if not isinstance(getattr(module, name, None), kind):
-            raise InputError(f"{folder.name}/experiment.py: {name}, a {kind.__name__}, is wanted")
+            raise InputError(f"{folder.name}/experiment.py: missing {name}, a {kind.__name__}")
     if not callable(getattr(module, "run", None)):
-        raise InputError(f"{folder.name}/experiment.py: run(context) is wanted")
+        raise InputError(f"{folder.name}/experiment.py: missing run(context)")
     values = {name.lower(): getattr(module, name) for name in FIELDS}
     return Experiment(id=match[1], folder=folder, run=module.run, **values)
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from limber.errors import InputError
 from limber.experiments.catalog import Experiment
-from limber.experiments.run import ABOUT, RESULT
-from limber.robot import read_yaml
+from limber.experiments.run_one import ABOUT, RESULT
+from limber.model.robot import read_yaml
 
 VERDICTS = ("holds", "holds with limits", "does not hold")
 NOT_MEASURED, PARTLY, NOT_CONFIRMED = "not yet measured", "partly measured", "not confirmed"
@@ -26,7 +26,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Measured:
+class StoredResult:
     """What a run of an experiment left in its folder; `rows` as in result.json."""
 
     folder: Path
@@ -59,7 +59,7 @@ def load_claims(path: Path) -> tuple[dict[str, str], list[Claim]]:
     return sections, claims
 
 
-def load_results(out: Path, experiments: list[Experiment]) -> dict[str, Measured]:
+def load_results(out: Path, experiments: list[Experiment]) -> dict[str, StoredResult]:
     """Of those that have been run."""
     results = {}
     for experiment in experiments:
@@ -72,11 +72,11 @@ def load_results(out: Path, experiments: list[Experiment]) -> dict[str, Measured
             )
         except (OSError, json.JSONDecodeError) as error:
             raise InputError(f"{folder}: {error}; run {experiment.id} again") from error
-        results[experiment.id] = Measured(folder, rows, about)
+        results[experiment.id] = StoredResult(folder, rows, about)
     return results
 
 
-def verdict(claim: Claim, results: dict[str, Measured]) -> str:
+def verdict(claim: Claim, results: dict[str, StoredResult]) -> str:
     """The claim's own verdict stands when all of its experiments have been run and agree."""
     there = [results[key] for key in claim.shown_by if key in results]
     if not there:

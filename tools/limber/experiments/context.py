@@ -1,4 +1,4 @@
-"""What an experiment is given: a folder, a lab, the laws, a seeded generator, a picture."""
+"""What an experiment gets: a folder, a lab, the laws, a seeded generator, a picture."""
 
 import zlib
 from contextlib import AbstractContextManager
@@ -10,12 +10,18 @@ import numpy as np
 import yaml
 from rich.console import Console
 
-from limber import runner
 from limber.experiments import evaluate, pictures
 from limber.experiments.catalog import Experiment
-from limber.jobs import load_checked
-from limber.logs import Log
+from limber.experiments.comparison import Comparison, at_least, at_most, ideal_and_bus, near_zero
+from limber.experiments.evaluate import case
+from limber.log.reader import Log
+from limber.model.scenario import active_with
 from limber.paths import output_folder
+from limber.run import runner
+from limber.run.commands import load_checked
+
+# What every experiment needs is imported from here
+__all__ = ["Comparison", "Context", "at_least", "at_most", "case", "ideal_and_bus", "near_zero"]
 
 PICTURE = "picture.png"
 
@@ -31,21 +37,39 @@ class Context:
         """Runs a scenario in one process and reads its log.
 
         A mapping is written to NAME.yaml in the output folder; a string is a file beside
-        experiment.py. Scenario, robot and log stay in the folder NAME.
+        experiment.py. Scenario, robot and log stay in the folder NAME. Frames take no time unless
+        the scenario has `wire: true`.
         """
         if isinstance(scenario, str):
             path = self.experiment.folder / scenario
         else:
             path = self.out / f"{name}.yaml"
-            content = {"format": "limber-scenario/1", **scenario}
+            head = {"format": "limber-scenario/1", "wire": False}  # formulas know no bus
+            content = evaluate.plain({**head, **scenario})
             path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
-        self.say(f"lab: {name}")
+        self.progress(f"lab: {name}")
         folder = output_folder(self.out / name)
         result = runner.lab(load_checked(path), folder, Console(quiet=True))
         return Log(result.log)
 
+    def run_law(
+        self,
+        name: str,
+        robot: str,
+        gains: dict[str, Any],
+        entries: list[dict[str, Any]],
+        end_s: float,
+        **head: Any,
+    ) -> Log:
+        """Runs a law on exact equations: the arm is held, becomes active, and gets `gains` at 1 s.
+
+        `entries` of the timeline follow, until `end_s`; `head`: what else the scenario says.
+        """
+        scenario = {"robot": robot, "integrator": "reference", "duration_s": end_s + 0.1, **head}
+        return self.lab({**scenario, "timeline": [*active_with(gains), *entries]}, name)
+
     def eval(self, cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Answers of the controller's own classes; questions are made by evaluate.case."""
+        """Results of the controller's own classes; `case` makes one."""
         return evaluate.evaluate(cases)
 
     def picture(
@@ -54,9 +78,9 @@ class Context:
         """Gives the axes to draw in (one, or an array), and saves them when the block ends."""
         return pictures.picture(self.out / PICTURE, title, rows, columns, size)
 
-    def say(self, what: str) -> None:
-        """What is being done now, for whoever waits."""
-        self.console.print(f"{self.experiment.id}: {what}", highlight=False, soft_wrap=True)
+    def progress(self, what: str) -> None:
+        """Prints what is being done now."""
+        self.console.print(f"{self.experiment.id}: {what}", soft_wrap=True)
 
 
 def make_context(experiment: Experiment, folder: Path, console: Console) -> Context:

@@ -128,7 +128,7 @@ def run(
     for k in range(round(seconds / PERIOD_S)):
         t, now = k * PERIOD_S, State(*x.reshape(4, n))
         tau_ext = np.zeros(n) if push is None else push(t)
-        asked = law(t, now)
+        next_u = law(t, now)
         rows.append((t, x.copy(), motors.torque(u, now)))
         pushed = E[:, n:] @ tau_ext
         for _ in range(loops):
@@ -136,7 +136,7 @@ def run(
             for _ in range(steps):
                 friction = motors.friction(x[3 * n :], step_s) if steps > 1 else 0.0
                 x = A @ x + E[:, :n] @ (tau_m - friction) + pushed
-        u = asked
+        u = next_u
     return _track(arm, rows)
 
 

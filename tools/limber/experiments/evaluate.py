@@ -1,4 +1,4 @@
-"""Asks the controller's own classes for numbers, through the program limber-eval."""
+"""Evaluates the controller's own classes through the program limber-eval."""
 
 import json
 import subprocess
@@ -13,13 +13,13 @@ TIMEOUT_S = 300.0
 
 
 def case(law: str, robot: str = "", **inputs: Any) -> dict[str, Any]:
-    """One question: the law by its name, the robot's name where it needs one, SI units."""
+    """One case: the law by its name, the robot's name where it needs one, SI units."""
     arm = {"robot": robot} if robot else {}
-    return {"law": law, **arm, "in": {key: _plain(value) for key, value in inputs.items()}}
+    return {"law": law, **arm, "in": plain(inputs)}
 
 
 def evaluate(cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The answers in the order of the questions; lists of numbers as arrays."""
+    """The results in the order of the cases; lists of numbers as arrays."""
     text = json.dumps(cases, allow_nan=False)
     command = [str(program("limber-eval"))]
     try:
@@ -29,16 +29,17 @@ def evaluate(cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
     except subprocess.TimeoutExpired as error:
         raise RunError(f"limber-eval gave no answer in {TIMEOUT_S:g} s") from error
     if done.returncode != 0:
-        said = (done.stderr.strip() or "nothing").splitlines()[-1]
-        raise RunError(f"limber-eval ended with code {done.returncode}: {said}")
+        last = (done.stderr.strip() or "nothing").splitlines()[-1]
+        raise RunError(f"limber-eval ended with code {done.returncode}: {last}")
     answers = json.loads(done.stdout)
     if len(answers) != len(cases):
-        raise RunError(f"limber-eval answered {len(answers)} of {len(cases)} questions")
-    return [_arrays(answer, asked["law"]) for answer, asked in zip(answers, cases, strict=True)]
+        raise RunError(f"limber-eval gave {len(answers)} results for {len(cases)} cases")
+    return [_arrays(answer, case["law"]) for answer, case in zip(answers, cases, strict=True)]
 
 
-def _plain(value: Any) -> Any:
-    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+def plain(content: Any) -> Any:
+    """The same for JSON and YAML: lists and numbers instead of numpy's."""
+    return json.loads(json.dumps(content, default=lambda value: value.tolist()))
 
 
 def _arrays(answer: dict[str, Any], law: str) -> dict[str, Any]:

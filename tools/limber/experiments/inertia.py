@@ -1,23 +1,22 @@
 """Inertia and gravity of a shipped robot, from its URDF, as sums over its links and without C++."""
 
-import xml.etree.ElementTree as ElementTree
 from functools import cache
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from limber.paths import robot_folder
-from limber.robot import load_robot
-from limber.urdf import Chain
+from limber.model.bodies import Inertial, read_inertials
+from limber.model.robot import load_robot
+from limber.model.urdf import Chain
 
 
 def joint_inertia(robot: str, q: np.ndarray) -> np.ndarray:
     """M(q) = Σ J_cᵀ diag(m, I_c) J_c with J_c at each link's centre of mass; base axes."""
     M = np.zeros((len(q), len(q)))
-    for chain, m, p_LC, I_C in _links(robot):
-        J_c, J_w, R = _at_centre(chain, q, p_LC), chain.jacobian(q)[3:], chain.forward(q)[:3, :3]
+    for chain, link in _links(robot):
+        J_c = _at_centre(chain, q, link.com)
+        J_w, R = chain.jacobian(q)[3:], chain.forward(q)[:3, :3]
         moving = J_w.shape[1]
-        M[:moving, :moving] += m * J_c.T @ J_c + J_w.T @ R @ I_C @ R.T @ J_w
+        M[:moving, :moving] += link.mass * J_c.T @ J_c + J_w.T @ R @ link.inertia @ R.T @ J_w
     return M
 
 
@@ -34,9 +33,9 @@ def gravity_rate(robot: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 def _gravity(robot: str, q: np.ndarray) -> np.ndarray:
     g = np.zeros(len(q))
-    for chain, m, p_LC, _ in _links(robot):
-        J_c = _at_centre(chain, q, p_LC)
-        g[: J_c.shape[1]] -= m * J_c.T @ _acceleration(robot)
+    for chain, link in _links(robot):
+        J_c = _at_centre(chain, q, link.com)
+        g[: J_c.shape[1]] -= link.mass * J_c.T @ _acceleration(robot)
     return g
 
 
@@ -57,21 +56,10 @@ def tip_inertia(J: np.ndarray, M: np.ndarray) -> np.ndarray:
 
 
 @cache
-def _links(robot: str) -> list[tuple[Chain, float, np.ndarray, np.ndarray]]:
-    """Chain to each link that moves and weighs something, mass, centre, inertia about it."""
+def _links(robot: str) -> list[tuple[Chain, Inertial]]:
+    """Chain to each link that moves and has a mass, and its inertial."""
     loaded = load_robot(robot)
-    found = []
-    for link in ElementTree.parse(robot_folder(robot) / loaded.urdf.name).getroot().iter("link"):
-        inertial = link.find("inertial")
-        if inertial is None:
-            continue
-        chain = Chain(loaded.urdf, loaded.base, link.get("name"))
-        origin = inertial.find("origin").attrib
-        R = Rotation.from_euler("xyz", [float(x) for x in origin.get("rpy", "0 0 0").split()])
-        axes = R.as_matrix()
-        about = {key: float(value) for key, value in inertial.find("inertia").attrib.items()}
-        tensor = np.array([[about["i" + "".join(sorted(a + b))] for b in "xyz"] for a in "xyz"])
-        centre = np.array([float(x) for x in origin.get("xyz", "0 0 0").split()])
-        mass = float(inertial.find("mass").get("value"))
-        found.append((chain, mass, centre, axes @ tensor @ axes.T))
-    return found
+    return [
+        (Chain(loaded.urdf, loaded.base, link), inertial)
+        for link, inertial in read_inertials(loaded.urdf).items()
+    ]

@@ -1,18 +1,19 @@
-"""One look for all experiments' pictures."""
+"""The style of all experiments' pictures."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
-from limber.plot_png import COLORS, STYLE
+from limber.plot.style import COLORS, STYLE, note
+from limber.plot.style import name_axes as name_axes
 
-BLUE, ORANGE, GREEN, PINK, AMBER, SKY, BLACK, BROWN = COLORS
+BLUE, ORANGE, GREEN, PINK, AMBER, SKY, BLACK, _ = COLORS
 LOOK = {
     **STYLE,
     "font.size": 10,
@@ -21,8 +22,12 @@ LOOK = {
     "lines.linewidth": 1.6,
     "lines.markersize": 5.5,
 }
-# What a formula says is a line, what was measured is an open circle: in every picture
+ARROW = {"arrowprops": {"arrowstyle": "->"}, "color": "black"}  # of a note
+# In every picture a formula is a line and a measurement an open circle. Where both have been
+# measured, the circle is the robot on its bus and a cross its equations.
 MEASURED = {"marker": "o", "mfc": "white", "ls": "none", "mew": 1.5}
+MARKS = {"ideal": {"marker": "x", "ls": "none", "mew": 1.5, "ms": 6.5}, "bus": MEASURED}
+WAYS = {"ideal": "on the joint's equations", "bus": "measured on the bus"}
 
 
 @contextmanager
@@ -38,3 +43,35 @@ def picture(
             fig.savefig(path, dpi=130)
         finally:
             plt.close(fig)
+
+
+def plot_marks(ax: Axes, at: ArrayLike, ideal: ArrayLike, bus: ArrayLike, **style: Any) -> None:
+    """What was measured both ways; the legend says so once for all colours."""
+    named = {line.get_label() for line in ax.get_lines()}
+    for where, values in (("ideal", ideal), ("bus", bus)):
+        ax.plot(at, values, **MARKS[where], **style)
+        if WAYS[where] not in named:
+            ax.plot([], [], **MARKS[where], color="0.3", label=WAYS[where])
+
+
+def ellipse(K: np.ndarray) -> np.ndarray:
+    """2 x N points: stiffness along each direction, of the symmetric part of a 2 x 2 matrix."""
+    angle = np.linspace(0, 2 * np.pi, 120)
+    values, axes = np.linalg.eigh((K + K.T) / 2)
+    return axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))
+
+
+def level(
+    ax: Axes,
+    text: str,
+    at: tuple[float, float],
+    offset: tuple[float, float] = (0, 0),
+    upright: bool = False,
+    **style: Any,
+) -> None:
+    """A dotted line across the picture through `at`, or an `upright` one, and its name there."""
+    if upright:
+        ax.axvline(at[0], color="0.5", ls=":", lw=1)
+    else:
+        ax.axhline(at[1], color="0.5", ls=":", lw=1)
+    note(ax, text, at, offset, **style)

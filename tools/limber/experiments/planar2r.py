@@ -8,6 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from limber.experiments.evaluate import case
+
 ROBOT = "planar2r"
 LENGTHS = np.array([0.5, 0.4])  # m
 MASSES = np.array([4.0, 2.5])  # kg
@@ -87,3 +89,9 @@ def derivative(function: Callable[[np.ndarray], np.ndarray], q: np.ndarray) -> n
     step = 1e-30
     columns = [np.imag(function(q + 1j * step * axis)) / step for axis in np.eye(len(q))]
     return np.column_stack(columns)
+
+
+def direct_law(q: np.ndarray, v: np.ndarray, p_d: np.ndarray, K: np.ndarray, D: np.ndarray) -> dict:
+    """A case for limber-eval: the torque -Jᵀ(K x̃ + D ẋ) of the Cartesian law on this arm."""
+    law = {"Kx": K, "Dx": D, "bias": "none", "mode": "log", "F_ff": np.zeros(2)}
+    return case("cartesian_impedance", ROBOT, q=q, v=v, p_d=p_d, **law)

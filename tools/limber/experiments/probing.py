@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from limber.experiments.truth import motion, status
-from limber.logs import Log
+from limber.log.reader import Log
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,14 @@ from limber.experiments.catalog import Experiment, catalog
 from limber.experiments.claims import (
     NOT_MEASURED,
     Claim,
-    Measured,
+    StoredResult,
     load_claims,
     load_results,
     shown,
     verdict,
 )
 from limber.experiments.context import PICTURE
-from limber.experiments.run import number, tolerance
+from limber.experiments.run_one import numbers, tolerance
 from limber.paths import ASSETS, ROOT
 
 text = html.escape
@@ -40,7 +40,7 @@ def page(
     sections: dict[str, str],
     claims: list[Claim],
     experiments: list[Experiment],
-    results: dict[str, Measured],
+    results: dict[str, StoredResult],
 ) -> str:
     parts = {
         "SUMMARY": _summary(experiments, results),
@@ -53,7 +53,7 @@ def page(
     return filled
 
 
-def _summary(experiments: list[Experiment], results: dict[str, Measured]) -> str:
+def _summary(experiments: list[Experiment], results: dict[str, StoredResult]) -> str:
     checks = sum(len(result.rows) for result in results.values())
     good = sum(result.good for result in results.values())
     dates = sorted(result.about["date"] for result in results.values())
@@ -66,7 +66,7 @@ def _summary(experiments: list[Experiment], results: dict[str, Measured]) -> str
     )
 
 
-def _claims(sections: dict[str, str], claims: list[Claim], results: dict[str, Measured]) -> str:
+def _claims(sections: dict[str, str], claims: list[Claim], results: dict[str, StoredResult]) -> str:
     rows = []
     for section, title in sections.items():
         rows.append(f'<tr class="section"><th colspan="3">{text(section)} {text(title)}</th></tr>')
@@ -75,7 +75,7 @@ def _claims(sections: dict[str, str], claims: list[Claim], results: dict[str, Me
 
 
 def _others(
-    claims: list[Claim], experiments: list[Experiment], results: dict[str, Measured]
+    claims: list[Claim], experiments: list[Experiment], results: dict[str, StoredResult]
 ) -> str:
     """What was measured on top of the lecture's claims."""
     named = {key for claim in claims for key in claim.shown_by}
@@ -89,7 +89,7 @@ def _others(
     return "\n".join([title, *rows]) if rows else ""
 
 
-def _claim(claim: Claim, results: dict[str, Measured]) -> str:
+def _claim(claim: Claim, results: dict[str, StoredResult]) -> str:
     word = verdict(claim, results)
     lines = [
         _evidence(key, start, results.get(key)) for key, start in sorted(claim.shown_by.items())
@@ -101,11 +101,11 @@ def _claim(claim: Claim, results: dict[str, Measured]) -> str:
     )
 
 
-def _evidence(key: str, start: str, result: Measured | None) -> str:
+def _evidence(key: str, start: str, result: StoredResult | None) -> str:
     if result is None:
         return f"<p>{key}: {NOT_MEASURED}</p>"
     row = shown(result.rows, start)
-    predicted, measured = (number(row[name], row["unit"]) for name in ("predicted", "measured"))
+    predicted, measured = numbers(row)
     return (
         f'<p><a href="#{key}">{key}</a> {text(row["name"])}: predicted {text(predicted)}, '
         f"measured <b>{text(measured)}</b>; {result.good} of {len(result.rows)} numbers agree</p>"
@@ -113,7 +113,7 @@ def _evidence(key: str, start: str, result: Measured | None) -> str:
 
 
 def _details(
-    sections: dict[str, str], experiments: list[Experiment], results: dict[str, Measured]
+    sections: dict[str, str], experiments: list[Experiment], results: dict[str, StoredResult]
 ) -> str:
     order = list(sections)
     known = [item for item in experiments if item.id in results]
@@ -121,7 +121,7 @@ def _details(
     return "\n".join(_detail(item, results[item.id]) for item in known)
 
 
-def _detail(experiment: Experiment, result: Measured) -> str:
+def _detail(experiment: Experiment, result: StoredResult) -> str:
     rows = "\n".join(_check(row) for row in result.rows)
     image = base64.b64encode((result.folder / PICTURE).read_bytes()).decode("ascii")
     title, section = text(experiment.title), text(experiment.section)
@@ -129,7 +129,7 @@ def _detail(experiment: Experiment, result: Measured) -> str:
         f'<section id="{experiment.id}"><h2>{experiment.id} {title}</h2>'
         f'<p class="claim">Section {section}: {text(experiment.claim)}.</p>'
         f'<img alt="{title}" src="data:image/png;base64,{image}">'
-        f'<p class="plant">Measured on: {text(experiment.plant)}. '
+        f'<p class="plant">StoredResult on: {text(experiment.plant)}. '
         f"{result.good} of {len(result.rows)} numbers within tolerance.</p>"
         "<details><summary>All numbers</summary><table><thead><tr><th></th><th>predicted</th>"
         "<th>measured</th><th>tolerance</th><th></th></tr></thead><tbody>"
@@ -138,8 +138,6 @@ def _detail(experiment: Experiment, result: Measured) -> str:
 
 
 def _check(row: dict[str, Any]) -> str:
-    cells = [row["name"]]
-    cells += [number(row[key], row["unit"]) for key in ("predicted", "measured")]
-    cells += [tolerance(row), "ok" if row["pass"] else "NO"]
+    cells = [row["name"], *numbers(row), tolerance(row), "ok" if row["pass"] else "NO"]
     mark = "" if row["pass"] else ' class="failed"'
     return f"<tr{mark}>{''.join(f'<td>{text(cell)}</td>' for cell in cells)}</tr>"

@@ -16,12 +16,27 @@ class Mode:
     omega: float  # rad/s, magnitude of the root
     zeta: float
 
+    @classmethod
+    def of(cls, s: complex) -> "Mode":
+        """With the root s."""
+        return cls(float(abs(s)), float(-s.real / abs(s)))
+
+    @property
+    def growth(self) -> float:
+        """1/s, of its amplitude; less than zero if it dies out."""
+        return -self.zeta * self.omega
+
 
 def modes_of(M: np.ndarray, D: np.ndarray, K: np.ndarray, count: int) -> list[Mode]:
     """Of M s² + D s + K, slowest first; `count` of them swing."""
+    return _swinging(roots_of(M, D, K), count)
+
+
+def roots_of(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """All s of det(M s² + D s + K) = 0."""
     n = len(M)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, np.hstack([K, D]))]])
-    return _swinging(np.linalg.eigvals(A), count)
+    return np.linalg.eigvals(A)
 
 
 def modes_seen(tracks: list[np.ndarray], step_s: float, count: int) -> list[Mode]:
@@ -37,9 +52,14 @@ def modes_seen(tracks: list[np.ndarray], step_s: float, count: int) -> list[Mode
     return _swinging(np.log(np.linalg.eigvals(step).astype(complex)) / step_s, count)
 
 
+def mode_seen(x: np.ndarray, v: np.ndarray, every: int = 1) -> Mode:
+    """The one mode of a free motion sampled at 1 kHz, from each `every`th sample."""
+    return modes_seen([np.column_stack([x, v])[::every]], every * 1e-3, 1)[0]
+
+
 def _swinging(roots: np.ndarray, count: int) -> list[Mode]:
     """One of each conjugate pair."""
     upper = sorted((s for s in roots if s.imag > 1e-3 * abs(s)), key=abs)
     if len(upper) != count:
         raise RunError(f"{len(upper)} modes swing, {count} should")
-    return [Mode(float(abs(s)), float(-s.real / abs(s))) for s in upper]
+    return [Mode.of(s) for s in upper]

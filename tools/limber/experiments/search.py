@@ -1,7 +1,9 @@
 """Limits found by trying: where does a system stop being stable?"""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from limber.errors import RunError
 
@@ -14,3 +16,19 @@ def limit(holds: Callable[[float], bool], low: float, high: float, relative: flo
         middle = math.sqrt(low * high)
         low, high = (middle, high) if holds(middle) else (low, middle)
     return math.sqrt(low * high)
+
+
+def limit_by_combs(
+    hold: Callable[[np.ndarray], Sequence[bool]], low: float, high: float, count: int
+) -> float:
+    """The same where trying `count` values at once is cheap: a comb, then three finer ones."""
+    for _ in range(4):
+        tried = np.linspace(low, high, count)
+        last = list(hold(tried)).index(False) - 1
+        low, high = tried[last], tried[last + 1]
+    return (low + high) / 2
+
+
+def order(x: np.ndarray, y: Sequence[float]) -> float:
+    """The exponent p of y ~ xᵖ."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])

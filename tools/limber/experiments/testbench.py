@@ -4,6 +4,7 @@ Equations are linear, (A, B) of ẋ = A x + B u with the inputs motor torque and
 are exact (plants.held).
 """
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,12 @@ from limber.errors import RunError
 from limber.experiments.context import Context
 from limber.experiments.plants import held, with_delay
 from limber.experiments.ringdown import Mode
-from limber.experiments.truth import RAMP, motion, seconds, status
+from limber.experiments.timeline import joint_damping
+from limber.experiments.truth import RAMP, between, motion, status
 from limber.experiments.variants import variant
-from limber.logs import Log
+from limber.log.reader import Log, time_s
+from limber.model.robot import read_yaml
 from limber.paths import robot_folder
-from limber.robot import read_yaml
 
 ROBOT = "testbench"
 JOINT, MOTOR = "joint", "bench"
@@ -24,9 +26,9 @@ M, B = 0.5, 0.2  # kg m², link and rotor
 K_J, D_J = 5000.0, 2.0  # N m/rad, N m s/rad, of the spring between them
 CYCLE_S = 1e-3  # a torque computed from one sample acts from the next one on, and is held
 LINK_MASS_M = 1.0  # kg m, the link's mass times the way to its centre
-GAINS_S, SETTLED_S = 1.0, 1.6  # when the law of a run begins, and when it is alone at work
-# Beside MEASURED, which is the robot on its bus
-IDEAL = {"marker": "x", "ls": "none", "mew": 1.5, "ms": 6.5}
+SETTLED_S = 1.6  # the law of the run, which begins at GAINS_S, has settled
+FREE = {"law": "gravity_compensation"}  # no torque at all: the bench lies
+FAST_KGM2 = 1e6  # a rotor or link of this inertia, behind the gear, stays where it is
 
 Plant = tuple[np.ndarray, np.ndarray]
 
@@ -67,15 +69,13 @@ def held_link(spring: float = K_J, damper: float = D_J, rotor: float = B) -> Pla
 
 def looped(plant: Plant, gains: list[float], T: float, late: int) -> np.ndarray:
     """One sample of the loop τ_m = -gains x, held over T, `late` samples after it was measured."""
-    A, inputs = with_delay(*_motor_only(plant, T), late)
-    row = np.zeros((1, len(A)))
-    row[0, : len(gains)] = gains
-    return A - inputs @ row
-
-
-def _motor_only(plant: Plant, T: float) -> Plant:
     A, inputs = plant
-    return held(A, inputs[:, :1], T)
+    A, inputs = with_delay(*held(A, inputs[:, :1], T), late)
+    return A - inputs @ _row(gains, len(A))
+
+
+def _row(gains: list[float], size: int) -> np.ndarray:
+    return np.pad(gains, (0, size - len(gains)))[None]
 
 
 def slowest(loop: np.ndarray, T: float) -> Mode:
@@ -83,22 +83,18 @@ def slowest(loop: np.ndarray, T: float) -> Mode:
     steps = np.linalg.eigvals(loop).astype(complex)
     roots = np.log(steps[abs(steps) > 1e-9]) / T  # 0: a state that is forgotten at once
     s = max((s for s in roots if s.imag > 1e-3 * abs(s)), key=lambda s: s.real)
-    return Mode(float(abs(s)), float(-s.real / abs(s)))
+    return Mode.of(s)
 
 
 def at_rest(plant: Plant, gains: list[float], push: float) -> np.ndarray:
     """State that the loop under a constant push comes to: (A - B gains) x + B_push push = 0."""
     A, inputs = plant
-    row = np.zeros((1, len(A)))
-    row[0, : len(gains)] = gains
-    return np.linalg.solve(A - inputs[:, :1] @ row, -inputs[:, 1] * push)
+    return np.linalg.solve(A - inputs[:, :1] @ _row(gains, len(A)), -inputs[:, 1] * push)
 
 
 def zero_between(values: list[float], rates: list[float]) -> float:
     """Where a rate measured at some values passes zero, on the line between two of them."""
-    for (a, x), (b, y) in zip(
-        zip(values, rates, strict=True), zip(values[1:], rates[1:], strict=True), strict=False
-    ):
+    for (a, x), (b, y) in pairwise(zip(values, rates, strict=True)):
         if x * y <= 0:
             return a - x * (b - a) / (y - x)
     raise RunError(f"{rates} at {values}: no zero between them")
@@ -110,7 +106,7 @@ def spring_damper(K: float, D: float, **more: Any) -> dict[str, Any]:
 
 
 def given(K: float, D: float) -> dict[str, Any]:
-    return {"K_q_Nm_per_rad": K, "joint_damping": "given", "D_q_Nms_per_rad": D}
+    return {"K_q_Nm_per_rad": K, **joint_damping(D)}
 
 
 def push(torque: float, at_s: float, for_s: float, ramp_s: float = 0.0) -> dict[str, Any]:
@@ -129,36 +125,30 @@ def on_bus(
     changes: dict[str, Any] | None = None,
     **head: Any,
 ) -> Log:
-    """The bench under a law from GAINS_S on. `changes` to robot.yaml; `head` of the scenario."""
+    """The bench under a law from 1 s on. `changes` to robot.yaml; `head` of the scenario."""
     robot = variant(context.out / name, ROBOT, changes or {})
-    scenario = {
-        "robot": robot,
-        "integrator": "reference",
-        "duration_s": end_s + 0.05,
-        **head,
-        "timeline": [
-            {"at_s": 0.3, "mode": "hold"},
-            {"at_s": 0.8, "mode": "active"},
-            {"at_s": GAINS_S, "gains": gains},
-            *more,
-        ],
-    }
-    return context.lab(scenario, name)
+    return context.run_law(name, robot, gains, more, end_s, **head)
 
 
 def truth(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
     """What the joint really did while the law alone was at work."""
     status(log, start_s, end_s, RAMP)
     rows = motion(log, start_s, end_s)
-    names = {"q": "q", "v": "v", "theta": "theta", "theta_dot": "theta_dot", "tau": "tau_joint"}
-    return {"t": seconds(rows), **{key: rows[field][:, 0] for key, field in names.items()}}
+    seen = {name: rows[name][:, 0] for name in ("q", "v", "theta", "theta_dot")}
+    return {"t": time_s(rows), **seen, "tau": rows["tau_joint"][:, 0]}
+
+
+def sensed(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
+    """Link encoder, its velocity, and torque sensor, as they came over the bus."""
+    rows = between(log, "JOINT_STATE", start_s, end_s)
+    return {"t": time_s(rows), **{name: rows[name][:, 0] for name in ("q", "v", "tau")}}
 
 
 def goal(log: Log, start_s: float, end_s: float) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the angles that the law was to follow then."""
     rows = status(log, start_s, end_s, RAMP)
     w, z = rows["quat_BD"][:, 0], rows["quat_BD"][:, 3]
-    return seconds(rows), np.unwrap(2 * np.arctan2(z, w))
+    return time_s(rows), np.unwrap(2 * np.arctan2(z, w))
 
 
 def lag(log: Log, start_s: float, end_s: float, name: str = "q") -> float:
@@ -194,5 +184,29 @@ def motor(**content: Any) -> dict[str, Any]:
     return {"motors": {MOTOR: content}}
 
 
+def gravity(g: float) -> dict[str, Any]:
+    """A change of the bench: the link hangs down in this gravity, m/s²; 0: it lies."""
+    return {"gravity_m_per_s2": [0.0, -g, 0.0]}
+
+
+def sprung(K: float, D: float | None = None, **more: Any) -> dict[str, Any]:
+    """A change of the bench's spring, damper, if it is given, and more of its joint."""
+    damper = {} if D is None else {"damping_Nms_per_rad": D}
+    return joint(transmission={"spring": {"stiffness_Nm_per_rad": K}, **damper}, **more)
+
+
+def torque_constant(kappa: float) -> dict[str, Any]:
+    """What robot.yaml does not know of the motor: the true value over the one that stands there."""
+    return motor(
+        rotor_torque_constant_Nm_per_A=kappa * motor_yaml()["rotor_torque_constant_Nm_per_A"]
+    )
+
+
 def motor_yaml() -> dict[str, Any]:
     return read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"][MOTOR]
+
+
+# In reality, whatever the motor is told; its torque at the joint is as before
+CLAMPED = motor(
+    rotor_inertia_kgm2=1.0, gear_ratio=FAST_KGM2**0.5, rotor_torque_constant_Nm_per_A=1e-3
+)

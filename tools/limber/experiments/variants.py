@@ -6,8 +6,9 @@ from typing import Any
 
 import yaml
 
+from limber.experiments.evaluate import plain
+from limber.model.robot import read_yaml
 from limber.paths import output_folder, robot_folder
-from limber.robot import read_yaml
 
 # Reads forces without noise, rounding or delay of its own; nothing hangs behind it
 TIP_SENSOR = {
@@ -20,6 +21,11 @@ TIP_SENSOR = {
 }
 
 
+def friction(coulomb: float = 0.0, viscous: float = 0.0) -> dict[str, float]:
+    """Of a motor or a link: N m, N m s/rad."""
+    return {"coulomb_Nm": coulomb, "viscous_Nms_per_rad": viscous}
+
+
 def variant(out: Path, robot: str, changes: dict[str, Any]) -> str:
     """Writes the robot to the folder OUT/robot and returns it as a scenario's `robot`.
 
@@ -30,7 +36,7 @@ def variant(out: Path, robot: str, changes: dict[str, Any]) -> str:
     folder = output_folder(out / "robot")
     content = _merged(read_yaml(source / "robot.yaml"), changes)
     shutil.copyfile(source / content["urdf"], folder / content["urdf"])
-    text = yaml.safe_dump(content, sort_keys=False)
+    text = yaml.safe_dump(plain(content), sort_keys=False)
     (folder / "robot.yaml").write_text(text, encoding="utf-8")
     return str(folder.resolve())
 

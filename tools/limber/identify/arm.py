@@ -1,13 +1,9 @@
-"""What robot.yaml says of each joint: what identification starts from, and proposes to change."""
+"""Parameters of each joint in robot.yaml, which identification starts from and may change."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from limber.dynamics import ArmDynamics
-from limber.robot import Robot, load_robot, read_yaml
+from limber.model.robot import Robot, load_robot, read_yaml
 
 # Endings of keys, rotary and prismatic joints.
 UNITS = {
@@ -72,7 +68,7 @@ class JointBelief:
 
 
 class Arm:
-    """A robot with all that robot.yaml says of it."""
+    """A robot with the joint parameters of its robot.yaml."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
@@ -88,14 +84,6 @@ class Arm:
                     name, motor, kinds[name] == "prismatic", content["motors"][motor], values
                 )
             )
-
-    @cached_property
-    def home(self) -> np.ndarray:
-        return np.array([joint.believed(joint.key("home_rad")) for joint in self.joints])
-
-    @cached_property
-    def dynamics(self) -> ArmDynamics:
-        return ArmDynamics(self.robot.urdf, self.robot.chain, self.robot.gravity)
 
 
 def load_arm(name_or_folder: str) -> Arm:

@@ -1,4 +1,4 @@
-"""The motion that identification wants to see, as a scenario for `limber run`, `lab` and `ask`.
+"""The motion that identification needs, as a scenario for `limber run`, `lab` and `send`.
 
 A tour of poses around home, there and back, so that every joint passes the same places in both
 directions: slowly with a rest at each pose, then fast; at the end a creep to both sides of home,
@@ -12,6 +12,7 @@ import numpy as np
 import yaml
 
 from limber.identify.arm import Arm
+from limber.model.scenario import active_with
 
 START_S = 1.5
 SLOW_S, FAST_S, CREEP_S, REST_S = 3.0, 1.2, 5.0, 0.8
@@ -35,19 +36,17 @@ def within(arm: Arm, away: float) -> np.ndarray:
     """Home and so much further, as far as the joints' limits permit."""
     limits = arm.robot.joints
     return np.clip(
-        arm.home + away, [j.low + MARGIN for j in limits], [j.high - MARGIN for j in limits]
+        arm.robot.home + away, [j.low + MARGIN for j in limits], [j.high - MARGIN for j in limits]
     )
 
 
 def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
     """Entries and the time at which the last of them is over, s."""
     entries: list[dict] = [
-        {"at_s": 0.3, "mode": "hold"},
-        {"at_s": 0.8, "mode": "active"},
-        {"at_s": 1.0, "gains": {"law": "joint_pd", "ramp_s": 0.2}},
+        *active_with({"law": "joint_pd", "ramp_s": 0.2}),
     ]
-    there_and_back = [*tour, *tour[-2::-1], arm.home]
-    creep = [within(arm, CREEP), within(arm, -CREEP), arm.home]
+    there_and_back = [*tour, *tour[-2::-1], arm.robot.home]
+    creep = [within(arm, CREEP), within(arm, -CREEP), arm.robot.home]
     at = START_S
     for goals, moving_s, rest_s in (
         (there_and_back, SLOW_S, REST_S),
@@ -63,7 +62,7 @@ def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
 
 def reach(arm: Arm, tour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Corners of the box, base axes, that the tip stays in between the poses, m."""
-    stops = np.array([arm.home, *tour, arm.home])
+    stops = np.array([arm.robot.home, *tour, arm.robot.home])
     share = np.linspace(0.0, 1.0, WAYPOINTS)[:, None]
     ways = [start + share * (end - start) for start, end in pairwise(stops)]
     points = np.array([arm.robot.chain.forward(q)[:3, 3] for q in np.vstack(ways)])
@@ -90,7 +89,7 @@ def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) ->
 
 
 def write(arm: Arm, robot: str, spread: float, count: int, seed: int, out: Path) -> str:
-    """Returns what there is to say of it."""
+    """Returns a summary for the user."""
     out.write_text(scenario_text(arm, robot, spread, count, seed), encoding="utf-8")
     low, high = reach(arm, poses(arm, spread, count, seed))
     sides = zip("xyz", low, high, strict=True)

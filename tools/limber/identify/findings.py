@@ -6,6 +6,11 @@ import numpy as np
 
 from limber.errors import InputError
 
+AGAINST_URDF = (
+    "Joints without a torque sensor are measured against the weights in the URDF: check those "
+    "first (identify gravity)."
+)
+
 
 @dataclass(frozen=True)
 class Value:
@@ -36,15 +41,18 @@ class Panel:
 
 @dataclass
 class Findings:
-    """`refused`: joint -> why the log does not tell."""
+    """`refused`: joint -> why it cannot be identified from the log. `inertials`: link -> mass, kg,
+    and centre of mass in its own frame, m, that the URDF should have.
+    """
 
     subject: str
     values: list[Value] = field(default_factory=list)
     refused: dict[str, str] = field(default_factory=dict)
     panels: list[Panel] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    inertials: dict[str, tuple[float, np.ndarray]] = field(default_factory=dict)
 
     def require_something(self) -> None:
         if not self.values:
             reasons = "; ".join(f"{joint}: {reason}" for joint, reason in self.refused.items())
-            raise InputError(f"this log cannot tell the {self.subject}. {reasons}")
+            raise InputError(f"the {self.subject} cannot be identified from this log. {reasons}")

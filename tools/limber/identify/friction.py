@@ -1,6 +1,6 @@
 """Friction before and behind the transmission: Coulomb, viscous, breakaway where it shows.
 
-Motor side: what the balance at the motor (`motor_side.py`) says about the direction of motion. On
+Motor side: from the balance of torques at the motor (`motor_side.py`) in both directions. On
 arms without torque sensors that is all friction of the joint. Link side: the sensed torque less
 what the model of a free arm needs.
 """
@@ -24,9 +24,9 @@ from limber.identify.motor_side import (
 from limber.identify.regression import PoorLogError, fit, ratio
 
 KAPPA_STD = 0.02  # below it the torque constant is measured along with friction
-KAPPA_OFF = 0.03  # beyond it that is said
+KAPPA_OFF = 0.03  # beyond it a note is added
 SURE = 3.0  # standard errors
-LEAST_LOAD = 0.1  # N m; less does not say how the model is to be scaled
+LEAST_LOAD = 0.1  # N m; less load does not determine the scale of the model
 SECTION, LINK_SECTION = "friction", "link_friction"
 COULOMB_KEY, VISCOUS_KEY = "coulomb_Nm", "viscous_Nms_per_rad"
 STATIC_KEY, STRIBECK_KEY = "static_Nm", "stribeck_rad_per_s"
@@ -35,7 +35,7 @@ STATIC_KEY, STRIBECK_KEY = "static_Nm", "stribeck_rad_per_s"
 def identify(arm: Arm, motion: Motion) -> Findings:
     found = Findings("friction")
     all_loads = loads(arm, motion)
-    model = arm.dynamics.torque(motion.q, motion.v, motion.a)
+    model = arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
     for i, joint in enumerate(arm.joints):
         try:
             side = _motor_side(arm, motion, all_loads, i)
@@ -44,7 +44,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
             continue
         if abs(side.kappa - 1.0) > KAPPA_OFF:
             found.notes.append(
-                f"{joint.name}: its motor makes {side.kappa:.3f} of the torque its drive believes; "
+                f"{joint.name}: its true motor torque is {side.kappa:.3f} of the drive's value; "
                 "friction is given in true torque (identify torque-constant)."
             )
         found.values += _values(joint, side, bool(motion.torque_sensor[i]))
@@ -55,7 +55,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
 
 
 def _motor_side(arm: Arm, motion: Motion, all_loads: np.ndarray, i: int) -> MotorSide:
-    """With the torque constant from the same log where its load tells it, else as believed."""
+    """With the torque constant from the same log if it is certain, else that of robot.yaml."""
     try:
         side = balance(arm, motion, all_loads, i)
         if side.kappa_std <= KAPPA_STD:
@@ -132,6 +132,6 @@ def _panel(joint: JointBelief, side: MotorSide) -> Panel:
     coulomb = joint.believed(SECTION, joint.key(COULOMB_KEY))
     viscous = joint.believed(SECTION, joint.key(VISCOUS_KEY))
     if coulomb is not None and viscous is not None:
-        lines["as believed"] = (speed, np.sign(speed) * coulomb + speed * viscous)
+        lines["robot.yaml"] = (speed, np.sign(speed) * coulomb + speed * viscous)
     unit = "m/s" if joint.prismatic else "rad/s"
     return Panel(joint.name, f"speed ({unit})", "friction (N m)", side.speed, torque, lines)

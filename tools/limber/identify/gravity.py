@@ -1,4 +1,4 @@
-"""The weight of the links as the joints feel it, against what the URDF says.
+"""The weight of the links from joint torques, compared with the URDF.
 
 From slow motions; `weights.py` has the estimate. Torque constants and the scale of torque sensors
 are taken as believed.
@@ -16,9 +16,9 @@ LEAST_NM = 0.1  # by which gravity's torque has to be able to change
 LEAST_BLOCKS = 10
 
 
-def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
+def identify(arm: Arm, motion: Motion) -> Findings:
     found = Findings("weight of the links")
-    Y = arm.dynamics.gravity_regressor(motion.q)
+    Y = arm.robot.dynamics.gravity_regressor(motion.q)
     used = []
     for i, joint in enumerate(arm.joints):
         reason = _refusal(arm, motion, Y, i)
@@ -27,19 +27,21 @@ def identify(arm: Arm, motion: Motion) -> tuple[Findings, Weights | None]:
         else:
             used.append(i)
     if not used:
-        return found, None
+        return found
     excess = _excess(arm, motion)
     weights = estimate(arm, motion, Y, excess, used)
     found.values = _values(arm, weights) + _offsets(arm, weights, used)
     found.notes = _notes(arm, weights, used)
-    g = Y @ arm.dynamics.parameters()
+    links = [changed_link(arm, weights, i) for i in range(arm.robot.dynamics.size)]
+    found.inertials = {link: (mass, com) for link, mass, com in links}
+    g = Y @ arm.robot.dynamics.parameters()
     changed = g + Y @ weights.change
     for k, i in enumerate(used):
         rows = slow(motion, i)
         measured = (excess + g)[rows, i] - own_terms(motion, i) @ weights.own[k]
         panel = _panel(arm.joints[i].name, measured, g[rows, i], changed[rows, i])
         found.panels.append(panel)
-    return found, weights
+    return found
 
 
 def _notes(arm: Arm, weights: Weights, used: list[int]) -> list[str]:
@@ -61,7 +63,7 @@ def _refusal(arm: Arm, motion: Motion, Y: np.ndarray, i: int) -> str:
         return "it moves too little"
     swing = float(np.linalg.norm(np.ptp(Y[rows, i], axis=0) * prior_std(arm)))
     if not swing > LEAST_NM:
-        return f"what the URDF may be wrong by changes its torque by only {swing:.2g} N m"
+        return f"likely errors of the URDF change its torque by only {swing:.2g} N m"
     return ""
 
 
@@ -70,12 +72,12 @@ def _excess(arm: Arm, motion: Motion) -> np.ndarray:
     inertia = np.array([joint.rotor_inertia for joint in arm.joints])
     driven = motion.motor - inertia * motion.theta_ddot
     measured = np.where(motion.torque_sensor, loads(arm, motion), driven)
-    return measured - arm.dynamics.torque(motion.q, motion.v, motion.a)
+    return measured - arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
 
 
 def changed_link(arm: Arm, weights: Weights, i: int) -> tuple[str, float, np.ndarray]:
     """The heaviest link of body i with the mass and centre (its own frame) it should have."""
-    body = arm.dynamics.bodies[i]
+    body = arm.robot.dynamics.bodies[i]
     d_mass, d_moment = weights.change[4 * i], weights.change[4 * i + 1 : 4 * i + 4]
     R, p = body.X_CH[:3, :3], body.X_CH[:3, 3]
     mass = body.inertial.mass + d_mass
@@ -86,7 +88,7 @@ def changed_link(arm: Arm, weights: Weights, i: int) -> tuple[str, float, np.nda
 def _values(arm: Arm, weights: Weights) -> list[Value]:
     values = []
     std = np.sqrt(np.diag(weights.covariance))
-    for i, body in enumerate(arm.dynamics.bodies):
+    for i, body in enumerate(arm.robot.dynamics.bodies):
         link, mass, com = changed_link(arm, weights, i)
         name = arm.joints[i].name
         believed = body.inertial.mass
@@ -118,5 +120,5 @@ def _panel(name: str, measured: np.ndarray, before: np.ndarray, after: np.ndarra
         after,
         measured,
         {"with the change": (ends, ends)},
-        {"as the URDF says": before},
+        {"URDF": before},
     )

@@ -15,7 +15,7 @@ from scipy.signal import butter, sosfiltfilt
 from limber import messages
 from limber.errors import InputError
 from limber.identify.arm import Arm
-from limber.logs import Log
+from limber.log.reader import Log
 
 CUTOFF_HZ = 10.0
 SAMPLES_HZ = 50.0
@@ -60,7 +60,7 @@ def read_motion(paths: list[Path], arm: Arm) -> Motion:
             stretches.append(_smooth(state, arm, first))
     if not stretches:
         raise InputError(
-            f"nowhere are the drives on for {LEAST_S:g} s without a gap: is this the log of a run?"
+            f"the drives are never on for {LEAST_S:g} s without a gap: is this the log of a run?"
         )
     joined = {}
     for field in fields(Motion):
@@ -77,8 +77,8 @@ def _stretches(log: Log) -> list[np.ndarray]:
     flags = messages.message_class("joint_state_t")
     n = int(state["num_joints"].max())
     enabled = state["joint_flags"][:, :n] & flags.JOINT_ENABLED != 0
-    heard = state["age_cycles"][:, :n] <= OLDEST
-    good = (state["drive_state"] == flags.DRIVE_ON) & np.all(enabled & heard, axis=1)
+    fresh = state["age_cycles"][:, :n] <= OLDEST
+    good = (state["drive_state"] == flags.DRIVE_ON) & np.all(enabled & fresh, axis=1)
     broken = (np.diff(state["seq"]) != 1) | (np.diff(good.astype(int)) != 0)
     parts = np.split(np.arange(len(state)), np.flatnonzero(broken) + 1)
     least = LEAST_S * 1e9 / max(int(state["period_ns"][0]), 1)

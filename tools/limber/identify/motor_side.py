@@ -54,7 +54,7 @@ class MotorSide:
 
 def loads(arm: Arm, motion: Motion) -> np.ndarray:
     """Torque behind each gear, N x n: sensed where there is a sensor, else by the model."""
-    model = arm.dynamics.torque(motion.q, motion.v, motion.a)
+    model = arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
     return np.where(motion.torque_sensor, sensed(arm, motion), model)
 
 

@@ -1,6 +1,6 @@
 """Mass and centre of mass of what the tip carries, from torques at rest.
 
-A payload of mass m with its centre at c (tip axes) asks of the joints, beyond the arm's own weight,
+A payload of mass m with its centre at c (tip axes) adds to the weight of the arm the joint torque
 
     tau = -J^T [m a; (R m c) x a],     a: gravitational acceleration, base axes,
 
@@ -19,11 +19,11 @@ from rich.table import Table
 
 from limber.errors import InputError
 from limber.identify.arm import Arm
+from limber.identify.commands import arm_of, folder_of
 from limber.identify.findings import Panel
-from limber.identify.report import arm_of, folder_of
 from limber.identify.static_poses import StaticPoses, static_poses
+from limber.model.urdf import Chain
 from limber.paths import output_folder
-from limber.urdf import Chain
 
 LENGTH_M = 0.1  # makes m c comparable with m
 WORST_CONDITION = 200.0
@@ -32,7 +32,7 @@ LEAST_POSES = 3
 
 @dataclass(frozen=True)
 class Payload:
-    """Values and standard deviations; `offsets` N m, empty if they were not asked for."""
+    """Values and standard deviations; `offsets` N m, empty if not estimated."""
 
     mass_kg: float
     mass_std: float
@@ -72,7 +72,7 @@ def identify(
     condition = float(np.linalg.cond(A))
     if not condition <= WORST_CONDITION:
         raise InputError(
-            f"the poses tell too little: condition number {condition:.3g}, at most "
+            f"the poses are too similar: condition number {condition:.3g}, at most "
             f"{WORST_CONDITION:g} is allowed; turn the tip about more than one horizontal axis"
         )
     x = np.linalg.lstsq(A, b, rcond=None)[0]
@@ -88,8 +88,7 @@ def _payload(
     mass, std = x[0], np.sqrt(np.diag(covariance))
     if not abs(mass) > 2.0 * std[0]:
         raise InputError(
-            f"no payload can be told from nothing: mass {mass:.4f} kg, "
-            f"standard deviation {std[0]:.4f} kg"
+            f"no payload is detectable: mass {mass:.4f} kg, standard deviation {std[0]:.4f} kg"
         )
     com = x[1:4] / mass
     slope = np.hstack([-com[:, None], np.eye(3)]) / mass  # of c by [m, m c]
@@ -102,14 +101,14 @@ def run(
     runs: list[Path], robot: str | None, offsets: bool, out: Path | None, console: Console
 ) -> None:
     arm = arm_of(runs, robot)
-    found = static_poses(runs, arm.dynamics)
+    found = static_poses(runs, arm.robot.dynamics)
     payload = identify(arm.robot.chain, found.q, found.tau, arm.robot.gravity, offsets)
     _say(payload, arm, console)
     from limber.identify import picture  # matplotlib takes a second to load
 
     path = output_folder(out or folder_of(runs)) / "payload.png"
     picture.save(_panels(payload, arm, found), f"payload at {arm.robot.tip}", path)
-    console.print(f"wrote {path}", highlight=False, soft_wrap=True)
+    console.print(f"wrote {path}", soft_wrap=True)
 
 
 def _say(payload: Payload, arm: Arm, console: Console) -> None:
@@ -126,21 +125,20 @@ def _say(payload: Payload, arm: Arm, console: Console) -> None:
     console.print(
         f"{payload.poses} poses, condition number {payload.condition:.1f}, "
         f"{payload.residual_rms:.3f} N m rms unexplained",
-        highlight=False,
     )
 
 
 def _panels(payload: Payload, arm: Arm, found: StaticPoses) -> list[Panel]:
     parameters = payload.mass_kg * np.array([1.0, *payload.com_m])
-    asked = np.array(
+    model = np.array(
         [regressor(arm.robot.chain, q, arm.robot.gravity) @ parameters for q in found.q]
     )
     if len(payload.offsets):
-        asked = asked + payload.offsets
+        model = model + payload.offsets
     panels = []
     for i, joint in enumerate(arm.joints):
-        ends = np.array([asked[:, i].min(), asked[:, i].max()])
+        ends = np.array([model[:, i].min(), model[:, i].max()])
         line = {"this payload": (ends, ends)}
-        x_label, y_label = "torque that it asks for (N m)", "torque beyond the arm's (N m)"
-        panels.append(Panel(joint.name, x_label, y_label, asked[:, i], found.tau[:, i], line))
+        x_label, y_label = "torque of the payload model (N m)", "torque beyond the arm's (N m)"
+        panels.append(Panel(joint.name, x_label, y_label, model[:, i], found.tau[:, i], line))
     return panels

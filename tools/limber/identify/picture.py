@@ -2,13 +2,10 @@
 
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from limber.identify.findings import Panel
-from limber.plot_png import COLORS, STYLE
+from limber.plot.style import COLORS, STYLE
 
 COLUMNS = 3
 

@@ -3,6 +3,7 @@
 In the folder of the results, for an identification called NAME:
     NAME.yaml          the changed numbers alone, as they would stand in robot.yaml
     NAME.robot.yaml    robot.yaml with them, comments kept
+    NAME.robot.urdf    or the URDF with other masses and centres, where those were identified
     NAME.diff          from the one to the other, for `patch`
     NAME.png           samples and fits
 """
@@ -12,14 +13,23 @@ from pathlib import Path
 
 import yaml
 
+from limber.errors import InputError
 from limber.identify.arm import Arm
 from limber.identify.findings import Findings
+from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import fragment, set_number
 
 DIGITS = 5
 
 
 def write(found: Findings, arm: Arm, name: str, folder: Path) -> list[Path]:
+    files = _urdf(found, arm, name) if found.inertials else _yaml(found, arm, name)
+    for file, content in files.items():
+        (folder / file).write_text(content, encoding="utf-8")
+    return [folder / file for file in files]
+
+
+def _yaml(found: Findings, arm: Arm, name: str) -> dict[str, str]:
     text = arm.yaml.read_text(encoding="utf-8")
     changes, merged = {}, text
     for value in found.values:
@@ -29,15 +39,24 @@ def write(found: Findings, arm: Arm, name: str, folder: Path) -> list[Path]:
         changes[value.path] = yaml.safe_load(number)
         merged = set_number(merged, value.path, number)
     if not changes:
-        return []
-    files = {
-        folder / f"{name}.yaml": f"# Proposed by limber identify {name}\n{fragment(changes)}",
-        folder / f"{name}.robot.yaml": merged,
-        folder / f"{name}.diff": difference(text, merged, arm.yaml),
+        return {}
+    return {
+        f"{name}.yaml": f"# Proposed by limber identify {name}\n{fragment(changes)}",
+        f"{name}.robot.yaml": merged,
+        f"{name}.diff": difference(text, merged, arm.yaml),
     }
-    for path, content in files.items():
-        path.write_text(content, encoding="utf-8")
-    return list(files)
+
+
+def _urdf(found: Findings, arm: Arm, name: str) -> dict[str, str]:
+    for link, (mass, _) in found.inertials.items():
+        if not mass > 0.0:
+            raise InputError(
+                f"the least change makes {link} weigh {mass:.3g} kg: something other than the "
+                "links' weight is in these torques (a payload, a contact, a wrong torque constant)"
+            )
+    urdf = arm.robot.urdf
+    before, after = with_inertials(urdf, {}), with_inertials(urdf, found.inertials)
+    return {f"{name}.robot.urdf": after, f"{name}.diff": difference(before, after, urdf)}
 
 
 def difference(before: str, after: str, path: Path) -> str:

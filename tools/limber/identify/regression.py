@@ -17,7 +17,7 @@ WORST_CONDITION = 1000.0
 
 
 class PoorLogError(Exception):
-    """The log cannot tell; the message says why."""
+    """The log does not determine a parameter; the message is the reason."""
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ class Fit:
 
 
 def fit(A: np.ndarray, y: np.ndarray, block: np.ndarray) -> Fit:
-    """Raises PoorLogError if columns of A cannot be told apart or blocks are too few."""
+    """Raises PoorLogError if columns of A are nearly dependent or blocks are too few."""
     groups = np.unique(block)
     unknowns = A.shape[1]
     if len(groups) < 2 * unknowns + 2:
         raise PoorLogError(f"too little motion: {len(groups)} half seconds that count")
     scale = np.linalg.norm(A, axis=0)
     if not np.all(scale > 0) or not np.linalg.cond(A / scale) <= WORST_CONDITION:
-        raise PoorLogError("the motion is too uniform to tell the unknowns apart")
+        raise PoorLogError("the motion is too uniform to separate the unknowns")
     normal = np.linalg.inv((A / scale).T @ (A / scale)) / np.outer(scale, scale)
     x = np.linalg.lstsq(A / scale, y, rcond=None)[0] / scale
     residual = y - A @ x

@@ -1,4 +1,4 @@
-"""Where an arm stood still in a recorded run, and what its joints carried there."""
+"""Poses at which an arm stood still in a recorded run, and the torques of its joints there."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from limber import messages
-from limber.dynamics import ArmDynamics
 from limber.errors import InputError
 from limber.identify.motion import STAND_S
-from limber.logs import Log
+from limber.log.reader import Log
+from limber.model.dynamics import ArmDynamics
 
 WINDOW_S = 0.25
 STILL = 2e-3  # rad or m: no joint moves further than this in a window
@@ -18,7 +18,7 @@ APART = 0.05  # rad or m: closer poses are one
 
 @dataclass(frozen=True)
 class StaticPoses:
-    """One row a pose: mean position, and mean torque less what gravity asks of the model.
+    """One row a pose: mean position, and mean torque less the gravity torque of the model.
 
     The torque is what the joint's torque sensor reads or, without one, what was applied.
     """

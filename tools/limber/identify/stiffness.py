@@ -11,7 +11,7 @@ and equilibrium e, likewise 2 c (e - q) = tau / k2 + offset, both tendons taut.
 import numpy as np
 
 from limber.identify.arm import Arm, JointBelief
-from limber.identify.findings import Findings, Panel, Value
+from limber.identify.findings import AGAINST_URDF, Findings, Panel, Value
 from limber.identify.motion import Motion
 from limber.identify.regression import Fit, PoorLogError, fit
 
@@ -22,7 +22,7 @@ KEYS = {"elastic": "stiffness_Nm_per_rad", "antagonistic": "k2_Nm_per_rad2"}
 
 def identify(arm: Arm, motion: Motion) -> Findings:
     found = Findings("joint stiffness")
-    model = arm.dynamics.torque(motion.q, motion.v, motion.a)
+    model = arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
     for i, joint in enumerate(arm.joints):
         sensed = bool(motion.torque_sensor[i])
         tau = motion.tau[:, i] if sensed else model[:, i]
@@ -37,10 +37,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
         found.values.append(value)
         found.panels.append(_panel(joint, tau, bend, fitted, value.believed))
     if found.values and not motion.torque_sensor.all():
-        found.notes.append(
-            "Joints without a torque sensor are measured against the weights in the URDF: check "
-            "those first (identify gravity)."
-        )
+        found.notes.append(AGAINST_URDF)
     return found
 
 

@@ -1,7 +1,7 @@
-"""Torque constant: the true torque of a motor for what its drive believes it makes.
+"""Torque constant: the true torque of a motor over the value that its drive assumes.
 
 From the balance of torques at the motor (`motor_side.py`) over slow motions up and down: kappa is
-the slope of load over believed torque, friction is told from it by the direction of motion.
+the slope of load over believed torque, friction is separated from it by the direction of motion.
 """
 
 from collections import defaultdict
@@ -9,7 +9,7 @@ from collections import defaultdict
 import numpy as np
 
 from limber.identify.arm import Arm
-from limber.identify.findings import Findings, Panel, Value
+from limber.identify.findings import AGAINST_URDF, Findings, Panel, Value
 from limber.identify.motion import Motion
 from limber.identify.motor_side import OFFSET, MotorSide, balance, loads
 from limber.identify.regression import PoorLogError
@@ -41,10 +41,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
             "correct it there as well."
         )
     if not all(motion.torque_sensor[i] for i in sides):
-        found.notes.append(
-            "Joints without a torque sensor are measured against the weights in the URDF: check "
-            "those first (identify gravity)."
-        )
+        found.notes.append(AGAINST_URDF)
     return found
 
 

@@ -9,7 +9,9 @@ DIGITS = 5
 
 
 def with_inertials(urdf: Path, changes: dict[str, tuple[float, np.ndarray]]) -> str:
-    """`changes`: link -> mass, kg, and centre of mass in its own frame, m."""
+    """`changes`: link -> mass, kg, and centre of mass in its own frame, m. Without any it is the
+    file that a changed one is to be compared with.
+    """
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
     root = ElementTree.parse(urdf, parser).getroot()
     for link in root.findall("link"):
@@ -23,8 +25,3 @@ def with_inertials(urdf: Path, changes: dict[str, tuple[float, np.ndarray]]) -> 
             origin = ElementTree.SubElement(inertial, "origin")
         origin.set("xyz", " ".join(f"{x:.{DIGITS}g}" for x in com))
     return ElementTree.tostring(root, encoding="unicode") + "\n"
-
-
-def canonical(urdf: Path) -> str:
-    """The same file as `with_inertials` writes it when nothing changes: what to compare with."""
-    return with_inertials(urdf, {})

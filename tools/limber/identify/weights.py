@@ -15,7 +15,7 @@ import numpy as np
 from limber.identify.arm import Arm
 from limber.identify.motion import Motion
 
-MASS_SHARE = 0.3  # standard deviation of what the URDF says of a mass,
+MASS_SHARE = 0.3  # standard deviation of a mass of the URDF,
 CENTRE_M = 0.05  # and of a centre of mass
 MEASURED = 0.3  # of that deviation: combinations known better than this count as measured
 GENTLE = 1.0  # rad/s² or m/s²: what is beyond shows inertias, which may be wrong as well
@@ -117,5 +117,8 @@ def own_terms(motion: Motion, i: int) -> np.ndarray:
 
 def prior_std(arm: Arm) -> np.ndarray:
     return np.concatenate(
-        [[body.mass * MASS_SHARE] + 3 * [body.mass * CENTRE_M] for body in arm.dynamics.bodies]
+        [
+            [body.mass * MASS_SHARE] + 3 * [body.mass * CENTRE_M]
+            for body in arm.robot.dynamics.bodies
+        ]
     )

@@ -1,0 +1,7 @@
+#include "common/eigen_templates.h"
+
+namespace Eigen {
+
+LIMBER_EIGEN_TEMPLATES()
+
+}  // namespace Eigen

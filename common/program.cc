@@ -1,0 +1,52 @@
+#include "common/program.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+#include "common/config_error.h"
+
+namespace limber {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void request_stop(int) { stop_requested = 1; }
+
+void start_log(const std::string& name) {
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_pattern("%T.%e " + name + ": %v");
+}
+
+int failed(const std::string& name, const std::exception& error, ExitCode code) {
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+  return code;
+}
+
+}  // namespace
+
+const volatile std::sig_atomic_t& stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;  // no SA_RESTART
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return stop_requested;
+}
+
+int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& run) {
+  std::signal(SIGPIPE, SIG_IGN);
+  start_log(line.name());
+  try {
+    return line.parse(argc, argv) ? run() : kExitDone;
+  } catch (const ConfigError& error) {
+    return failed(line.name(), error, kExitWrongInput);
+  } catch (const std::exception& error) {
+    return failed(line.name(), error, kExitFailed);
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,21 @@
+#include "controller/gains/chosen_damping.h"
+
+#include "controller/gains/damping_design.h"
+
+namespace limber::controller {
+
+MatrixJ chosen_joint_damping(const Gains& gains, const MatrixJ& M, const MatrixJ& K_q) noexcept {
+  const DampingDesign design = gains.settings.joint_damping;
+  if (design == DampingDesign::kGiven) return gains.D_q;
+  MatrixJ D = joint_damping(design, M, K_q, gains.joint_damping_ratio);
+  D.diagonal() += joint_damping_floor(M, K_q);
+  return D;
+}
+
+Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms) noexcept {
+  const DampingDesign design = gains.settings.damping;
+  if (design == DampingDesign::kGiven) return gains.D_x;
+  return tip_damping(design, tip_mobility(terms.J, terms.Minv_JT), gains.K_x, gains.damping_ratio);
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,156 @@
+#include "controller/gains/damping_design.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace limber::controller {
+namespace {
+
+// Share of the greatest eigenvalue below which the tip cannot be said to move.
+constexpr double kOutOfReach = 1e-9;
+constexpr double kInertiaRounding = 1e-12;
+constexpr double kFloorLinear = 5.0;    // N s/m
+constexpr double kFloorAngular = 0.2;   // N m s/rad
+constexpr double kFloorFadesAt = 10.0;  // N/m
+constexpr double kJointFloorTime_s = 0.5;
+constexpr double kJointFloorFadesAt = 1.0;  // N m/rad
+
+// 1 without stiffness, 0 from `end` on, smooth between.
+double fade(double stiffness, double end) noexcept {
+  const double left = std::max(1.0 - std::max(stiffness, 0.0) / end, 0.0);
+  return left * left;
+}
+
+template <typename Matrix>
+Matrix root(const Matrix& K) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(0.5 * (K + K.transpose())));
+  const Matrix& V = eigen.eigenvectors();
+  return V * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * V.transpose();
+}
+
+template <typename Matrix>
+Matrix factorised(const Matrix& M, const Matrix& K, double ratio) noexcept {
+  const Matrix product = root(M) * root(K);
+  return ratio * (product + product.transpose());
+}
+
+// The sum of products of positive matrices need not be positive: what would drive is cut off.
+template <typename Matrix>
+Matrix never_driving(const Matrix& D) noexcept {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(D);
+  const Matrix& V = eigen.eigenvectors();
+  return V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
+// M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
+template <typename Matrix>
+Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
+  // Where a direction is lost M has an eigenvalue of zero, or less by rounding.
+  const Matrix least = kInertiaRounding * M.trace() * Matrix::Identity(M.rows(), M.cols());
+  const Eigen::LLT<Matrix> cholesky(Matrix(M + least));
+  Matrix S = K;
+  cholesky.matrixL().solveInPlace(S);
+  S.transposeInPlace();
+  cholesky.matrixL().solveInPlace(S);
+  const Matrix L = cholesky.matrixL();
+  return 2.0 * ratio * L * root(S) * L.transpose();
+}
+
+template <typename Matrix>
+Matrix designed(DampingDesign design, const Matrix& M, const Matrix& K, double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation:
+      return doubly_diagonalised<Matrix>(M, K, ratio);
+    case DampingDesign::kFactorisation:
+      return never_driving<Matrix>(factorised<Matrix>(M, K, ratio));
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<Matrix>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return Matrix::Zero(K.rows(), K.cols());
+}
+
+// L with G = L L^T over the directions within reach, and its pseudo-inverse transposed.
+struct Reach {
+  explicit Reach(const TipMobility& mobility) noexcept {
+    const Vector6 root = mobility.s.cwiseSqrt();
+    const Vector6 inverse =
+        root.cwiseQuotient(mobility.s.cwiseMax(mobility.threshold(kOutOfReach)));
+    L = mobility.S.cwiseInverse().asDiagonal() * mobility.U * root.asDiagonal();
+    inverse_transpose = mobility.S.asDiagonal() * mobility.U * inverse.asDiagonal();
+  }
+  Matrix6 L;
+  Matrix6 inverse_transpose;
+};
+
+}  // namespace
+
+MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
+                      double ratio) noexcept {
+  return designed<MatrixJ>(design, M, K, ratio);
+}
+
+Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
+                        double ratio) noexcept {
+  return designed<Matrix6>(design, M_d, K, ratio);
+}
+
+Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
+                               double ratio) noexcept {
+  const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(kOutOfReach));
+  return factorised<Matrix6>(Lambda, K, ratio);
+}
+
+Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
+                    double ratio) noexcept {
+  switch (design) {
+    case DampingDesign::kDoubleDiagonalisation: {
+      const Reach reach(mobility);
+      const Matrix6 D = reach.inverse_transpose * root<Matrix6>(reach.L.transpose() * K * reach.L) *
+                        reach.inverse_transpose.transpose();
+      return 2.0 * ratio * D;
+    }
+    case DampingDesign::kFactorisation:
+      return never_driving<Matrix6>(factorised_tip_damping(mobility, K, ratio));
+    case DampingDesign::kWithoutInertia:
+      return 2.0 * ratio * root<Matrix6>(K);
+    case DampingDesign::kGiven:
+      break;
+  }
+  return Matrix6::Zero();
+}
+
+Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {
+  const Reach reach(mobility);
+  const Matrix6 S = reach.L.transpose() * K * reach.L;
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(0.5 * (S + S.transpose())),
+                                                     Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().cwiseMax(0.0);
+}
+
+Matrix6 tip_damping_floor(const Matrix6& K) noexcept {
+  Vector6 scale;
+  scale << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(1.0 / kRotationLength_m);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(
+      Matrix6(scale.asDiagonal() * K * scale.asDiagonal()));
+  Vector6 root_floor;
+  root_floor << Eigen::Vector3d::Constant(std::sqrt(kFloorLinear)),
+      Eigen::Vector3d::Constant(std::sqrt(kFloorAngular));
+  const Matrix6 directions = root_floor.asDiagonal() * eigen.eigenvectors();
+  const Vector6 weight = eigen.eigenvalues().unaryExpr(
+      [](double stiffness) { return fade(stiffness, kFloorFadesAt); });
+  return directions * weight.asDiagonal() * directions.transpose();
+}
+
+VectorJ joint_damping_floor(const MatrixJ& M, const MatrixJ& K) noexcept {
+  VectorJ floor = VectorJ::Zero(K.rows());
+  for (Eigen::Index i = 0; i < K.rows(); ++i) {
+    floor[i] = fade(K(i, i), kJointFloorFadesAt) * M(i, i) / kJointFloorTime_s;
+  }
+  return floor;
+}
+
+}  // namespace limber::controller

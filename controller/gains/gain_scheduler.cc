@@ -1,0 +1,103 @@
+#include "controller/gains/gain_scheduler.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/config_error.h"
+
+namespace limber::controller {
+namespace {
+
+// Of what the damper takes out, this much goes into the tank.
+constexpr double kTankShare = 0.9;
+constexpr double kSlowest = 1e-12;  // m^2/s^2
+
+void check_joint_springs(const Robot& robot, const MatrixJ& K_q, const JointSprings& springs) {
+  for (int i = 0; i < robot.size(); ++i) {
+    const double most = JointSprings::kHighestShare * springs.at_rest()[i];
+    if (K_q(i, i) <= most) continue;
+    throw ConfigError(fmt::format(
+        "{}: gains: K_q of joint {} is {:f} N m/rad; its spring allows at most {:f}, 0.9 times its "
+        "own stiffness",
+        robot.name, robot.joints[static_cast<std::size_t>(i)].name, K_q(i, i), most));
+  }
+}
+
+}  // namespace
+
+GainScheduler::GainScheduler(const Robot& robot, const JointSprings& springs)
+    : ramp_(default_gains(robot)),
+      effective_(ramp_.now()),
+      tank_({0.0, 0.0, 0.0, 0.0}, ramp_.now().K_x) {
+  check_joint_springs(robot, ramp_.now().K_q, springs);
+}
+
+bool GainScheduler::start(const Gains& requested, double ramp_s) noexcept {
+  const Gains& now = ramp_.now();
+  const double tank_J = requested.settings.tank_J;
+  if (tank_J != now.settings.tank_J) {
+    tank_ = EnergyTank({tank_J, 0.0, tank_J, kTankShare}, effective_.K_x);
+  }
+  const bool switched = requested.settings != now.settings || requested.M_x != now.M_x ||
+                        requested.parameters.jumps_from(now.parameters);
+  ramp_.start(requested, ramp_s);
+  return switched;
+}
+
+const Gains& GainScheduler::update(const Goal& goal, const LawEntry& law, bool holding,
+                                   const ArmView& arm, double period_s) noexcept {
+  effective_ = ramp_.now();
+  if (holding) effective_.settings = default_settings();
+  turn_to_base(goal.X_BD.Q.toRotationMatrix(), &effective_);
+  reduce_to_springs(law, holding, arm);
+  if (effective_.settings.tank_J > 0.0) draw_from_tank(goal, arm, period_s);
+  return effective_;
+}
+
+PositionFeedback GainScheduler::position(const LawEntry& law, bool holding,
+                                         const ArmView& arm) const noexcept {
+  return arm.resolve(holding ? PositionFeedback::kAuto : settings().position_feedback,
+                     law.potential);
+}
+
+// In another pose, or with less preload, than where the gains were requested.
+void GainScheduler::reduce_to_springs(const LawEntry& law, bool holding,
+                                      const ArmView& arm) noexcept {
+  reduced_ = false;
+  if (!arm.springs().any() || position(law, holding, arm) == PositionFeedback::kMotor) return;
+  if (law.potential == Potential::kJointSpring) {
+    effective_.K_q = arm.springs().within(effective_.K_q, arm.K_J());
+  }
+  if (law.potential != Potential::kTipSpring) return;
+  const double share = JointSprings::allowed_share(effective_.K_x, arm.terms().J, arm.K_J());
+  effective_.K_x *= share;
+  reduced_ = share < 1.0;
+}
+
+// A stiffer spring takes its energy from the tank, which the damper of the last cycle has filled.
+void GainScheduler::draw_from_tank(const Goal& goal, const ArmView& arm, double period_s) noexcept {
+  const ArmTerms& terms = arm.terms();
+  const PoseError error = pose_error(terms.X_BT, goal.X_BD, effective_.settings.orientation);
+  const Vector6 V = terms.V_BT - goal.V_BD;
+  // As a matrix that dissipates just that along V.
+  const Matrix6 D = last_dissipated_W_ / std::max(V.squaredNorm(), kSlowest) * Matrix6::Identity();
+  last_dissipated_W_ = 0.0;
+  effective_.K_x = tank_.update(effective_.K_x, D, error.e, V, period_s);
+}
+
+const char* GainScheduler::check_springs(const Gains& gains, const LawEntry& law, const Goal& goal,
+                                         const ArmView& arm) const noexcept {
+  const PositionFeedback position = arm.resolve(gains.settings.position_feedback, law.potential);
+  if (position == PositionFeedback::kMotor) return nullptr;
+  const JointSprings& springs = arm.springs();
+  if (law.potential == Potential::kJointSpring) {
+    return springs.check(gains.K_q, springs.at_rest());
+  }
+  if (law.potential != Potential::kTipSpring) return nullptr;
+  Gains here = gains;
+  turn_to_base(goal.X_BD.Q.toRotationMatrix(), &here);
+  return springs.check(here.K_x, arm.terms().J, springs.at_rest());
+}
+
+}  // namespace limber::controller

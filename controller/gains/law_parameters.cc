@@ -1,0 +1,37 @@
+#include "controller/gains/law_parameters.h"
+
+#include "controller/laws/registry.h"
+
+namespace limber::controller {
+
+LawParameters::LawParameters(int joints) noexcept {
+  matrices_.fill(MatrixJ::Zero(joints, joints));
+  for (const GainRow* row : law_catalog().parameters) {
+    if (row->per_joint) {
+      matrices_[index(*row)].diagonal().setConstant(row->standard);
+    } else {
+      scalars_[index(*row)] = row->standard;
+    }
+  }
+}
+
+bool LawParameters::jumps_from(const LawParameters& other) const noexcept {
+  for (const GainRow* row : law_catalog().parameters) {
+    if (row->ramps) continue;
+    const std::size_t i = index(*row);
+    if (row->per_joint ? matrices_[i] != other.matrices_[i] : scalars_[i] != other.scalars_[i]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void LawParameters::mix(double s, const LawParameters& from, const LawParameters& to) noexcept {
+  for (const GainRow* row : law_catalog().parameters) {
+    if (!row->ramps) continue;
+    const std::size_t i = index(*row);
+    matrices_[i] = (1.0 - s) * from.matrices_[i] + s * to.matrices_[i];
+  }
+}
+
+}  // namespace limber::controller

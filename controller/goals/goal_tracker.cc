@@ -1,0 +1,63 @@
+#include "controller/goals/goal_tracker.h"
+
+namespace limber::controller {
+
+GoalTracker::GoalTracker(const LoadedRobot& robot, ArmModel* model)
+    : model_(model),
+      generator_(robot.robot),
+      inverse_kinematics_(robot),
+      goal_(robot.robot.size()) {}
+
+const Goal& GoalTracker::advance(double dt_s, double period_s, GoalType type,
+                                 const TaskRows& rows) noexcept {
+  generator_.advance(dt_s);
+  match(period_s, type, rows);
+  return goal_;
+}
+
+void GoalTracker::match(double period_s, GoalType type, const TaskRows& rows) noexcept {
+  goal_ = generator_.goal();
+  if (!follows_joints(type)) return;
+  if (generator_.at_tip()) {
+    inverse_kinematics_.track(rows, period_s, &goal_);
+  } else {
+    goal_.X_BD = model_->tip_pose(goal_.q_d);
+    goal_.V_BD = model_->jacobian(goal_.q_d) * goal_.v_d;
+  }
+}
+
+void GoalTracker::reset(const Pose& X_BT, const VectorJ& q) noexcept {
+  generator_.reset(X_BT, q);
+  inverse_kinematics_.reset(q);
+  goal_ = generator_.goal();
+}
+
+void GoalTracker::hand_over(GoalType from, GoalType to, const TaskRows& rows,
+                            const VectorJ& q) noexcept {
+  if (follows_joints(from) == follows_joints(to)) return;
+  if (follows_joints(to)) {
+    // A goal at the tip, followed by the joints from now on.
+    inverse_kinematics_.reset(q);
+    inverse_kinematics_.approach(rows, generator_.goal().X_BD);
+  } else if (!generator_.at_tip()) {
+    generator_.follow_tip(goal_.X_BD);
+  }
+}
+
+GoalTracker::Set GoalTracker::set(const compliance_goal_t& message, GoalType type) noexcept {
+  if (const char* reason = generator_.check(message, type)) return {reason};
+  const bool wrench_alone = message.kind == compliance_goal_t::GOAL_WRENCH;
+  const bool to_tip =
+      wrench_alone ? generator_.at_tip() : message.kind != compliance_goal_t::GOAL_JOINT;
+  const bool switched = follows_joints(type) && to_tip != generator_.at_tip();
+  if (switched && to_tip) {
+    // The other kind of goal starts from where this one is.
+    generator_.follow_tip(goal_.X_BD);
+    inverse_kinematics_.reset(goal_.q_d);
+  } else if (switched) {
+    generator_.follow_joints(goal_.q_d);
+  }
+  return {generator_.set(message, type), switched};
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,54 @@
+#include "controller/goals/inverse_kinematics.h"
+
+#include "controller/model/pose_error.h"
+#include "controller/model/singularity.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr int kStepsPerCycle = 3;
+constexpr int kStepsToApproach = 20;
+constexpr double kLongestStep_rad = 0.1;
+constexpr double kPostureRate_per_s = 1.0;
+
+}  // namespace
+
+InverseKinematics::InverseKinematics(const LoadedRobot& robot)
+    : model_(robot),
+      terms_(model_.size()),
+      q_(VectorJ::Zero(model_.size())),
+      drift_(VectorJ::Zero(model_.size())) {}
+
+void InverseKinematics::reset(const VectorJ& q) noexcept {
+  q_ = q;
+  drift_.setZero();
+}
+
+void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
+  const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
+  const Matrix6J J = rows.of(Matrix6J(error.A * model_.jacobian(q_)));
+  VectorJ step = -damped_inverse(J).inverse * error.e;
+  const double longest = step.cwiseAbs().maxCoeff();
+  if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
+  if (step.allFinite()) q_ += step;
+}
+
+void InverseKinematics::approach(const TaskRows& rows, const Pose& X_BD) noexcept {
+  for (int i = 0; i < kStepsToApproach; ++i) correct(rows, X_BD);
+}
+
+void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noexcept {
+  q_ += dt_s * drift_;
+  for (int i = 0; i < kStepsPerCycle; ++i) correct(rows, goal->X_BD);
+  const Matrix6J J = rows.of(model_.jacobian(q_));
+  const MatrixJ6 inverse = damped_inverse(J).inverse;
+  const VectorJ posture = kPostureRate_per_s * (goal->q_null - q_);
+  drift_ = posture - inverse * (J * posture);
+
+  goal->q_d = q_;
+  goal->v_d = inverse * goal->V_BD + drift_;
+  model_.evaluate(q_, goal->v_d, {.jacobian = true, .inertia = false, .coriolis = false}, &terms_);
+  goal->a_d = inverse * (goal->A_BD - terms_.Jdot_v);
+}
+
+}  // namespace limber::controller

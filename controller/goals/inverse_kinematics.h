@@ -1,0 +1,37 @@
+// Joint goal for a goal at the tip.
+#pragma once
+
+#include "controller/gains/nullspace.h"
+#include "controller/goals/goal.h"
+#include "controller/model/arm_terms.h"
+
+namespace limber::controller {
+
+/// Follows the goal at the tip with q_d, by a few damped Gauss-Newton steps a cycle from where it
+/// was (the goal moves smoothly, so it keeps up to rounding), and its rates:
+///   v_d = J^+ (V_BD) + (I - J^+ J) v_0,   a_d = J^+ (A_BD - Jdot v_d),   J = J(q_d)
+/// over the task's rows only (a_d without the rate of v_0), J^+ damped near singularities. v_0
+/// pulls a redundant arm towards the posture q_null. Where the goal is out of reach q_d stays as
+/// close as the damping lets it.
+class InverseKinematics {
+ public:
+  explicit InverseKinematics(const LoadedRobot& robot);
+
+  /// Starts from q. In the cycle.
+  void reset(const VectorJ& q) noexcept;
+  /// Goes to a pose that is not where the arm is, so that the joints do not have to run after it.
+  /// In the cycle, where a law starts.
+  void approach(const TaskRows& rows, const Pose& X_BD) noexcept;
+  /// Takes X_BD, V_BD, A_BD and q_null of the goal, writes q_d, v_d, a_d. In the cycle.
+  void track(const TaskRows& rows, double dt_s, Goal* goal) noexcept;
+
+ private:
+  void correct(const TaskRows& rows, const Pose& X_BD) noexcept;
+
+  ArmModel model_;
+  ArmTerms terms_;
+  VectorJ q_;
+  VectorJ drift_;  // rate of the posture in the null space
+};
+
+}  // namespace limber::controller

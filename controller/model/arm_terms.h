@@ -1,0 +1,83 @@
+// Kinematics and dynamics of the arm at one state: everything the laws need, computed once a cycle.
+#pragma once
+
+#include <kdl/chain.hpp>
+#include <memory>
+
+#include "common/types.h"
+#include "controller/model/pose.h"
+#include "robots/loader/load_robot.h"
+
+namespace limber::controller {
+
+/// The rigid arm with rotors: (M + diag(B)) a + C v + g = tau + J^T F_ext. Base frame B, tip frame
+/// T. Twists and wrenches: base axes, reference point at the tip origin, linear part first.
+struct ArmTerms {
+  explicit ArmTerms(int joints);
+
+  Pose X_BT;
+  Vector6 V_BT;    ///< J v
+  Matrix6J J;      ///< 6 x n
+  Vector6 Jdot_v;  ///< (dJ/dt) v: tip acceleration at zero joint acceleration
+  MatrixJ M;       ///< link inertia, n x n, kg m^2
+  VectorJ B;       ///< rotor inertia behind the gear and the drive's torque loop; of two motors the
+                   ///< sum, which their equilibrium has; kg m^2 (constant)
+  MatrixJ M_total;   ///< M + diag(B): what a rigidly geared joint has to accelerate
+  MatrixJ6 Minv_JT;  ///< M_total^-1 J^T, n x 6: joint acceleration by a wrench at the tip
+  VectorJ Cv;        ///< Coriolis and centrifugal torque, N m
+  VectorJ g;         ///< torque that holds the arm still against gravity, N m
+
+  /// v^T M_total v / 2, J.
+  double kinetic_energy(const VectorJ& v) const noexcept { return 0.5 * v.dot(M_total * v); }
+};
+
+/// What is to be evaluated anew in a cycle.
+struct TermsDue {
+  bool jacobian = true;  ///< J, Jdot_v
+  bool inertia = true;   ///< M, M_total, Minv_JT
+  bool coriolis = true;  ///< Cv
+};
+
+/// Computes the terms; the only place that knows KDL's solvers.
+class ArmModel {
+ public:
+  /// Gravity is the acceleration in axes of the chain's base, m/s^2. Throws ConfigError if the
+  /// chain has no joints, more than kMaxJoints, another number than `rotor_inertia`, or a part of
+  /// it that KDL refuses.
+  ArmModel(const KDL::Chain& chain, const double gravity[3],
+           const std::vector<double>& rotor_inertia);
+  explicit ArmModel(const LoadedRobot& robot);
+  ~ArmModel();
+
+  int size() const noexcept { return size_; }
+  const VectorJ& rotor_inertia() const noexcept { return rotor_inertia_; }
+
+  /// All terms at (q, v), both of length size(). May be called in the cycle.
+  void evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;
+  /// Only what is due; the rest stays as it was evaluated last. The tip's pose, V_BT = J v and
+  /// gravity are always of this instant. May be called in the cycle.
+  void evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due, ArmTerms* terms) noexcept;
+
+  // Single terms, for laws that look at other states than the present one. All may be called in
+  // the cycle.
+  Pose tip_pose(const VectorJ& q) noexcept;
+  Matrix6J jacobian(const VectorJ& q) noexcept;
+  MatrixJ mass(const VectorJ& q) noexcept;
+  /// C(q, v) v.
+  VectorJ coriolis(const VectorJ& q, const VectorJ& v) noexcept;
+  /// (M + diag(B)) a + C v + g by recursive Newton-Euler (Luh, Walker, Paul 1980).
+  VectorJ inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept;
+  /// Torque that holds the arm still, g.
+  VectorJ gravity(const VectorJ& q) noexcept;
+  /// What torques at rest depend on, X_BT, J and g; the other terms stay as they are.
+  void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
+
+ private:
+  struct Solvers;
+
+  int size_;
+  VectorJ rotor_inertia_;
+  std::unique_ptr<Solvers> solvers_;
+};
+
+}  // namespace limber::controller

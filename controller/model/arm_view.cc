@@ -1,0 +1,64 @@
+#include "controller/model/arm_view.h"
+
+#include "controller/laws/registry.h"
+
+namespace limber::controller {
+namespace {
+
+// What a cycle has time for; the tolerance is a ten thousandth of an encoder step.
+constexpr QbarSolver::Options kInTheCycle{
+    .tolerance = 1e-9, .max_iterations = 30, .max_newton_steps = 6};
+
+}  // namespace
+
+ArmView::ArmView(const LoadedRobot& robot)
+    : model_(robot),
+      point_(model_.size()),
+      terms_(model_.size()),
+      springs_(robot.robot),
+      link_measured_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
+      K_J_(springs_.at_rest()),
+      deflection_(VectorJ::Zero(model_.size())),
+      qbar_(&model_, K_J_, kInTheCycle) {}
+
+PositionFeedback ArmView::resolve(PositionFeedback choice, Potential potential) const noexcept {
+  if (!springs_.any()) return PositionFeedback::kLink;
+  if (choice != PositionFeedback::kAuto) return choice;
+  return potential == Potential::kNone ? PositionFeedback::kMotor : PositionFeedback::kStatic;
+}
+
+void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const Statics& statics,
+                       const TermsDue& due) noexcept {
+  point_.q = state.q;
+  point_.v = state.v;
+  if (springs_.any()) {
+    point_.v = state.theta_dot;
+    K_J_ = springs_.stiffness(deflection_, state.preload);
+    solved_ = true;
+    if (resolved != PositionFeedback::kLink) point_.q = state.theta;
+    if (resolved == PositionFeedback::kStatic) {
+      solved_ = solve(state.theta, statics);
+      point_.q = qbar_.q_bar();
+    }
+    deflection_ = state.theta - (link_measured_ ? state.q : point_.q);
+  }
+  model_.evaluate(point_.q, point_.v, due, &terms_);
+}
+
+bool ArmView::solve(const VectorJ& theta, const Statics& statics) noexcept {
+  qbar_.set(K_J_, statics.gravity, statics.tau_constant);
+  const Goal& goal = statics.goal;
+  const Gains& gains = statics.gains;
+  if (statics.potential == Potential::kTipSpring) {
+    const LawSettings& s = gains.settings;
+    return qbar_.solve(theta,
+                       TipSpring{goal.X_BD, gains.K_x, s.orientation, goal.F_ff,
+                                 SpringLimit(gains.K_x, s.spring_force_N, s.spring_moment_Nm)});
+  }
+  const bool spring = statics.potential == Potential::kJointSpring;
+  const Eigen::Index n = theta.size();
+  return qbar_.solve(theta,
+                     JointSpring{goal.q_d, spring ? gains.K_q : MatrixJ(MatrixJ::Zero(n, n))});
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,71 @@
+#include "controller/modes/state_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber::controller {
+namespace {
+
+constexpr std::int64_t kShortestPeriod_ns = 10'000;
+constexpr std::int64_t kLongestPeriod_ns = 100'000'000;
+
+bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noexcept {
+  if (state.num_joints != joints || joints > kMaxJoints || state.time_ns < 0) return false;
+  if (state.period_ns < kShortestPeriod_ns || state.period_ns > kLongestPeriod_ns) return false;
+  if (state.drive_state < joint_state_t::DRIVE_CONFIGURING ||
+      state.drive_state > joint_state_t::DRIVE_FAULT) {
+    return false;
+  }
+  for (const double* values :
+       {state.q, state.v, state.theta, state.theta_dot, state.tau, state.tau_applied}) {
+    if (!std::all_of(values, values + joints, [](double x) { return std::isfinite(x); })) {
+      return false;
+    }
+  }
+  for (int i = 0; i < joints; ++i) {
+    if (!(std::isfinite(state.preload[i]) && std::isfinite(state.preload_dot[i]))) return false;
+    if ((state.joint_flags[i] & kEquipment) != flags[static_cast<std::size_t>(i)]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+JointFlags equipment_of(const Robot& robot) {
+  JointFlags flags{};
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointConfig& joint = robot.joints[i];
+    if (joint.link_encoder.present) flags[i] |= joint_state_t::JOINT_LINK_ENCODER;
+    if (joint.torque_sensor.present) flags[i] |= joint_state_t::JOINT_TORQUE_SENSOR;
+    if (joint.has_antagonist) flags[i] |= joint_state_t::JOINT_TWO_MOTORS;
+  }
+  return flags;
+}
+
+StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
+  StateJudgement judgement;
+  if (state.session == 0 || state.seq < 0) return judgement;
+  if (state.session == session_ && state.seq <= seq_) {
+    judgement.repeated = true;
+    return judgement;
+  }
+  judgement.first = session_ == 0;
+  judgement.new_session = !judgement.first && state.session != session_;
+  if (state.session == session_) judgement.missed = state.seq - seq_ - 1;
+  session_ = state.session;
+  seq_ = state.seq;
+  ++received_;
+  lost_ += judgement.missed;
+
+  judgement.usable = usable(state, joints_, flags_);
+  if (!judgement.usable) return judgement;
+  judgement.fresh = true;
+  judgement.silent = judgement.missed > bridged_;
+  for (int i = 0; i < joints_; ++i) {
+    if ((state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0) judgement.fresh = false;
+    if (!(state.age_cycles[i] <= bridged_)) judgement.silent = true;
+  }
+  return judgement;
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,54 @@
+// Is this JOINT_STATE new, complete and fit to be acted on?
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limber/joint_state_t.hpp>
+
+#include "common/joints.h"
+#include "robots/loader/robot.h"
+
+namespace limber::controller {
+
+/// What a joint has, as its flags tell.
+using JointFlags = std::array<std::int32_t, kMaxJoints>;
+inline constexpr std::int32_t kEquipment = int{joint_state_t::JOINT_LINK_ENCODER} |
+                                           int{joint_state_t::JOINT_TORQUE_SENSOR} |
+                                           int{joint_state_t::JOINT_TWO_MOTORS};
+/// As robot.yaml has it. For set-up.
+JointFlags equipment_of(const Robot& robot);
+
+struct StateJudgement {
+  bool repeated = false;     ///< its number was seen before in this session: nothing may advance
+  bool first = false;        ///< the first state of all
+  bool new_session = false;  ///< another run of the driver
+  bool usable = false;       ///< this arm's joints, all numbers finite, sensible period
+  bool fresh = false;        ///< usable, and every joint has answered in this cycle
+  std::int64_t missed = 0;   ///< states between the last one and this one
+  bool silent = false;  ///< states, or a joint's answers, are missing for longer than is bridged
+};
+
+/// Follows the stream by session and number. All members may be called in the cycle.
+class StateJudge {
+ public:
+  /// `flags`: the JOINT_* bits of kEquipment that each joint has; a state that says otherwise is of
+  /// another arm. So many cycles in a row without a state, or without a joint's answer, are
+  /// bridged.
+  StateJudge(int joints, int bridged_cycles, const JointFlags& flags = {})
+      : joints_(joints), bridged_(bridged_cycles), flags_(flags) {}
+  StateJudgement judge(const joint_state_t& state) noexcept;
+
+  std::int64_t received() const noexcept { return received_; }
+  std::int64_t lost() const noexcept { return lost_; }
+
+ private:
+  int joints_;
+  int bridged_;
+  JointFlags flags_;
+  std::int64_t session_ = 0;
+  std::int64_t seq_ = -1;
+  std::int64_t received_ = 0;
+  std::int64_t lost_ = 0;
+};
+
+}  // namespace limber::controller

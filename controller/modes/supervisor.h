@@ -1,0 +1,73 @@
+// Decides the mode: what the state stream, the drives and the clients mean for it.
+#pragma once
+
+#include <cstdint>
+#include <limber/joint_state_t.hpp>
+#include <limber/mode_request_t.hpp>
+
+#include "controller/modes/mode_table.h"
+#include "controller/modes/state_judge.h"
+
+namespace limber::controller {
+
+/// The mode table with its memory: timers, the lease, whether the drives follow. It computes no
+/// torque. All members may be called in the cycle.
+class Supervisor {
+ public:
+  static constexpr int kSteadyStates = 100;
+  static constexpr std::int64_t kDrivesOnWithin_ns = 3'000'000'000;
+
+  Supervisor(int joints, int bridged_cycles, const JointFlags& flags = {})
+      : judge_(joints, bridged_cycles, flags) {}
+
+  /// Each state once, before anything else. Nothing happens if the state is a repetition.
+  StateJudgement on_state(const joint_state_t& state) noexcept;
+  /// nullptr: obeyed, else why not.
+  const char* on_mode(const mode_request_t& request) noexcept;
+  /// Too early: the request would be refused because controller or drives are still starting.
+  bool not_yet(const mode_request_t& request) const noexcept;
+  /// nullptr if the client may send goals and gains: it holds the lease, or nobody does.
+  const char* check_client(std::int64_t client) const noexcept;
+  /// The client was obeyed: a free lease is its from now on.
+  void take_lease(std::int64_t client) noexcept { lease_ = client; }
+  /// Something the cycle noticed. False if the table has no row for it.
+  bool raise(Event event) noexcept;
+
+  Mode mode() const noexcept { return mode_; }
+  /// REASON_* of the last transition that nobody asked for; gone after an acknowledgement.
+  std::int8_t reason() const noexcept { return reason_; }
+  /// HOLD, ACTIVE or SOFT_STOP: the drives are wanted.
+  bool powered_mode() const noexcept;
+  /// A powered mode with the drives on: the torque of the cycle reaches the motors.
+  bool engaged() const noexcept { return engaged_; }
+  /// Drives that follow torque commands, and nobody who wants them to be off.
+  bool drives_carry() const noexcept {
+    return drive_state_ == joint_state_t::DRIVE_ON && !idle_requested_;
+  }
+  bool drives_on() const noexcept { return drive_state_ == joint_state_t::DRIVE_ON; }
+  /// Enabled drives that the driver lets hold or brake by themselves.
+  bool drives_hold() const noexcept {
+    return drive_state_ == joint_state_t::DRIVE_HOLD || drive_state_ == joint_state_t::DRIVE_DAMP;
+  }
+  /// REQUEST_* to the driver in this cycle.
+  std::int8_t drive_request() const noexcept;
+  const StateJudge& states() const noexcept { return judge_; }
+
+ private:
+  void count_steady(const StateJudgement& judgement) noexcept;
+  void watch_drives() noexcept;
+  void enter(Mode mode) noexcept;
+
+  StateJudge judge_;
+  Mode mode_ = Mode::kBoot;
+  std::int8_t reason_ = controller_status_t::REASON_NONE;
+  std::int64_t lease_ = 0;
+  int steady_ = 0;
+  bool engaged_ = false;
+  bool idle_requested_ = false;
+  std::int8_t drive_state_ = joint_state_t::DRIVE_CONFIGURING;
+  std::int64_t time_ns_ = 0;
+  std::int64_t entered_ns_ = 0;
+};
+
+}  // namespace limber::controller

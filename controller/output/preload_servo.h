@@ -1,0 +1,67 @@
+// Winds up the springs between two motors that pull against each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/types.h"
+#include "controller/elastic/spring_law.h"
+#include "controller/model/arm_state.h"
+#include "robots/loader/robot.h"
+
+namespace limber::controller {
+
+/// Where the torque goes while no law runs.
+enum class PreloadAtRest {
+  kReleased,  ///< to zero
+  kWound,     ///< to what keeps the preload there is
+  kAsSent,    ///< nowhere
+};
+
+/// For c = (theta_1 + theta_2) / 2, on which tau_1 + tau_2 acts with the inertia B = B_1 + B_2:
+///   tau_preload = f(c_d + x) + f(c_d - x) - K_c (c - c_d) - D_c c'
+///   K_c = B w^2,  D_c = 2 B w
+/// x: deflection of the equilibrium from the link. The springs' force is fed forward where c shall
+/// be, so that their own stiffness helps the servo; damping is against standstill, which keeps the
+/// torque continuous where a ramp begins. c_d starts where the preload is and moves at a
+/// steady rate to what is wanted. The joint's torque comes first: |tau| + |tau_preload| stays
+/// within twice what the weaker motor can give; and the gate's step is kept. Zero for joints with
+/// one motor. After construction all members may be called in the cycle.
+class PreloadServo {
+ public:
+  static constexpr double kBandwidth_rad_per_s = 30.0;
+  static constexpr double kRampTime_s = 1.0;  ///< from slack to the greatest preload
+
+  explicit PreloadServo(const Robot& robot);
+
+  /// At once, or in steps the gate lets pass if `in_steps`. x: n, rad.
+  void rest(const ArmState& state, const VectorJ& x, PreloadAtRest where, bool in_steps) noexcept;
+  /// `wanted`: n, rad, kept within 0 and robot.yaml's greatest. x: n, rad; tau: joint torque of
+  /// this cycle, n, N m. Returns LIMIT_* bits.
+  std::int32_t control(const ArmState& state, const VectorJ& wanted, const VectorJ& x,
+                       const VectorJ& tau, double dt_s) noexcept;
+
+  const VectorJ& torque() const noexcept { return tau_; }
+  /// robot.yaml's preload_rad, n.
+  const VectorJ& preload_at_rest() const noexcept { return at_rest_; }
+
+ private:
+  struct Motors {
+    Eigen::Index joint;
+    SpringPair springs;
+    double B;
+    double preload_max_rad;
+    double torque_Nm;      // of the weaker one
+    double rate_Nm_per_s;  // of their sum
+  };
+
+  double servo(const Motors& pair, const ArmState& state, double wanted, double x,
+               double dt_s) noexcept;
+
+  std::vector<Motors> pairs_;
+  VectorJ at_rest_;
+  VectorJ c_d_;
+  VectorJ tau_;
+};
+
+}  // namespace limber::controller

@@ -1,0 +1,33 @@
+#include "controller/output/torque_output.h"
+
+#include <limber/controller_status_t.hpp>
+
+namespace limber::controller {
+
+bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& state,
+                         const ArmTerms& terms, const VectorJ& deflection, double dt_s,
+                         std::int32_t* limits) noexcept {
+  blend_.advance(dt_s, state.v);
+  *limits |= limits_.shape(state, terms, &tau);
+  if (!tau.allFinite()) return false;
+  if (blend_next_) blend_.start(limits_.previous(), tau);
+  blend_next_ = false;
+  blend_.add_to(&tau);
+  if (blend_.active()) *limits |= controller_status_t::LIMIT_RAMP;
+  *limits |= limits_.clamp(state.period_s, &tau);
+  const VectorJ& wanted = preload != nullptr ? *preload : preload_.preload_at_rest();
+  *limits |= preload_.control(state, wanted, deflection, tau, dt_s);
+  return true;
+}
+
+void TorqueOutput::stand_by(VectorJ target, const Standby& how, const ArmState& state,
+                            const VectorJ& deflection, std::int32_t* limits) noexcept {
+  preload_.rest(state, deflection, how.preload, how.in_steps);
+  if (how.in_steps) {
+    *limits |= limits_.clamp(state.period_s, &target);
+  } else {
+    limits_.set_previous(target);
+  }
+}
+
+}  // namespace limber::controller

@@ -1,0 +1,208 @@
+#include "drivers/arm_drives.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "drivers/driver_setup.h"
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+namespace {
+
+constexpr double kSettling_s = 0.1;
+
+std::string line_about(const Drive& motor, const std::string& words) {
+  const JointConfig& joint = motor.link().joint();
+  return fmt::format("{} (id 0x{:X}): {}", joint.name, joint.drive.command_id, words);
+}
+
+}  // namespace
+
+ArmDrives::ArmDrives(const Robot& robot, int bridged_cycles)
+    : settling_cycles_(cycles_of(kSettling_s, robot.rate_hz)) {
+  for (const JointConfig& joint : robot.joints) joints_.emplace_back(robot, joint, bridged_cycles);
+}
+
+// --- state ---------------------------------------------------------------------------------------
+
+void ArmDrives::apply(DriveEvent event, int joint) noexcept {
+  const DriveState from = machine_.state();
+  if (!machine_.apply(event, joint)) return;
+  cycles_in_state_ = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    joints_[i].enter(machine_.state(), {tau_gravity_[i], torque_[i].preload});
+  if (in(DriveState::kOn) && from == DriveState::kEnabling) {
+    torque_.fill({});
+    torque_present_.fill({});
+  }
+}
+
+bool ArmDrives::follows_torque() const noexcept {
+  return in(DriveState::kOn) || (machine_.holding() && machine_.acknowledged());
+}
+
+std::string ArmDrives::configuration_problem() const {
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) {
+      if (motor.configuration_wrong()) return line_about(motor, motor.configuration_problem());
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> ArmDrives::configuration_warnings() const {
+  std::vector<std::string> lines;
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) {
+      for (const std::string& warning : motor.configuration_warnings())
+        lines.push_back(line_about(motor, warning));
+    }
+  }
+  return lines;
+}
+
+// --- towards the drives --------------------------------------------------------------------------
+
+void ArmDrives::add_bus_frames(std::vector<BusEnd>* buses) const {
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) {
+      CanFrame frame;
+      if (motor.link().needs_bus_frame(&frame)) (*buses)[motor.bus()].end_with(frame);
+    }
+  }
+}
+
+void ArmDrives::begin_cycle() noexcept {
+  for (ArmJoint& joint : joints_) {
+    for (Drive& motor : joint.motors()) motor.begin_cycle();
+  }
+}
+
+void ArmDrives::add_commands(std::vector<BusEnd>* buses) noexcept {
+  const bool settling = cycles_in_state_ < settling_cycles_;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    std::vector<Drive>& motors = joints_[i].motors();
+    for (std::size_t m = 0; m < motors.size(); ++m) {
+      const double tau = joints_[i].share(torque_[i], m);
+      (*buses)[motors[m].bus()].add(motors[m].next_frame(machine_.state(), tau, settling));
+    }
+  }
+  ++cycles_in_state_;
+  if (in(DriveState::kOn)) torque_present_ = torque_;
+}
+
+// --- from the drives -----------------------------------------------------------------------------
+
+Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
+  for (ArmJoint& joint : joints_) {
+    for (Drive& motor : joint.motors()) {
+      if (motor.bus() == bus && motor.link().is_mine(frame)) return &motor;
+    }
+  }
+  return nullptr;
+}
+
+bool ArmDrives::is_command(std::size_t bus, const CanFrame& frame) const noexcept {
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) {
+      if (motor.bus() != bus) continue;
+      const DriveConfig& drive = motor.link().joint().drive;
+      if (has_id(frame, drive.command_id) || (!frame.extended && accepts_id(drive, frame.id)))
+        return true;
+    }
+  }
+  return false;
+}
+
+bool ArmDrives::receive(std::size_t bus, const CanFrame& frame, bool late) noexcept {
+  Drive* drive = sender_of(bus, frame);
+  if (drive == nullptr) return false;
+  if (late) {
+    drive->receive_late(machine_.state(), frame);
+  } else {
+    drive->receive(machine_.state(), frame);
+  }
+  return true;
+}
+
+void ArmDrives::close_cycle(std::int64_t cycle) noexcept {
+  for (ArmJoint& joint : joints_) joint.close_cycle(machine_.state(), cycle);
+}
+
+void ArmDrives::update_torque_present() noexcept {
+  if (in(DriveState::kOn)) return;
+  for (std::size_t i = 0; i < joints_.size(); ++i) torque_present_[i] = joints_[i].applied();
+}
+
+// --- an accepted command -------------------------------------------------------------------------
+
+void ArmDrives::set_gravity(const joint_command_t& command) noexcept {
+  std::copy_n(command.tau_gravity, kMaxJoints, tau_gravity_.begin());
+}
+
+void ArmDrives::follow(const joint_command_t& command) noexcept {
+  execute(command.request);
+  if (!in(DriveState::kOn)) return;
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    torque_[i] = {command.tau[i], command.tau_preload[i]};
+}
+
+void ArmDrives::execute(int request) noexcept {
+  switch (request) {
+    case joint_command_t::REQUEST_OFF:
+      return apply(DriveEvent::kRequestOff);
+    case joint_command_t::REQUEST_HOLD:
+      return apply(DriveEvent::kRequestHold);
+    case joint_command_t::REQUEST_ON:
+      return turn_on(/*acknowledge=*/false);
+    case joint_command_t::REQUEST_ACKNOWLEDGE:
+      return turn_on(/*acknowledge=*/true);
+    default:
+      return;
+  }
+}
+
+void ArmDrives::turn_on(bool acknowledged) noexcept {
+  if (follows_torque() && std::ranges::all_of(joints_, &ArmJoint::healthy)) {
+    apply(DriveEvent::kTakenOver);
+  } else if (acknowledged) {
+    acknowledge();
+  } else if (std::ranges::all_of(joints_, &ArmJoint::ready_to_enable)) {
+    apply(DriveEvent::kRequestOn);
+  }
+}
+
+void ArmDrives::acknowledge() noexcept {
+  if (machine_.holding() && !std::ranges::all_of(joints_, &ArmJoint::healthy)) return;
+  for (ArmJoint& joint : joints_) joint.acknowledge();
+  apply(DriveEvent::kAcknowledge);
+}
+
+// --- messages ------------------------------------------------------------------------------------
+
+void ArmDrives::write_situation(GateSituation* situation) const noexcept {
+  situation->powered = machine_.powered();
+  situation->followed = follows_torque();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    situation->torque_present[i] = torque_present_[i].tau;
+    situation->preload_present[i] = torque_present_[i].preload;
+  }
+}
+
+void ArmDrives::write_state(joint_state_t* state) const noexcept {
+  state->drive_state = static_cast<std::int8_t>(machine_.state());
+  state->fault = machine_.fault();
+  state->fault_joint = machine_.fault_joint();
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].write_state(i, state);
+}
+
+void ArmDrives::write_status(driver_status_t* status) const noexcept {
+  status->drive_state = static_cast<std::int8_t>(machine_.state());
+  status->fault = machine_.fault();
+  status->fault_joint = machine_.fault_joint();
+  status->num_joints = static_cast<std::int8_t>(joints_.size());
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].write_status(i, status);
+}
+
+}  // namespace limber

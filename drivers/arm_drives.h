@@ -1,0 +1,100 @@
+// All joints of the arm with the one state that their drives share, and the torques on their way to
+// them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limber/driver_status_t.hpp>
+#include <limber/joint_command_t.hpp>
+#include <limber/joint_state_t.hpp>
+#include <string>
+#include <vector>
+
+#include "common/joints.h"
+#include "drivers/arm_joint.h"
+#include "drivers/drive/bus_end.h"
+#include "drivers/drive/drive_state_machine.h"
+#include "drivers/gate/torque_gate.h"
+#include "robots/loader/robot.h"
+
+namespace limber {
+
+/// Everything but the constructor and the two configuration_...() is allowed in the cycle.
+class ArmDrives {
+ public:
+  ArmDrives(const Robot& robot, int bridged_cycles);
+
+  // --- state ----------------------------------------------------------------------------------
+
+  void apply(DriveEvent event, int joint = -1) noexcept;
+  bool in(DriveState state) const noexcept { return machine_.state() == state; }
+  /// Commands sent since the state was entered.
+  int cycles_in_state() const noexcept { return cycles_in_state_; }
+  const std::vector<ArmJoint>& joints() const noexcept { return joints_; }
+  bool all_answered() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::answered); }
+  bool all_disabled() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::disabled); }
+  /// In OFF or FAULT, and every drive reports disabled.
+  bool all_off() const noexcept {
+    return (in(DriveState::kOff) || in(DriveState::kFault)) && all_disabled();
+  }
+  /// The drive whose start-up failed and why; empty if none. Allocates: for messages.
+  std::string configuration_problem() const;
+  /// What drives lack without being wrong, one line each. Allocates likewise.
+  std::vector<std::string> configuration_warnings() const;
+  /// A drive's status code in words. Allocates: for messages.
+  std::string status_text(std::size_t joint, std::uint16_t status) const {
+    return joints_[joint].motors().front().link().status_text(status);
+  }
+
+  // --- towards the drives ---------------------------------------------------------------------
+
+  /// Frames that drives need once a cycle and bus, whoever of them needs it. Set-up only.
+  void add_bus_frames(std::vector<BusEnd>* buses) const;
+  /// This cycle's one frame for every motor.
+  void add_commands(std::vector<BusEnd>* buses) noexcept;
+
+  /// Before what has come since the last cycle is received.
+  void begin_cycle() noexcept;
+
+  // --- from the drives ------------------------------------------------------------------------
+
+  /// The frame would command a drive of this arm.
+  bool is_command(std::size_t bus, const CanFrame& frame) const noexcept;
+  /// False if the frame is of no drive of this arm. `late`: it came after its cycle.
+  bool receive(std::size_t bus, const CanFrame& frame, bool late) noexcept;
+  /// End of the cycle: replies that are missing now are missing.
+  void close_cycle(std::int64_t cycle) noexcept;
+  /// After the cycle's last change of state: outside ON, the first step to the controller's torque
+  /// counts from what the drives exert by themselves.
+  void update_torque_present() noexcept;
+
+  // --- an accepted command --------------------------------------------------------------------
+
+  /// The torques that the drives go on making in FALLBACK.
+  void set_gravity(const joint_command_t& command) noexcept;
+  /// Executes the request; in ON, the torques leave with the next commands.
+  void follow(const joint_command_t& command) noexcept;
+
+  // --- messages -------------------------------------------------------------------------------
+
+  void write_situation(GateSituation* situation) const noexcept;
+  void write_state(joint_state_t* state) const noexcept;
+  void write_status(driver_status_t* status) const noexcept;
+
+ private:
+  bool follows_torque() const noexcept;
+  void execute(int request) noexcept;
+  void turn_on(bool acknowledge) noexcept;
+  void acknowledge() noexcept;
+  Drive* sender_of(std::size_t bus, const CanFrame& frame) noexcept;
+
+  std::vector<ArmJoint> joints_;
+  DriveStateMachine machine_;
+  int settling_cycles_;  ///< FALLBACK: damping before the position is held
+  int cycles_in_state_ = 0;
+  std::array<JointTorque, kMaxJoints> torque_{};          ///< accepted last, sent next
+  std::array<double, kMaxJoints> tau_gravity_{};          ///< N m, of the command accepted last
+  std::array<JointTorque, kMaxJoints> torque_present_{};  ///< sent last, or exerted by the drives
+};
+
+}  // namespace limber

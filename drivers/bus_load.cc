@@ -1,0 +1,131 @@
+#include "drivers/bus_load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "common/config_error.h"
+#include "drivers/can/frame_time.h"
+#include "drivers/protocols/canopen.h"
+#include "drivers/protocols/cycle_frames.h"
+#include "robots/loader/adapter.h"
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+namespace {
+
+/// Time on the wire in one cycle, s.
+struct Traffic {
+  double commands_s = 0.0;
+  bool sync = false;  ///< no reply before the last command
+  double replies_s = 0.0;
+  double longest_reply_s = 0.0;
+  double shortest_pair_s = std::numeric_limits<double>::infinity();
+
+  void add_reply(double reply_s, double command_s) noexcept {
+    replies_s += reply_s;
+    longest_reply_s = std::max(longest_reply_s, reply_s);
+    shortest_pair_s = std::min(shortest_pair_s, command_s + reply_s);
+  }
+  bool none() const noexcept { return commands_s == 0.0; }
+};
+
+double longest_s(const BusConfig& bus, const CanFrame& frame) noexcept {
+  return worst_frame_time_s(frame.length, frame.extended, frame.fd, bus.bitrate_bps,
+                            bus.data_bitrate_bps);
+}
+
+/// Mean over typical data.
+double expected_s(const BusConfig& bus, const CanFrame& frame) noexcept {
+  constexpr int kSamples = 64;
+  std::minstd_rand random;
+  CanFrame sample = frame;
+  double sum_s = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    fill_typical(&sample, &random);
+    sum_s += frame_time_s(sample, bus.bitrate_bps, bus.data_bitrate_bps);
+  }
+  return sum_s / kSamples;
+}
+
+using FrameTime = double (*)(const BusConfig&, const CanFrame&) noexcept;
+
+Traffic traffic(const Robot& robot, int index, FrameTime time_s = longest_s) {
+  const BusConfig& bus = robot.buses[static_cast<std::size_t>(index)];
+  Traffic out;
+  for (const Exchange& exchange : cycle_frames(robot, index)) {
+    const double command_s = time_s(bus, exchange.command);
+    out.commands_s += command_s;
+    for (const CanFrame& reply : exchange.replies) out.add_reply(time_s(bus, reply), command_s);
+    out.sync = out.sync || exchange.at_sync;
+  }
+  if (out.sync) out.commands_s += time_s(bus, canopen::encode_sync());
+  return out;
+}
+
+const AdapterTiming& adapter_of(const Robot& robot, int bus) noexcept {
+  return timing_of(robot.buses[static_cast<std::size_t>(bus)].adapter);
+}
+
+}  // namespace
+
+double predicted_bus_load(const Robot& robot, int bus) {
+  const Traffic wire = traffic(robot, bus);
+  return (wire.commands_s + wire.replies_s) * robot.rate_hz;
+}
+
+double expected_bus_load(const Robot& robot, int bus) {
+  const Traffic wire = traffic(robot, bus, expected_s);
+  return (wire.commands_s + wire.replies_s) * robot.rate_hz;
+}
+
+double predicted_end_s(const Robot& robot, int bus) {
+  const Traffic wire = traffic(robot, bus);
+  if (wire.none()) return 0.0;
+  const AdapterTiming& adapter = adapter_of(robot, bus);
+  const double adapter_s = adapter.send_s + adapter.receive_s + 2.0 * adapter.jitter_s;
+  // The last command's reply may find the wire free; after a SYNC all of them begin together.
+  const double after_s = kDriveReplyDelay_s + (wire.sync ? wire.replies_s : wire.longest_reply_s);
+  return adapter_s + wire.commands_s + std::max(wire.replies_s, after_s);
+}
+
+double least_round_trip_s(const Robot& robot, int bus) {
+  const Traffic wire = traffic(robot, bus);
+  if (wire.none()) return 0.0;
+  const AdapterTiming& adapter = adapter_of(robot, bus);
+  // Stuff bits are less than a fifth of the longest frame.
+  return adapter.send_s + adapter.receive_s + 0.8 * wire.shortest_pair_s;
+}
+
+double reply_window_s(const Robot& robot) {
+  const double period_s = 1.0 / robot.rate_hz;
+  double end_s = 0.0;
+  for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus)
+    end_s = std::max(end_s, predicted_end_s(robot, bus));
+  return std::clamp(end_s + 0.05 * period_s, 0.6 * period_s, kLatestReply * period_s);
+}
+
+double highest_rate_hz(const Robot& robot, int bus) {
+  const double end_s = predicted_end_s(robot, bus);
+  return end_s > 0.0 ? kLatestReply / end_s : std::numeric_limits<double>::infinity();
+}
+
+double checked_bus_load(const Robot& robot, int bus) {
+  if (robot.rate_hz <= highest_rate_hz(robot, bus)) return expected_bus_load(robot, bus);
+  const BusConfig& config = robot.buses[static_cast<std::size_t>(bus)];
+  const bool classic = !config.fd;
+  throw ConfigError::at(
+      robot.name, 0, "buses." + config.name,
+      fmt::format("at {:g} Hz the last reply may come {:.2f} ms after the start of a cycle (load "
+                  "{:.0f} %, adapter '{}'); {:.2f} ms are allowed; the highest rate is {:.0f} Hz "
+                  "({}more buses or a faster adapter allow more)",
+                  robot.rate_hz, 1e3 * predicted_end_s(robot, bus),
+                  100.0 * predicted_bus_load(robot, bus), timing_of(config.adapter).word,
+                  1e3 * kLatestReply / robot.rate_hz, std::floor(highest_rate_hz(robot, bus)),
+                  classic ? "CAN-FD, " : ""));
+}
+
+}  // namespace limber

@@ -1,0 +1,37 @@
+// The load that an arm puts on its buses and the time that a cycle's traffic takes, known before
+// the first frame. All of it is for set-up, not for the cycle.
+#pragma once
+
+#include "robots/loader/robot.h"
+
+namespace limber {
+
+/// Share of the bus, 0..1, that a command and its replies per motor and cycle, the SYNC of CANopen
+/// drives and the tip sensor's frames take at robot.rate_hz, every frame at its longest.
+double predicted_bus_load(const Robot& robot, int bus);
+
+/// The same with frames of the usual length: exact identifiers, the mean over typical data. What
+/// the driver counts agrees with it within 2 %.
+double expected_bus_load(const Robot& robot, int bus);
+
+/// When the driver has the last reply of a cycle at the latest, s after its start: every frame at
+/// its longest, the adapter's delays and jitter, the drives' reply delay.
+double predicted_end_s(const Robot& robot, int bus);
+/// The soonest that a reply can follow the start of the cycle, s.
+double least_round_trip_s(const Robot& robot, int bus);
+
+/// Share of the period in which the driver waits for replies at the most: the rest is the
+/// controller's.
+inline constexpr double kLatestReply = 0.9;
+
+/// How long the driver waits for replies, s after the start of a cycle: the predicted end on the
+/// slowest bus and a twentieth of the period, within 0.6 and 0.9 of it.
+double reply_window_s(const Robot& robot);
+/// Rate at which the predicted end is the latest that the driver waits for, Hz; infinite if no
+/// motor is on the bus.
+double highest_rate_hz(const Robot& robot, int bus);
+
+/// expected_bus_load(); throws ConfigError if the robot's rate is above highest_rate_hz().
+double checked_bus_load(const Robot& robot, int bus);
+
+}  // namespace limber

@@ -1,0 +1,83 @@
+// The driver's end of one bus: the cycle's batch out, replies in, lock step, load and losses.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limber/driver_status_t.hpp>
+#include <optional>
+#include <span>
+
+#include "common/joints.h"
+#include "drivers/can/can_bus.h"
+#include "robots/loader/robot.h"
+
+namespace limber {
+
+/// Everything but the constructor is allowed inside the cycle.
+class BusEnd {
+ public:
+  /// `load_predicted`: share of the wire, 0..1, for the status. `bus` outlives this.
+  BusEnd(CanBus* bus, const BusConfig& config, double load_predicted)
+      : bus_(bus), config_(config), load_predicted_(load_predicted) {}
+
+  /// Every batch ends with this frame; frames added with its identifier are left out.
+  void end_with(const CanFrame& frame) noexcept { last_ = frame; }
+
+  /// Starts an empty batch.
+  void clear() noexcept { batched_ = 0; }
+  void add(const CanFrame& frame) noexcept {
+    if (last_ && has_id(frame, last_->id)) return;
+    put(frame);
+  }
+  /// Sends the batch. Frames that are not accepted are gone: the next cycle has newer ones.
+  void send() noexcept;
+
+  /// A batch of what has arrived; empty when nothing is waiting. Valid until the next call. Frames
+  /// stamped later than `until_ns` wait for a later call (lock step: a simulated wire delivers a
+  /// whole period at once); a stamp more than a second later is another clock's and does not count.
+  std::span<const CanFrame> receive(std::int64_t until_ns) noexcept;
+  /// Counts a frame of no drive or sensor of this arm.
+  void count_foreign() noexcept { ++foreign_; }
+
+  // Lock step.
+  void expect_tock(std::int64_t seq) noexcept;
+  void send_tick() noexcept;
+  /// True if the frame belongs to lock step.
+  bool take_lockstep(const CanFrame& frame) noexcept;
+  bool tocked() const noexcept { return tocked_; }
+
+  /// BUS_* of driver_status_t. QUEUE_FULL: frames refused in three cycles in a row.
+  std::int8_t state() const noexcept;
+  bool lost() const noexcept { return state() != driver_status_t::BUS_GOOD; }
+
+  /// Ends the interval over which the load is counted; `seconds`: its length.
+  void close_interval(double seconds) noexcept;
+  const std::string& name() const noexcept { return config_.name; }
+  /// The fields of bus b.
+  void write_status(std::size_t b, driver_status_t* status) const noexcept;
+
+ private:
+  void put(const CanFrame& frame) noexcept {
+    if (batched_ < batch_.size()) batch_[batched_++] = frame;
+  }
+  void count_load(const CanFrame& frame) noexcept;
+  std::size_t take_held(std::int64_t until_ns) noexcept;
+
+  CanBus* bus_;
+  BusConfig config_;
+  double load_predicted_;
+  std::array<CanFrame, kMaxMotors + 2> batch_;  ///< motors, tip sensor, last_
+  std::size_t batched_ = 0;
+  std::optional<CanFrame> last_;
+  std::array<CanFrame, 32> received_;
+  std::array<CanFrame, 128> held_;  ///< in order of arrival
+  std::size_t num_held_ = 0;
+  std::int64_t foreign_ = 0;
+  int refused_cycles_ = 0;
+  std::int64_t tick_ = -1;
+  bool tocked_ = false;
+  double busy_s_ = 0.0;
+  double load_counted_ = 0.0;  ///< share of the wire in the last interval, 0..1
+};
+
+}  // namespace limber

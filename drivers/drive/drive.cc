@@ -1,0 +1,127 @@
+#include "drivers/drive/drive.h"
+
+#include <cmath>
+
+namespace limber {
+
+Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
+    : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
+      configure_(&link_.family()),
+      watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
+      invalid_window_(bridged_cycles),
+      cycles_per_second_(static_cast<int>(std::ceil(rate_hz))) {}
+
+void Drive::enter(DriveState state, double held) noexcept {
+  switch (state) {
+    case DriveState::kConfiguring:
+      configure_.start();
+      link_.forget_angle();
+      break;
+    case DriveState::kOff:
+      acknowledge();
+      break;
+    case DriveState::kEnabling:
+      enable_.start(link_);
+      break;
+    case DriveState::kFallback:
+      fallback_.start(held);
+      break;
+    case DriveState::kOn:
+    case DriveState::kDamp:
+    case DriveState::kFault:
+      break;
+  }
+}
+
+CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept {
+  switch (state) {
+    case DriveState::kConfiguring:
+      return configure_.next_frame();
+    case DriveState::kOff:
+      return poll();
+    case DriveState::kEnabling:
+      return enable_.next_frame(&link_);
+    case DriveState::kOn:
+      return link_.torque(tau);
+    case DriveState::kFallback:
+      // A drive that left the enabled state by itself gets no commands.
+      if (!link_.enabled()) return link_.state_request();
+      return link_.command(fallback_.command(link_, settling, watch_.trusted()));
+    case DriveState::kDamp:
+      if (!link_.enabled()) return link_.state_request();
+      return link_.command(damp(link_));
+    case DriveState::kFault:
+      break;
+  }
+  return link_.disable();  // also when confirmed: a frame may have been lost before
+}
+
+CanFrame Drive::poll() noexcept {
+  return link_.enabled() ? link_.disable() : link_.state_request();
+}
+
+void Drive::begin_cycle() noexcept {
+  answered_ = false;
+  link_.begin_cycle();
+}
+
+void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
+  if (awaits_answer(state)) {
+    if (configure_.receive(frame)) {
+      answered_ = true;
+    } else if (!link_.is_unsolicited(frame)) {
+      ++invalid_;
+    }
+    return;
+  }
+  // Without power an arm may swing at any speed: the next angle is taken as it comes.
+  if (state == DriveState::kOff) link_.forget_angle();
+  if (!link_.receive(frame)) {
+    if (!link_.is_unsolicited(frame)) count_invalid();
+    return;
+  }
+  if (!link_.fresh()) return;  // a part of a state
+  answered_ = true;
+  if (state == DriveState::kConfiguring) configure_.receive_state(link_.enabled());
+}
+
+void Drive::count_invalid() noexcept {
+  ++invalid_;
+  const bool first = invalid_cycle_ != cycle_;  // a state may be several frames
+  invalid_cycle_ = cycle_;
+  if (first && invalid_window_.add(cycle_, cycles_per_second_)) often_invalid_ = true;
+}
+
+void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
+  const bool startup = awaits_answer(state);
+  if (!startup && link_.is_unsolicited(frame)) return;
+  ++late_;
+  if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) return;
+  if (startup) {
+    late_answer_ = true;
+    return;
+  }
+  if (link_.age_cycles() > 1) return;  // a part of a state
+  watch_.came_late();
+  if (counted_missing_) --missing_;
+  counted_missing_ = false;
+}
+
+void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
+  cycle_ = cycle;
+  if (state == DriveState::kConfiguring) {
+    // A dialogue shares the wire with those of all other drives: its answer may take two cycles.
+    const bool heard = answered_ || late_answer_ || configure_.may_be_unanswered();
+    silent_cycles_ = heard ? 0 : silent_cycles_ + 1;
+    late_answer_ = false;
+    if (silent_cycles_ > 2) ++missing_;
+    configure_.close_cycle();
+    return;
+  }
+  counted_missing_ = !answered_;
+  if (counted_missing_) ++missing_;
+  if (state == DriveState::kEnabling) enable_.close_cycle(link_);
+  watch_.close_cycle(link_.fresh(), cycle);
+}
+
+}  // namespace limber

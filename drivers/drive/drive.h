@@ -1,0 +1,97 @@
+// One motor as the driver sees it: link, dialogues, watchdog, counters.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/drive/configure.h"
+#include "drivers/drive/drive_table.h"
+#include "drivers/drive/enable.h"
+#include "drivers/drive/fallback.h"
+#include "drivers/drive/joint_link.h"
+#include "drivers/drive/reply_watch.h"
+
+namespace limber {
+
+/// Everything but the constructor is allowed inside the cycle.
+class Drive {
+ public:
+  Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles);
+
+  /// The arm's state changed; `held`: torque that the motor goes on making in FALLBACK, N m.
+  void enter(DriveState state, double held) noexcept;
+
+  /// This cycle's one frame. `tau` counts in ON, `settling` in FALLBACK (the first 100 ms).
+  CanFrame next_frame(DriveState state, double tau, bool settling) noexcept;
+  void begin_cycle() noexcept;
+  /// A frame of this motor's.
+  void receive(DriveState state, const CanFrame& frame) noexcept;
+  /// One that answers the command of the cycle before: a state is one cycle old.
+  void receive_late(DriveState state, const CanFrame& frame) noexcept;
+  void close_cycle(DriveState state, std::int64_t cycle) noexcept;
+  /// The operator has acknowledged the fault: the watchdogs start afresh.
+  void acknowledge() noexcept {
+    watch_.reset();
+    invalid_window_.clear();
+    often_invalid_ = false;
+  }
+
+  /// Some valid answer came in this cycle, a state or one of the start-up.
+  bool answered() const noexcept { return answered_; }
+  /// By the last reply, the power stage is on.
+  bool enabled() const noexcept { return link_.enabled(); }
+  bool failed() const noexcept { return link_.drive_error(); }
+  bool configured() const noexcept { return configure_.done(); }
+  bool configuration_wrong() const noexcept { return configure_.failed(); }
+  bool enabling_done() const noexcept { return enable_.done(link_); }
+  std::int64_t missing_cycles() const noexcept { return watch_.missing(); }
+  /// In too many cycles within a second (ten on a wire, see LossWindow) replies were doubled or
+  /// could not be understood.
+  bool often_invalid() const noexcept { return often_invalid_; }
+  bool lost() const noexcept { return watch_.lost(); }
+
+  const JointLink& link() const noexcept { return link_; }
+  /// Why configuration_wrong(), in words. Allocates: for messages, outside the cycle.
+  std::string configuration_problem() const { return link_.describe(configure_.failure()); }
+  /// What the drive lacks without being wrong, likewise.
+  std::vector<std::string> configuration_warnings() const {
+    std::vector<std::string> warnings;
+    for (const StartupFailure& missing : configure_.missing())
+      warnings.push_back(link_.describe(missing));
+    return warnings;
+  }
+  std::int32_t replies_late() const noexcept { return late_; }
+  std::int32_t replies_lost() const noexcept { return missing_; }
+  std::int32_t replies_invalid() const noexcept { return invalid_; }
+  /// Index into Robot::buses.
+  std::size_t bus() const noexcept { return static_cast<std::size_t>(link_.joint().drive.bus); }
+
+ private:
+  CanFrame poll() noexcept;
+  void count_invalid() noexcept;
+  /// A start-up step waits for its answer.
+  bool awaits_answer(DriveState state) const noexcept {
+    return state == DriveState::kConfiguring && !configure_.expects_state();
+  }
+
+  JointLink link_;
+  ConfigureDialogue configure_;
+  EnableDialogue enable_;
+  Fallback fallback_;
+  ReplyWatch watch_;
+  bool answered_ = false;
+  std::int32_t late_ = 0;
+  std::int32_t missing_ = 0;
+  LossWindow invalid_window_;
+  int cycles_per_second_;
+  bool often_invalid_ = false;
+  std::int64_t cycle_ = 0;
+  std::int64_t invalid_cycle_ = -1;  ///< of the last reply that could not be understood
+  bool late_answer_ = false;         ///< of the start-up, in this cycle
+  int silent_cycles_ = 0;            ///< in the start-up
+  bool counted_missing_ = false;     ///< in the last cycle; unless the reply comes late
+  std::int32_t invalid_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,83 @@
+#include "drivers/drive/joint_link.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limber {
+
+JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles)
+    : joint_(joint),
+      family_(make_drive_family(joint, fd, period_s)),
+      longest_gap_(bridged_cycles + 1),
+      jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
+      jump_resolution_(2.0 * family_->angle_resolution()),
+      link_jump_resolution_(2.0 * std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)) {
+  seen_.angle_rad = joint.drive.offset_rad;
+}
+
+CanFrame JointLink::torque(double tau) noexcept { return command({theta(), 0.0, 0.0, tau}); }
+
+CanFrame JointLink::command(const JointCommand& command) noexcept {
+  CanFrame frame;
+  const DriveCommand wanted{drive_angle(command.theta), 0.0, command.kp, command.kd,
+                            sign() * command.tau};
+  commanded_ = family_->command(wanted, memory(), &frame, &sent_);
+  return commanded_ ? frame : family_->state_request();
+}
+
+CanFrame JointLink::disable() noexcept {
+  commanded_ = false;
+  return family_->disable();
+}
+
+CanFrame JointLink::clear_error() noexcept {
+  commanded_ = false;
+  return family_->clear_error();
+}
+
+CanFrame JointLink::enable() noexcept {
+  commanded_ = false;
+  return family_->enable(memory());
+}
+
+CanFrame JointLink::state_request() noexcept {
+  commanded_ = false;
+  return family_->state_request();
+}
+
+bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept {
+  DriveReport report;
+  const bool late = age_cycles > 0;
+  if (age_cycles_ <= age_cycles) return false;
+  const StateReading reading = family_->read_state(frame, late, &report);
+  if (reading == StateReading::kPart) return true;
+  if (reading == StateReading::kNone || !plausible(report)) return false;
+  seen_ = report;
+  angle_known_ = true;
+  age_cycles_ = age_cycles;
+  return true;
+}
+
+bool JointLink::plausible(const DriveReport& report) const noexcept {
+  if (!angle_known_) return std::isfinite(report.angle_rad) && std::isfinite(report.link_angle_rad);
+  const double most = std::clamp(age_cycles_, 1, longest_gap_) * jump_per_cycle_;
+  const double winding = joint_.has_antagonist ? 2.0 : 1.0;
+  return std::abs(angle(report) - theta()) <= winding * most + jump_resolution_ &&
+         (!has_link_encoder() ||
+          std::abs(report.link_angle_rad - seen_.link_angle_rad) <= most + link_jump_resolution_);
+}
+
+void JointLink::begin_cycle() noexcept {
+  family_->begin_cycle();
+  if (age_cycles_ < kNever - 1) ++age_cycles_;
+}
+
+double JointLink::tau_applied() const noexcept {
+  if (!commanded_ || !enabled()) return 0.0;
+  return sign() *
+         (sent_.kp_Nm_per_rad * (sent_.angle_rad - seen_.angle_rad) +
+          sent_.kd_Nms_per_rad * (sent_.speed_rad_per_s - seen_.speed_rad_per_s) + sent_.torque_Nm);
+}
+
+}  // namespace limber

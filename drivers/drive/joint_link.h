@@ -1,0 +1,125 @@
+// One motor's end of the bus: frames out, replies in; the drive's sign and zero are applied here
+// and nowhere else.
+//
+//   theta = sign * (drive angle - offset)       speed and torque likewise by sign
+//   q     = the link encoder's angle, which counts as the joint does: its sign, its zero
+//
+// Allowed inside the cycle: everything but the constructor.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "drivers/can/can_frame.h"
+#include "drivers/families/drive_family.h"
+#include "robots/loader/robot.h"
+
+namespace limber {
+
+/// A drive's command in joint coordinates: tau_drive = kp (theta - theta_drive) - kd
+/// theta_dot_drive + tau.
+struct JointCommand {
+  double theta = 0.0;  ///< rad
+  double kp = 0.0;     ///< N m/rad
+  double kd = 0.0;     ///< N m s/rad
+  double tau = 0.0;    ///< N m
+};
+
+class JointLink {
+ public:
+  JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles);
+
+  // --- towards the drive; each call makes the frame of this cycle -----------------------------
+
+  /// Torque only: kp = kd = 0. The position field carries the angle measured last, so that no frame
+  /// commands a motion, whatever becomes of its gain fields.
+  CanFrame torque(double tau) noexcept;
+
+  /// What is not finite is not sent: the frame is then a state request.
+  CanFrame command(const JointCommand& command) noexcept;
+
+  CanFrame disable() noexcept;
+  CanFrame clear_error() noexcept;
+  CanFrame enable() noexcept;
+  CanFrame state_request() noexcept;
+
+  // --- from the drive -------------------------------------------------------------------------
+
+  bool needs_bus_frame(CanFrame* frame) const noexcept { return family_->needs_bus_frame(frame); }
+  bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
+  /// From this drive, but no reply to a command, and nothing that must be understood.
+  bool is_unsolicited(const CanFrame& frame) const noexcept {
+    return family_->is_unsolicited(frame);
+  }
+  /// Stores a state reply; fresh() when all parts of it are there. False, and nothing stored: not
+  /// one, another motor's number, a second one
+  /// in this cycle, or an angle that motor or link cannot have reached since the last one
+  /// (1.5 velocity_limit T for each cycle since, at most as many as are bridged and one, plus two
+  /// counts; a motor of two may turn and wind at once: twice that). `age_cycles`: of the command
+  /// that it answers; one as young that is there already stays.
+  bool receive(const CanFrame& frame, std::int32_t age_cycles = 0) noexcept;
+
+  /// Start of a cycle: no reply yet, one cycle more since the last.
+  void begin_cycle() noexcept;
+  /// The drive may have been anywhere since: the next angle is taken as it comes.
+  void forget_angle() noexcept { angle_known_ = false; }
+
+  // --- measured -------------------------------------------------------------------------------
+
+  bool fresh() const noexcept { return age_cycles_ == 0; }  ///< answered in this cycle
+  /// Cycles since the last valid reply; kNever before the first.
+  std::int32_t age_cycles() const noexcept { return age_cycles_; }
+  static constexpr std::int32_t kNever = INT32_MAX;
+
+  double theta() const noexcept { return angle(seen_); }                        ///< rad
+  double theta_dot() const noexcept { return sign() * seen_.speed_rad_per_s; }  ///< rad/s
+  /// The link's, rad and rad/s; the motor's without a link encoder.
+  double q() const noexcept { return has_link_encoder() ? seen_.link_angle_rad : theta(); }
+  double v() const noexcept {
+    return has_link_encoder() ? seen_.link_speed_rad_per_s : theta_dot();
+  }
+  /// N m, sensed on the link if there is a torque sensor, else the drive's own estimate.
+  double tau() const noexcept { return sign() * seen_.torque_Nm; }
+  /// N m: the torque of this cycle's command as the drive computes it; 0 without command, or if
+  /// not enabled.
+  double tau_applied() const noexcept;
+  double current_A() const noexcept { return sign() * seen_.current_A; }
+  double temperature_degC() const noexcept { return seen_.temperature_degC; }
+  bool enabled() const noexcept { return seen_.condition == DriveCondition::kEnabled; }
+  bool drive_error() const noexcept { return seen_.condition == DriveCondition::kFailed; }
+  /// Of the last report, in the drive's own numbers.
+  std::uint16_t status() const noexcept { return seen_.status; }
+  /// The same in words. Allocates: for messages.
+  std::string status_text(std::uint16_t status) const { return family_->status_text(status); }
+  const JointConfig& joint() const noexcept { return joint_; }
+  DriveFamily& family() noexcept { return *family_; }
+  std::string describe(const StartupFailure& failure) const { return family_->describe(failure); }
+
+ private:
+  double sign() const noexcept { return joint_.drive.sign; }
+  double angle(const DriveReport& report) const noexcept {
+    return sign() * (report.angle_rad - joint_.drive.offset_rad);
+  }
+  double drive_angle(double theta) const noexcept {
+    return sign() * theta + joint_.drive.offset_rad;
+  }
+  bool has_link_encoder() const noexcept { return joint_.link_encoder.present; }
+  bool plausible(const DriveReport& report) const noexcept;
+  DriveMemory memory() const noexcept { return {seen_, age_cycles_ < longest_gap_}; }
+
+  JointConfig joint_;
+  std::unique_ptr<DriveFamily> family_;
+  int longest_gap_;              ///< cycles
+  double jump_per_cycle_;        ///< rad, of the link
+  double jump_resolution_;       ///< rad, of the motor
+  double link_jump_resolution_;  ///< rad
+  DriveCommand sent_;            ///< as the drive understands it
+  bool commanded_ = false;       ///< this cycle's frame is a command, not a request
+
+  std::int32_t age_cycles_ = kNever;
+  bool angle_known_ = false;
+  DriveReport seen_;  ///< the last one stored, in the drive's own coordinates
+};
+
+}  // namespace limber

@@ -1,0 +1,94 @@
+#include "drivers/processes/arm_port.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+
+#include "common/clock.h"
+#include "common/wait_readable.h"
+#include "lcmtypes/channels.h"
+
+namespace limber {
+
+ArmPort::ArmPort(const Robot& robot, const ArmDriverOptions& options, LcmPort* user_plane,
+                 StateReporter* reporter)
+    : lockstep_(options.lockstep),
+      user_plane_(user_plane),
+      reporter_(reporter),
+      arm_plane_(arm_plane_url()) {
+  arm_plane_.subscribe<joint_command_t>(channels::kJointTorque, 30,
+                                        [this](const joint_command_t& c) { on_command(c); });
+  for (const BusConfig& bus : robot.buses) {
+    buses_.push_back(
+        open_can_bus(bus.can, bus.fd, lockstep_ ? Stamps::kOfSender : Stamps::kOnArrival));
+    bus_pointers_.push_back(buses_.back().get());
+  }
+  driver_ = std::make_unique<ArmDriver>(robot, bus_pointers_, options);
+  reporter_->set_fault_text([this](int fault, int joint, std::uint16_t detail) {
+    return driver_->fault_text(fault, joint, detail);
+  });
+}
+
+bool ArmPort::wait_for_replies(std::int64_t deadline_ns) {
+  driver_->poll();
+  while (!driver_->complete()) {
+    if (!wait_readable(bus_pointers_, deadline_ns)) return false;
+    driver_->poll();
+  }
+  return true;
+}
+
+void ArmPort::publish_state(const joint_state_t& state) {
+  published_ = &state;
+  published_ns_ = monotonic_ns();
+  answered_ = false;
+  arm_plane_.publish(channels::kJointState, state);
+  user_plane_->publish(channels::kJointState, state);
+  reporter_->note(state, driver_->fault_detail());
+  log_configuration(state);
+}
+
+void ArmPort::repeat_state() { arm_plane_.publish(channels::kJointState, *published_); }
+
+bool ArmPort::wait_for_answer(std::int64_t deadline_ns) {
+  const std::array<int, 1> arm{arm_plane_.descriptor()};
+  do {
+    read_commands();
+  } while (!answered_ && wait_readable(arm, deadline_ns));
+  return answered_;
+}
+
+void ArmPort::on_command(const joint_command_t& command) {
+  const bool of_this_state = published_ != nullptr && command.state_seq == published_->seq;
+  // In lock step a state that was published twice is answered twice; the second answer, and what is
+  // left from the state before, must not count as refused commands.
+  if (lockstep_ && (!of_this_state || answered_)) return;
+  const int verdict = driver_->accept(command);
+  const bool foreign = verdict == driver_status_t::VERDICT_SIZE ||
+                       verdict == driver_status_t::VERDICT_SESSION ||
+                       verdict == driver_status_t::VERDICT_CONTROLLER;
+  if (!of_this_state || foreign || answered_) return;
+  answered_ = true;
+  if (!lockstep_) timing_.answers.add(monotonic_ns() - published_ns_);
+}
+
+void ArmPort::log_configuration(const joint_state_t& state) {
+  const bool wrong = state.fault == joint_state_t::FAULT_CONFIGURATION;
+  // Nothing is enabled then: the cycle may take the time for a line.
+  if (wrong && !problem_logged_) spdlog::error("{}", driver_->configuration_problem());
+  problem_logged_ = wrong;
+  if (configuring_ && state.drive_state == joint_state_t::DRIVE_OFF) {
+    for (const std::string& line : driver_->configuration_warnings())
+      spdlog::warn("warning: {}", line);
+  }
+  configuring_ = state.drive_state == joint_state_t::DRIVE_CONFIGURING;
+}
+
+void ArmPort::publish_status() {
+  driver_->fill_status(&status_);
+  timing_.write_status(&status_);
+  user_plane_->publish(channels::kDriverStatus, status_);
+  ++status_.seq;
+}
+
+}  // namespace limber

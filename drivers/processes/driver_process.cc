@@ -1,0 +1,163 @@
+#include "drivers/processes/driver_process.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "common/config_error.h"
+#include "common/program.h"
+#include "drivers/bus_load.h"
+#include "drivers/drive/drive_discovery.h"
+#include "drivers/processes/lockstep_runner.h"
+#include "drivers/processes/realtime_runner.h"
+#include "robots/loader/choose_buses.h"
+#include "robots/loader/load_robot.h"
+
+namespace limber {
+namespace {
+
+// A virtual bus is as punctual as this machine's scheduler, which pauses a process for tens of
+// milliseconds now and then; a wire is not. What would be a cut cable there is a hiccup here.
+constexpr double kVirtualBridge_s = 0.05;
+constexpr double kVirtualWatchdog_s = 0.1;
+
+Robot load(const DriverProcessOptions& options) {
+  Robot robot = load_robot(options.robot).robot;
+  if (options.rate_hz > 0.0) robot.rate_hz = options.rate_hz;
+  choose_buses(options.buses, &robot);
+  return robot;
+}
+
+/// The tolerances of a realtime run on virtual buses: the drives' watchdogs wait longer, too.
+int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
+  const int on_a_wire = ArmDriverOptions().bridged_cycles;
+  if (options.lockstep || !robot->on_virtual_buses()) return on_a_wire;
+  for (JointConfig& joint : robot->joints) {
+    for (DriveConfig* drive : {&joint.drive, &joint.antagonist})
+      drive->watchdog_s = std::max(drive->watchdog_s, kVirtualWatchdog_s);
+  }
+  return std::max(on_a_wire, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
+}
+
+std::vector<std::string> joint_names(const Robot& robot) {
+  std::vector<std::string> names;
+  for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
+  return names;
+}
+
+RealtimeGrant request_realtime(const DriverProcessOptions& options) {
+  if (options.lockstep || options.realtime_priority == 0) return {};
+  return ask_for_realtime(options.realtime_priority);
+}
+
+std::string text_of(const RealtimeGrant& grant, int priority) {
+  if (priority == 0) return "real-time priority not requested";
+  if (grant.fifo && grant.locked_memory)
+    return fmt::format("real-time priority {} and locked memory granted", priority);
+  return "NOT real-time: " + grant.reason;
+}
+
+}  // namespace
+
+DriverProcess::DriverProcess(const DriverProcessOptions& options)
+    : options_(options),
+      robot_(load(options)),
+      bridged_cycles_(bridged_cycles(options, &robot_)),
+      reporter_(joint_names(robot_)),
+      user_plane_(user_plane_url()),
+      grant_(request_realtime(options)),
+      port_(robot_, ArmDriverOptions{options.session, options.lockstep, bridged_cycles_},
+            &user_plane_, &reporter_) {
+  port_.status().realtime_priority = grant_.fifo && grant_.locked_memory ? 1 : 0;
+}
+
+int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
+  log_start();
+  const std::string missing =
+      discover_drives(robot_, port_.buses(), options_.lockstep, options_.patience_s, stop);
+  if (stop != 0) return kExitDone;
+  if (!missing.empty()) {
+    spdlog::error("no answer for {:g} s from {}", options_.patience_s, missing);
+    return kExitFailed;
+  }
+  if (!options_.lockstep) {
+    const std::string twins = find_twins(robot_, port_.buses());
+    if (!twins.empty()) {
+      throw ConfigError(robot_.name + ": two motors answer to one id: " + twins +
+                        "; disconnect one and give it another id");
+    }
+    measure_delay();
+  }
+  const bool done = run_cycles(stop);
+  port_.publish_status();
+  reporter_.stop();
+  log_end();
+  return done ? kExitDone : kExitFailed;
+}
+
+bool DriverProcess::run_cycles(const volatile std::sig_atomic_t& stop) {
+  const RunLength length{options_.cycles, options_.duration_s};
+  if (options_.lockstep)
+    return LockstepRunner(&port_, robot_.rate_hz, options_.patience_s, length).run(stop);
+  RealtimeRunner(&port_, robot_.rate_hz, bridged_cycles_, length).run(stop);
+  return true;
+}
+
+void DriverProcess::measure_delay() {
+  const std::int64_t window_ns = port_.driver().reply_window_ns();
+  std::int64_t least_ns = 0;
+  const std::vector<RoundTrip> trips = measure_round_trips(robot_, port_.buses());
+  for (std::size_t b = 0; b < trips.size(); ++b) {
+    const RoundTrip& trip = trips[b];
+    if (trip.answered == 0) continue;
+    const std::string& name = robot_.buses[b].name;
+    spdlog::info("bus {}: round trip {:.3f} to {:.3f} ms, {} of {} answered", name,
+                 1e-6 * static_cast<double>(trip.least_ns),
+                 1e-6 * static_cast<double>(trip.longest_ns), trip.answered, kRoundTrips);
+    if (trip.least_ns > window_ns) {
+      throw ConfigError::at(
+          robot_.name, 0, "buses." + name,
+          fmt::format("a reply takes {:.2f} ms, the driver waits {:.2f} ms at {:g} Hz: every state "
+                      "would be a cycle old or more. At most {:.0f} Hz, or a faster adapter",
+                      1e-6 * static_cast<double>(trip.least_ns),
+                      1e-6 * static_cast<double>(window_ns), robot_.rate_hz,
+                      std::floor(kLatestReply * 1e9 / static_cast<double>(trip.longest_ns))));
+    }
+    least_ns = least_ns == 0 ? trip.least_ns : std::min(least_ns, trip.least_ns);
+  }
+  // Half of it: a reply that comes sooner answers the command before.
+  port_.driver().set_least_round_trip(least_ns / 2);
+}
+
+void DriverProcess::log_start() const {
+  std::string buses;
+  for (std::size_t b = 0; b < robot_.buses.size(); ++b) {
+    buses +=
+        fmt::format("{}{} = {} ({:.0f} % predicted load)", b == 0 ? "" : ", ", robot_.buses[b].name,
+                    robot_.buses[b].can, 100.0 * expected_bus_load(robot_, static_cast<int>(b)));
+  }
+  spdlog::info("{}, {} joints, {:g} Hz {}, session {}; {}; {}", robot_.name, robot_.size(),
+               robot_.rate_hz, options_.lockstep ? "in lock step" : "in real time",
+               options_.session, buses,
+               options_.lockstep ? "no clock" : text_of(grant_, options_.realtime_priority));
+}
+
+void DriverProcess::log_end() const {
+  const driver_status_t& status = port_.status();
+  std::int64_t refused = 0;
+  for (const std::int64_t count : status.commands_refused) refused += count;
+  std::int64_t lost = 0;
+  for (const std::int32_t count : status.replies_lost) lost += count;
+  spdlog::info("{} cycles; commands: {} accepted, {} refused, {} missing; replies lost: {}",
+               status.cycles, status.commands_accepted, refused, status.commands_missing, lost);
+  if (options_.lockstep) return;
+  spdlog::info(
+      "{} late and {} overrun cycles; start late by 50 %: {} us, 99 %: {} us, at most {} us; "
+      "answer after 50 %: {} us, 99 %: {} us, at most {} us",
+      status.late_cycles, status.overrun_cycles, status.lateness_p50_ns / 1000,
+      status.lateness_p99_ns / 1000, status.lateness_max_ns / 1000, status.answer_p50_ns / 1000,
+      status.answer_p99_ns / 1000, status.answer_max_ns / 1000);
+}
+
+}  // namespace limber

@@ -1,0 +1,84 @@
+#include "drivers/processes/state_reporter.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <chrono>
+
+namespace limber {
+namespace {
+
+constexpr std::array kStateNames = {"configuring", "off",  "enabling", "on",
+                                    "fallback",    "damp", "fault"};
+constexpr std::array kFaultNames = {
+    "none",
+    "controller lost",
+    "commands refused",
+    "replies lost",
+    "drive error",
+    "configuration wrong",
+    "position limit",
+    "velocity limit",
+    "bus lost",
+    "overruns",
+    "requested",
+    "replies doubled or unreadable: is another motor on this id, or a log replayed?",
+    "somebody else commands a drive of this arm: stop the other program"};
+constexpr std::uint64_t kNothing = ~std::uint64_t{0};
+
+template <typename Names>
+std::string name_in(const Names& names, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  return i < names.size() ? names[i] : "unknown";
+}
+
+}  // namespace
+
+StateReporter::StateReporter(std::vector<std::string> joints)
+    : joints_(std::move(joints)), noted_(kNothing) {
+  thread_ = std::jthread([this](const std::stop_token& stop) {
+    std::uint64_t reported = kNothing;
+    bool last_round = false;
+    while (!last_round) {
+      last_round = stop.stop_requested();
+      const std::uint64_t noted = noted_.load(std::memory_order_acquire);
+      if (noted != reported) report_changes(reported, noted);
+      reported = noted;
+      if (!last_round) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+}
+
+StateReporter::~StateReporter() = default;
+
+void StateReporter::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void StateReporter::report_changes(std::uint64_t reported, std::uint64_t noted) const {
+  const bool first_time = reported == kNothing;
+  if (first_time || (reported & ~kSensorError) != (noted & ~kSensorError)) report(noted);
+  const bool was_lost = !first_time && (reported & kSensorError) != 0;
+  const bool lost = (noted & kSensorError) != 0;
+  if (lost && !was_lost) spdlog::warn("tip sensor: does not answer, or is beyond its range");
+  if (!lost && was_lost) spdlog::info("tip sensor: back");
+}
+
+void StateReporter::report(std::uint64_t packed) const {
+  const int state = static_cast<int>(packed & 0xFF);
+  const int fault = static_cast<int>(packed >> 8 & 0xFF);
+  const auto joint = static_cast<std::size_t>(packed >> 16 & 0xFF);
+  if (fault == joint_state_t::FAULT_NONE) {
+    spdlog::info("drives: {}", name_in(kStateNames, state));
+    return;
+  }
+  const std::string where = joint < joints_.size() ? " (" + joints_[joint] + ")" : "";
+  const auto detail = static_cast<std::uint16_t>(packed >> 32U);
+  const bool told = fault_text_ && detail != 0;
+  const std::string cause = told ? ": " + fault_text_(fault, static_cast<int>(joint), detail) : "";
+  spdlog::warn("drives: {}, because of: {}{}{}", name_in(kStateNames, state),
+               name_in(kFaultNames, fault), where, cause);
+}
+
+}  // namespace limber

@@ -1,0 +1,55 @@
+// Log lines when the drives change state; the cycle itself never writes one.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limber/joint_state_t.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace limber {
+
+/// A thread of normal priority that logs changes of the state noted last.
+class StateReporter {
+ public:
+  /// `joints`: names for messages. Start it before real-time priority is requested: threads inherit
+  /// that.
+  explicit StateReporter(std::vector<std::string> joints);
+  ~StateReporter();
+  /// Reports what is left and ends the thread: before what set_fault_text() was given goes.
+  void stop();
+
+  /// ArmDriver::fault_text(); set before the first note().
+  using FaultText = std::function<std::string(int fault, int joint, std::uint16_t detail)>;
+  void set_fault_text(FaultText text) { fault_text_ = std::move(text); }
+
+  /// `detail`: ArmDriver::fault_detail(). Allowed inside the cycle.
+  void note(const joint_state_t& state, std::uint16_t detail = 0) noexcept {
+    std::uint64_t packed = pack(state.drive_state, state.fault, state.fault_joint);
+    if (state.sensor_state == joint_state_t::SENSOR_ERROR) packed |= kSensorError;
+    if (state.fault != last_fault_) fault_detail_ = detail;
+    last_fault_ = state.fault;
+    noted_.store(packed | std::uint64_t{fault_detail_} << 32U, std::memory_order_release);
+  }
+
+ private:
+  static constexpr std::uint64_t kSensorError = 1U << 24U;
+  static std::uint32_t pack(std::int8_t state, std::int8_t fault, std::int8_t joint) noexcept {
+    return static_cast<std::uint32_t>(static_cast<std::uint8_t>(state)) |
+           static_cast<std::uint32_t>(static_cast<std::uint8_t>(fault)) << 8 |
+           static_cast<std::uint32_t>(static_cast<std::uint8_t>(joint)) << 16;
+  }
+  void report(std::uint64_t packed) const;
+  void report_changes(std::uint64_t reported, std::uint64_t noted) const;
+
+  std::vector<std::string> joints_;
+  FaultText fault_text_;
+  std::int8_t last_fault_ = joint_state_t::FAULT_NONE;
+  std::uint16_t fault_detail_ = 0;  ///< when the fault began
+  std::atomic<std::uint64_t> noted_;
+  std::jthread thread_;
+};
+
+}  // namespace limber

@@ -1,0 +1,63 @@
+#include "drivers/protocols/cycle_frames.h"
+
+#include <algorithm>
+
+#include "robots/loader/protocols/drive_protocol.h"
+#include "robots/loader/protocols/tip_sensor_protocol.h"
+
+namespace limber {
+namespace {
+
+CanFrame empty_frame(std::uint32_t id, int bytes, bool fd) {
+  CanFrame frame;
+  frame.id = id;
+  frame.extended = id > kStandardIdMax;
+  frame.fd = frame.bitrate_switch = fd;
+  frame.length = static_cast<std::uint8_t>(fd ? fd_length(bytes) : std::min(bytes, 8));
+  return frame;
+}
+
+Exchange exchange_with(const std::string& joint, const DriveConfig& drive, bool fd) {
+  Exchange out{joint,
+               empty_frame(drive.command_id, drive.frames.command, fd),
+               {},
+               traits_of(drive.protocol).needs_sync};
+  std::uint32_t reply_id = drive.reply_id;
+  for (const int bytes : drive.frames.replies) {
+    out.replies.push_back(empty_frame(reply_id, bytes, fd));
+    reply_id += drive.frames.reply_step;
+  }
+  return out;
+}
+
+Exchange exchange_with(const TipSensorConfig& sensor) {
+  const TipSensorTraits& traits = traits_of(sensor.protocol);
+  Exchange out{
+      "tip sensor", empty_frame(sensor.command_id, traits.request_bytes, traits.fd), {}, false};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(traits.replies); ++i)
+    out.replies.push_back(empty_frame(sensor.reply_ids[i], traits.reply_bytes, traits.fd));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Exchange> cycle_frames(const Robot& robot, int bus) {
+  const bool fd = robot.buses[static_cast<std::size_t>(bus)].fd;
+  std::vector<Exchange> all;
+  for (const JointConfig& joint : robot.joints) {
+    for (int motor = 0; motor < joint.motors(); ++motor) {
+      if (joint.motor(motor).bus == bus)
+        all.push_back(exchange_with(joint.name, joint.motor(motor), fd));
+    }
+  }
+  if (robot.has_tip_sensor && robot.tip_sensor.bus == bus)
+    all.push_back(exchange_with(robot.tip_sensor));
+  return all;
+}
+
+void fill_typical(CanFrame* frame, std::minstd_rand* random) noexcept {
+  for (std::uint8_t& byte : frame->data)
+    byte = (*random)() % 3 == 0 ? 0 : static_cast<std::uint8_t>((*random)() >> 8U);
+}
+
+}  // namespace limber

@@ -1,0 +1,67 @@
+#include "robots/loader/address_yaml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+namespace {
+
+/// Bus and joint must fit the protocol.
+void check_protocol(const YamlMap& yaml, const DriveProtocolTraits& traits, const BusConfig& bus,
+                    JointType type) {
+  if (traits.needs_fd && !bus.fd) {
+    yaml.refuse("bus", fmt::format("'{}' is classic; {} drives need CAN-FD (fd: true)", bus.name,
+                                   traits.word));
+  }
+  if (traits.rotary_only && type == JointType::kPrismatic) {
+    yaml.refuse("motor", fmt::format("{} drives count turns: they can only move rotary joints",
+                                     traits.word));
+  }
+  refuse_foreign_keys(yaml, traits);
+}
+
+void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig& other,
+                 const std::string& owner) {
+  if (other.bus != mine.bus) return;
+  const std::string taken = fmt::format("is taken by {} on the same bus", owner);
+  const long id = yaml.integer("id", 1, 127);
+  if (uses_id(other, mine.command_id)) yaml.refuse("id", fmt::format("{} {}", id, taken));
+  const bool reply_taken = uses_id(other, mine.reply_id);
+  if (reply_taken && yaml.has("reply_id"))
+    yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
+  if (reply_taken || uses_id(mine, other.command_id) || uses_id(mine, other.reply_id))
+    yaml.refuse("id", fmt::format("{}: one of its identifiers {}", id, taken));
+}
+
+void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,
+                const DriveConfig& mine) {
+  for (std::size_t i = 0; i <= index; ++i) {
+    const JointConfig& joint = robot.joints[i];
+    if (&joint.drive != &mine && (i < index || &joint.antagonist == &mine))
+      refuse_same(yaml, mine, joint.drive, joint.name);
+    if (joint.has_antagonist && &joint.antagonist != &mine)
+      refuse_same(yaml, mine, joint.antagonist, joint.name);
+  }
+}
+
+}  // namespace
+
+void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, DriveConfig* drive) {
+  std::vector<std::string> names;
+  for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
+  const bool antagonist = drive == &robot.joints[index].antagonist;
+  const std::string bus =
+      antagonist ? yaml.word_or("bus", names, names[static_cast<std::size_t>(drive->bus)])
+                 : yaml.word("bus", names);
+  drive->bus = static_cast<int>(std::find(names.begin(), names.end(), bus) - names.begin());
+  const DriveProtocolTraits& traits = traits_of(drive->protocol);
+  check_protocol(yaml, traits, robot.buses[static_cast<std::size_t>(drive->bus)],
+                 robot.joints[index].type);
+  traits.read_ids(yaml, drive);
+  check_free(yaml, robot, index, *drive);
+}
+
+}  // namespace limber

@@ -1,0 +1,18 @@
+// The `joints:` section of robot.yaml.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "common/yaml_reader.h"
+#include "robots/loader/robot.h"
+
+namespace limber {
+
+/// Fills drives, friction, tighter limits and homes of robot->joints, whose names and limits come
+/// from the URDF and whose buses are known. Every joint must be there, no other.
+/// Throws ConfigError with every joint's complaint. Set-up only.
+void read_joints(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
+                 Robot* robot);
+
+}  // namespace limber

@@ -1,0 +1,60 @@
+// moteus: id 1 to 126. On the bus the command is 0x8000 | id, from host 0 with an answer wanted,
+// and the answer id << 8.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+namespace {
+
+constexpr const char* kMoteusKeys[] = {"pid_position", "timeout_torque_Nm"};
+constexpr std::uint32_t kNodeBits = 0x7F;
+constexpr std::uint32_t kBroadcast = 0x7F;
+
+/// Floats carry everything; kp and kd go as a share of what is configured in the drive, and are
+/// brought from turns to rad.
+void read_moteus_motor(const YamlMap& yaml, DriveConfig* drive) {
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+  const YamlMap gains = yaml.map("pid_position");
+  drive->range = {kNoEnd, kNoEnd, kNoEnd, gains.number("kp_Nm_per_turn", {1e-3, 1e5}) / kTurn_rad,
+                  gains.number("kd_Nms_per_turn", {1e-3, 1e4}) / kTurn_rad};
+  gains.finish();
+  drive->timeout_torque_Nm =
+      yaml.number_or("timeout_torque_Nm", {0.0, drive->peak_torque_Nm},
+                     std::min(drive->timeout_torque_Nm, drive->peak_torque_Nm));
+  drive->counts_per_turn = std::exp2(yaml.integer("encoder_bits", 8, 32));
+}
+
+void read_moteus_ids(const YamlMap& yaml, DriveConfig* drive) {
+  const auto id = static_cast<std::uint32_t>(yaml.integer("id", 1, 126));
+  drive->command_id = 0x8000U | id;
+  drive->reply_id = id << 8U;
+}
+
+/// A frame is for the node whose number its identifier ends in.
+bool accepts(const DriveConfig& drive, std::uint32_t id) {
+  const std::uint32_t node = id & kNodeBits;
+  return node == (drive.command_id & kNodeBits) || node == kBroadcast;
+}
+
+FrameSizes moteus_frames(const JointConfig& /*joint*/, bool /*fd*/) { return {48, {32}}; }
+
+}  // namespace
+
+const DriveProtocolTraits kMoteusTraits = {
+    .protocol = DriveProtocol::kMoteus,
+    .word = "moteus",
+    .needs_fd = true,
+    .rotary_only = true,
+    .keys = kMoteusKeys,
+    .read_motor = read_moteus_motor,
+    .read_ids = read_moteus_ids,
+    .frames = moteus_frames,
+    .accepts_id = accepts,
+};
+
+}  // namespace limber

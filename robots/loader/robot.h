@@ -1,0 +1,161 @@
+// What robot.yaml and robot.urdf say of one arm, checked, in SI. Plain data: no Eigen, no KDL, so
+// that the driver and its gate stay small. The kinematic chain itself is in robots/load_robot.h.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "robots/loader/joint_chain.h"
+#include "robots/loader/tip_sensor_config.h"
+
+namespace limber {
+
+/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME"
+/// or "socketcan:IFACE".
+/// Class of CAN adapter, see adapter.h.
+enum class CanAdapter : std::uint8_t { kNative, kUsb, kSlcan };
+
+struct BusConfig {
+  std::string name;
+  std::string can;
+  bool fd = false;
+  int bitrate_bps = 1'000'000;
+  int data_bitrate_bps = 5'000'000;  ///< FD data phase
+  CanAdapter adapter = CanAdapter::kNative;
+};
+
+/// Bytes between driver and drive; what the loaders know of each is in protocols/drive_protocol.h.
+enum class DriveProtocol : std::uint8_t { kDamiaoMit, kMoteus, kCia402 };
+
+/// What a drive's command frames can carry. MIT: the ranges both sides of the link must agree on.
+/// moteus: kp and kd are the gains configured in the drive, at scale 1; the others are infinite.
+/// CiA 402: the torque that 32767 thousandths of the rated torque are; the others are infinite.
+struct CommandRange {
+  double position_rad = 12.5;
+  double velocity_rad_per_s = 30.0;
+  double torque_Nm = 10.0;
+  double kp_Nm_per_rad = 500.0;
+  double kd_Nms_per_rad = 5.0;
+};
+
+/// Data bytes of the frames that a drive and its driver exchange in a cycle, each at its longest.
+struct FrameSizes {
+  int command = 8;
+  std::vector<int> replies = {8};
+  std::uint32_t reply_step = 0;  ///< from the identifier of one reply to that of the next
+};
+
+enum class NodeWatchdogReaction : std::uint8_t {
+  kOff,   ///< power stage off: the joint is free but for friction
+  kDamp,  ///< motor phases shorted: the joint is a passive damper
+};
+
+/// One motor with its drive. Torque, speed and inertia are given at the joint (behind the gear).
+struct DriveConfig {
+  std::string motor;  ///< model name, for messages only
+  DriveProtocol protocol = DriveProtocol::kDamiaoMit;
+  int bus = 0;                   ///< index into Robot::buses
+  std::uint32_t command_id = 0;  ///< on the bus; 29 bits long above 0x7FF
+  std::uint32_t reply_id = 0;    ///< likewise
+  FrameSizes frames;             ///< of a cycle
+  double sign = 1.0;             ///< +1 or -1: joint angle = sign * (drive angle - offset)
+  double offset_rad = 0.0;       ///< drive angle at joint zero
+  CommandRange range;
+  double gear_ratio = 1.0;
+  double rotor_inertia_kgm2 = 0.0;        ///< reflected: rotor inertia times gear ratio squared (B)
+  double torque_constant_Nm_per_A = 1.0;  ///< at the joint
+  double peak_torque_Nm = 0.0;            ///< current limit of the drive, as torque at the joint
+  double short_circuit_damping_Nms = 0.0;  ///< joint damping with shorted phases (kDamp)
+  double watchdog_s = 0.02;                ///< written to the drive
+  NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
+  double timeout_torque_Nm = 5.0;    ///< moteus: most that brakes the joint after a time-out
+  double rated_torque_Nm = 1.0;      ///< CiA 402: torques count in thousandths of it (6076h)
+  double counts_per_turn = 16384.0;  ///< motor encoder, per joint revolution
+  ActuatorConfig actuator;           ///< what makes torque of the command; for the simulator
+  double hold_kp_Nm_per_rad = 0.0;   ///< driver's own holding when the controller is lost
+  double hold_kd_Nms_per_rad = 0.0;
+};
+
+enum class JointType : std::uint8_t { kRevolute, kContinuous, kPrismatic };
+
+/// One moving joint between base and tip, in order. Limits are the tighter of URDF and YAML.
+/// Units in names hold for rotary joints; for prismatic joints read m, m/s, N.
+struct JointConfig {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  double position_min = 0.0;  ///< -inf for continuous joints
+  double position_max = 0.0;
+  double velocity_limit = 0.0;  ///< rad/s
+  double torque_limit_Nm = 0.0;
+  double torque_rate_limit_Nm_per_s =
+      0.0;  ///< what the gate lets pass from cycle to cycle, times the rate
+  double home = 0.0;
+  DriveConfig drive;
+  bool has_antagonist = false;
+  DriveConfig antagonist;  ///< second motor of an antagonistic joint; counts only if there is one
+  TransmissionConfig transmission;
+  FrictionConfig friction;       ///< of each motor, before the transmission
+  FrictionConfig link_friction;  ///< behind it
+  EncoderErrors motor_encoder;   ///< its counts are DriveConfig::counts_per_turn
+  LinkEncoderConfig link_encoder;
+  TorqueSensorConfig torque_sensor;
+  TorqueLoopConfig torque_loop;
+
+  int motors() const { return has_antagonist ? 2 : 1; }
+  /// The drive of motor 0 or 1.
+  const DriveConfig& motor(int index) const { return index == 0 ? drive : antagonist; }
+  bool rigid() const { return transmission.kind == TransmissionKind::kRigid; }
+  /// Rotor inertia behind the gear as it seems behind the drive's torque loop (B_theta), kg m^2.
+  double apparent_rotor_inertia_kgm2() const {
+    return drive.rotor_inertia_kgm2 / torque_loop.inertia_ratio;
+  }
+};
+
+/// Gains a robot starts with.
+struct DefaultGains {
+  std::vector<double> K_q;  ///< N m/rad, joint impedance and HOLD
+  double joint_damping_ratio = 0.7;
+  double K_x_translation_N_per_m = 500.0;
+  double K_x_rotation_Nm_per_rad = 20.0;
+  double damping_ratio = 0.7;
+  std::vector<double> K_null;  ///< N m/rad
+  std::vector<double> D_null;  ///< N m s/rad
+};
+
+struct Robot {
+  std::string name;
+  std::string folder;  ///< where robot.yaml lies; empty for a bare URDF
+  std::string urdf_path;
+  std::string base;
+  std::string tip;
+  double gravity[3] = {0.0, 0.0, -9.81};  ///< m/s^2 in axes of the base link
+  double rate_hz = 1000.0;
+  /// Net power the motors may put into the arm; infinite: no limit.
+  double power_limit_W = std::numeric_limits<double>::infinity();
+  std::vector<BusConfig> buses;
+  std::vector<JointConfig> joints;
+  DefaultGains gains;
+  bool has_drives = false;  ///< false for a bare URDF: fit for `check` and `eval`, not for running
+  bool has_tip_sensor = false;
+  TipSensorConfig tip_sensor;  ///< counts only if there is one
+
+  int size() const { return static_cast<int>(joints.size()); }
+  int motors() const {
+    int count = 0;
+    for (const JointConfig& joint : joints) count += joint.motors();
+    return count;
+  }
+
+  /// Every bus is limber's own user-space one: as punctual as this machine's scheduler, not as a
+  /// wire.
+  bool on_virtual_buses() const {
+    for (const BusConfig& bus : buses) {
+      if (bus.can.rfind("virtual:", 0) != 0) return false;
+    }
+    return !buses.empty();
+  }
+};
+
+}  // namespace limber

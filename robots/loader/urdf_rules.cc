@@ -1,0 +1,182 @@
+#include "robots/loader/urdf_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <sstream>
+
+#include "common/parse_number.h"
+#include "common/suggest.h"
+
+namespace limber {
+namespace {
+
+using tinyxml2::XMLElement;
+
+/// No joint limit or mounting angle is two turns; 90 or 180 is.
+constexpr double kLargestAngle_rad = 4.0 * std::numbers::pi;
+
+struct NumberRule {
+  const char* element;
+  const char* attribute;
+  std::size_t count;
+  bool required;
+};
+
+constexpr NumberRule kNumberRules[] = {
+    {"origin", "xyz", 3, false},
+    {"origin", "rpy", 3, false},
+    {"mass", "value", 1, true},
+    {"inertia", "ixx", 1, true},
+    {"inertia", "ixy", 1, true},
+    {"inertia", "ixz", 1, true},
+    {"inertia", "iyy", 1, true},
+    {"inertia", "iyz", 1, true},
+    {"inertia", "izz", 1, true},
+    {"axis", "xyz", 3, true},
+    {"limit", "lower", 1, false},
+    {"limit", "upper", 1, false},
+    {"limit", "effort", 1, true},
+    {"limit", "velocity", 1, true},
+    {"dynamics", "damping", 1, false},
+    {"dynamics", "friction", 1, false},
+    {"mimic", "multiplier", 1, false},
+    {"mimic", "offset", 1, false},
+    {"safety_controller", "soft_lower_limit", 1, false},
+    {"safety_controller", "soft_upper_limit", 1, false},
+    {"safety_controller", "k_position", 1, false},
+    {"safety_controller", "k_velocity", 1, false},
+    {"calibration", "rising", 1, false},
+    {"calibration", "falling", 1, false},
+    {"box", "size", 3, true},
+    {"cylinder", "radius", 1, true},
+    {"cylinder", "length", 1, true},
+    {"sphere", "radius", 1, true},
+    {"mesh", "scale", 3, false},
+    {"color", "rgba", 4, true},
+};
+
+/// Elements whose attributes are all in the table: another name there is a slip that would be
+/// ignored.
+constexpr const char* kClosedElements[] = {"origin", "mass", "inertia", "axis", "limit"};
+/// Simulators keep figures of their own here, as "mu_viscous"; what is close to ours is a slip.
+constexpr const char* kSharedElement = "dynamics";
+/// Elements that may stand only once in their parent: the library reads the first.
+constexpr const char* kSingleElements[] = {"origin", "mass",  "inertia",  "axis",  "limit",
+                                           "parent", "child", "inertial", "mimic", "dynamics"};
+/// What may stand below <link> and <joint>; something close to one of these is a slip.
+const std::vector<std::string> kLinkChildren = {"inertial", "visual", "collision"};
+const std::vector<std::string> kJointChildren = {
+    "origin",     "parent", "child", "axis", "limit", "mimic", "dynamics", "safety_controller",
+    "calibration"};
+const std::vector<std::string> kInertialChildren = {"origin", "mass", "inertia"};
+
+template <std::size_t n>
+bool is_one_of(const char* name, const char* const (&names)[n]) {
+  return std::any_of(std::begin(names), std::end(names),
+                     [&](const char* other) { return std::strcmp(name, other) == 0; });
+}
+
+std::string quote(const char* text) {
+  constexpr std::size_t kLongest = 40;
+  const std::string_view all(text);
+  return fmt::format("\"{}{}\"", all.substr(0, kLongest), all.size() > kLongest ? "..." : "");
+}
+
+void check_angle(const XMLElement& element, const char* attribute, const std::string& where,
+                 Complaints* complaints) {
+  for (const double angle : attribute_numbers(element, attribute)) {
+    if (std::abs(angle) <= kLargestAngle_rad) continue;
+    complaints->add(element.GetLineNum(), where,
+                    fmt::format("<{}> {}: {} rad is more than two turns; are these degrees?",
+                                element.Name(), attribute, angle));
+  }
+}
+
+void check_number(const XMLElement& element, const NumberRule& rule, const std::string& where,
+                  Complaints* complaints) {
+  const char* text = element.Attribute(rule.attribute);
+  const std::string place = fmt::format("<{}> {}", element.Name(), rule.attribute);
+  if (text == nullptr) {
+    if (rule.required) complaints->add(element.GetLineNum(), where, place + " is missing");
+    return;
+  }
+  if (attribute_numbers(element, rule.attribute).size() == rule.count) return;
+  const std::string what =
+      rule.count == 1 ? "a finite number" : fmt::format("{} finite numbers", rule.count);
+  complaints->add(element.GetLineNum(), where,
+                  fmt::format("{}: {} is not {}", place, quote(text), what));
+}
+
+void check_attribute_names(const XMLElement& element, const std::string& where,
+                           Complaints* complaints) {
+  const bool shared = std::strcmp(element.Name(), kSharedElement) == 0;
+  if (!shared && !is_one_of(element.Name(), kClosedElements)) return;
+  std::vector<std::string> allowed;
+  for (const NumberRule& rule : kNumberRules) {
+    if (std::strcmp(rule.element, element.Name()) == 0) allowed.push_back(rule.attribute);
+  }
+  for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
+    if (std::find(allowed.begin(), allowed.end(), attribute->Name()) != allowed.end()) continue;
+    if (shared && nearest_word(attribute->Name(), allowed).empty()) continue;
+    complaints->add(attribute->GetLineNum(), where,
+                    fmt::format("<{}>: unknown attribute '{}'; allowed here: {}", element.Name(),
+                                attribute->Name(), joined(allowed)));
+  }
+}
+
+void check_children(const XMLElement& element, const std::string& where, Complaints* complaints) {
+  const std::string name = element.Name();
+  const std::vector<std::string>* known = name == "link"       ? &kLinkChildren
+                                          : name == "joint"    ? &kJointChildren
+                                          : name == "inertial" ? &kInertialChildren
+                                                               : nullptr;
+  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    const std::string tag = child->Name();
+    if (is_one_of(child->Name(), kSingleElements) &&
+        element.FirstChildElement(child->Name()) != child) {
+      complaints->add(child->GetLineNum(), where, fmt::format("<{}> is here twice", tag));
+    }
+    if (known == nullptr || std::find(known->begin(), known->end(), tag) != known->end()) continue;
+    const std::string near = nearest_word(tag, *known);
+    if (near.empty()) continue;
+    complaints->add(child->GetLineNum(), where,
+                    fmt::format("<{}>: unknown element; did you mean <{}>?", tag, near));
+  }
+}
+
+}  // namespace
+
+std::vector<double> attribute_numbers(const XMLElement& element, const char* attribute) {
+  const char* text = element.Attribute(attribute);
+  std::istringstream words(text == nullptr ? "" : text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    const auto number = parse_number(word);
+    if (!number) return {};
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+double attribute_number(const XMLElement& element, const char* attribute, double otherwise) {
+  const auto numbers = attribute_numbers(element, attribute);
+  return numbers.empty() ? otherwise : numbers.front();
+}
+
+void check_urdf_numbers(const XMLElement& top, const std::string& where, Complaints* complaints) {
+  for (const NumberRule& rule : kNumberRules) {
+    if (std::strcmp(rule.element, top.Name()) == 0) check_number(top, rule, where, complaints);
+  }
+  check_angle(top, "rpy", where, complaints);
+  check_attribute_names(top, where, complaints);
+  check_children(top, where, complaints);
+  // The parser refuses nesting deeper than 100, so this recursion is bounded.
+  for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement())
+    check_urdf_numbers(*child, where, complaints);
+}
+
+}  // namespace limber

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "common/complaints.h"
+#include "common/yaml_reader.h"
+#include "robots/loader/default_gains.h"
+#include "scenarios/loader/entry_yaml.h"
+#include "scenarios/loader/scenario.h"
+#include "scenarios/loader/values_yaml.h"
+
+namespace limber {
+namespace {
+
+constexpr const char* kFormat = "limber-scenario/1";
+// Requests of a file that makes none: time to see the drives answer, then time to hold still.
+constexpr std::int64_t kHoldAt_ns = 300'000'000;
+constexpr std::int64_t kActiveAt_ns = 800'000'000;
+
+std::vector<double> read_start(const YamlMap& yaml, const Robot& robot) {
+  std::vector<double> start;
+  for (const JointConfig& joint : robot.joints) start.push_back(joint.home);
+  if (!yaml.has("start_q")) return start;
+  read_joint_pose(yaml, "start_q", robot, start.data());
+  return start;
+}
+
+double read_step(const YamlMap& yaml, double rate_hz) {
+  const double step_s = yaml.number_or("step_s", {1e-6, 0.1}, Scenario().step_s);
+  const double steps = 1.0 / (rate_hz * step_s);
+  if (!(steps >= 0.5 && std::abs(steps - std::round(steps)) <= 1e-6 * steps)) {
+    yaml.refuse("step_s", fmt::format("{} s: a whole number of steps must make the control period "
+                                      "of {} s",
+                                      step_s, 1.0 / rate_hz));
+  }
+  return step_s;
+}
+
+/// Same joints, same buses: only what an arm is like may differ.
+LoadedRobot read_reality(const YamlMap& yaml, const LoadedRobot& robot) {
+  for (const char* key : {"format", "name", "base", "tip", "rate_hz", "buses", "watchdog"}) {
+    if (yaml.has(key)) yaml.refuse(key, "cannot differ between robot.yaml and reality");
+  }
+  return load_reality(robot.robot.folder, yaml);
+}
+
+WireOptions read_wire(const YamlMap& yaml, std::uint64_t seed) {
+  WireOptions wire{.on = true, .seed = seed};
+  if (!yaml.has("wire")) return wire;
+  if (!yaml.is_map("wire")) {
+    wire.on = yaml.boolean_or("wire", true);
+    return wire;
+  }
+  const YamlMap given = yaml.map("wire");
+  wire.loss = given.number_or("loss", {0.0, 1.0}, 0.0);
+  wire.corruption = given.number_or("corruption", {0.0, 1.0}, 0.0);
+  given.finish();
+  return wire;
+}
+
+void set_seq(std::int64_t seq, std::int64_t time_ns, ScenarioMessage* message) {
+  std::visit(
+      [&](auto& typed) {
+        typed.seq = seq;
+        typed.time_ns = time_ns;
+      },
+      *message);
+}
+
+std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& robot,
+                                        const LawCatalog* laws, double duration_s) {
+  std::vector<TimedMessage> timeline;
+  EntryContext context{robot, laws, duration_s, default_gains(robot.robot)};
+  context.gains.client = kScenarioClient;
+  bool asks_for_mode = false;
+  Complaints complaints(yaml.file());
+  if (yaml.has("timeline")) {
+    for (const YamlMap& entry : yaml.maps("timeline")) {
+      asks_for_mode = asks_for_mode || entry.has("mode");
+      complaints.collect([&] {
+        if (auto timed = read_entry(entry, &context)) timeline.push_back(std::move(*timed));
+      });
+    }
+  }
+  complaints.throw_if_any();
+  if (!asks_for_mode) {
+    timeline.push_back({kHoldAt_ns, mode_request(mode_request_t::REQUEST_HOLD)});
+    timeline.push_back({kActiveAt_ns, mode_request(mode_request_t::REQUEST_ACTIVE)});
+  }
+  std::stable_sort(timeline.begin(), timeline.end(),
+                   [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
+  std::int64_t seq = 0;
+  for (TimedMessage& timed : timeline) set_seq(++seq, timed.time_ns, &timed.message);
+  return timeline;
+}
+
+}  // namespace
+
+std::string scenario_robot(const std::string& path) {
+  const YamlMap yaml = YamlMap::from_file(path);
+  yaml.word("format", {kFormat});
+  std::string robot = yaml.text("robot");
+  const bool is_name = robot.find('/') == std::string::npos && !robot.starts_with('.');
+  if (is_name || robot.starts_with('/')) return robot;
+  return (std::filesystem::path(path).parent_path() / robot).lexically_normal();
+}
+
+Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
+  const YamlMap yaml = YamlMap::from_file(path);
+  yaml.word("format", {kFormat});
+  Scenario scenario;
+  scenario.path = path;
+  scenario.name = yaml.text_or("name", std::filesystem::path(path).stem());
+  yaml.text_or("description", "-");
+  scenario.robot = yaml.text("robot");
+  scenario.lockstep = yaml.word_or("mode", {"lockstep", "realtime"}, "lockstep") == "lockstep";
+  scenario.duration_s = yaml.number("duration_s", {0.01, 86'400.0});
+  scenario.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 1L << 53, 1));
+  scenario.integrator = yaml.word_or("integrator", {"ode", "reference"}, "ode") == "ode"
+                            ? Integrator::kOde
+                            : Integrator::kReference;
+  scenario.step_s = read_step(yaml, robot.robot.rate_hz);
+  scenario.friction = yaml.boolean_or("friction", true);
+  scenario.wire = read_wire(yaml, scenario.seed);
+  scenario.stand = yaml.boolean_or("stand", true);
+  if (yaml.has("reality")) scenario.reality = read_reality(yaml.map("reality"), robot);
+  scenario.start_q = read_start(yaml, robot.robot);
+  if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
+    yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");
+  yaml.has("timeline");
+  yaml.finish();
+  scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);
+  return scenario;
+}
+
+}  // namespace limber

@@ -1,0 +1,53 @@
+#include "sim/nodes/arm_nodes.h"
+
+#include <limits>
+
+namespace limber::sim {
+
+ArmNodes::ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm)
+    : motors_(robot, reality) {
+  if (reality.has_tip_sensor) tip_sensor_.emplace(reality.tip_sensor, arm.body());
+}
+
+void ArmNodes::receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
+                       BusSide* out) noexcept {
+  motors_.receive(bus, frame, arm.forces(), arm.state(), now_ns, out);
+  if (!tip_sensor_ || tip_sensor_->bus != bus) return;
+  for (const CanFrame& answer : tip_sensor_->node.receive(frame)) {
+    out->send(motors_.size(), answer, now_ns);
+  }
+}
+
+void ArmNodes::update(const SimulatedArm& arm, double h, std::int64_t now_ns,
+                      std::vector<BusSide>* buses) noexcept {
+  motors_.update(arm.forces(), arm.state(), h, now_ns, buses);
+  update_tip_sensor(arm, h, now_ns);
+}
+
+void ArmNodes::update_tip_sensor(const SimulatedArm& arm, double h, std::int64_t now_ns) noexcept {
+  if (tip_sensor_) tip_sensor_->update(arm.body(), arm.environment(), h, now_ns);
+}
+
+void ArmNodes::set_payload(const SimulatedArm& arm, double mass,
+                           const Eigen::Vector3d& p_TL) noexcept {
+  if (tip_sensor_) tip_sensor_->load.set_payload(arm.body(), mass, p_TL);
+}
+
+void ArmNodes::inject(const NodeFault& fault, const SimulatedArm& arm,
+                      std::int64_t now_ns) noexcept {
+  constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t until_ns =
+      fault.duration_ns > kForEver - now_ns ? kForEver : now_ns + fault.duration_ns;
+  if (fault.joint == scenario_event_t::NODE_TIP_SENSOR) {
+    tip_sensor_->node.silence(until_ns);
+  } else {
+    motors_.inject(fault.joint, fault.fault, arm.forces(), arm.state(), until_ns);
+  }
+}
+
+void ArmNodes::clear_faults() noexcept {
+  motors_.clear_faults();
+  if (tip_sensor_) tip_sensor_->node.clear_faults();
+}
+
+}  // namespace limber::sim

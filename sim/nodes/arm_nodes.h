@@ -1,0 +1,51 @@
+// Everything of the arm that is on a bus: its drives and its tip sensor.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim/nodes/motor_nodes.h"
+#include "sim/nodes/tip_sensor.h"
+#include "sim/plant/simulated_arm.h"
+#include "sim/world/world_event.h"
+
+namespace limber::sim {
+
+/// After construction every member but steps_per_period() is allowed in the cycle.
+class ArmNodes {
+ public:
+  /// `robot` is how the drives are configured, `reality` the arm with its sensors. Throws
+  /// ConfigError.
+  ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm);
+
+  /// See MotorNodes. Throws ConfigError. Set-up only.
+  std::int64_t steps_per_period(double rate_hz, double step_s) const {
+    return motors_.steps_per_period(rate_hz, step_s);
+  }
+
+  /// Senders beside the driver: the motors, then the tip sensor.
+  int size() const noexcept { return motors_.size() + 1; }
+  /// Hands a frame from a bus to its nodes and sends their answers there.
+  void receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
+               BusSide* out) noexcept;
+  /// After an integration step of h seconds: sensors, loops, watchdogs, unsolicited frames.
+  void update(const SimulatedArm& arm, double h, std::int64_t now_ns,
+              std::vector<BusSide>* buses) noexcept;
+  void update_tip_sensor(const SimulatedArm& arm, double h, std::int64_t now_ns) noexcept;
+
+  /// Hands the torque laws at work to the motors.
+  void command(ForceModel* forces) const noexcept { motors_.command(forces); }
+  bool all_enabled() const noexcept { return motors_.all_enabled(); }
+  bool has_tip_sensor() const noexcept { return tip_sensor_.has_value(); }
+
+  /// The tip sensor's mechanics carry the payload, too.
+  void set_payload(const SimulatedArm& arm, double mass, const Eigen::Vector3d& p_TL) noexcept;
+  void inject(const NodeFault& fault, const SimulatedArm& arm, std::int64_t now_ns) noexcept;
+  void clear_faults() noexcept;
+
+ private:
+  MotorNodes motors_;
+  std::optional<TipSensor> tip_sensor_;
+};
+
+}  // namespace limber::sim

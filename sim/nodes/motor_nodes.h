@@ -1,0 +1,64 @@
+// The drives of the arm: a node a motor, what its sensors see, and its bus.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "robots/loader/robot.h"
+#include "sim/joints/encoder.h"
+#include "sim/joints/torque_sensor.h"
+#include "sim/nodes/motor_node.h"
+#include "sim/plant/force_model.h"
+#include "sim/wire/bus_side.h"
+
+namespace limber::sim {
+
+/// After construction every member but steps_per_period() is allowed in the cycle. The force model
+/// gives the motor torques at a state of the arm.
+class MotorNodes {
+ public:
+  /// `robot` is how the drives are configured, `reality` the arm with its sensors.
+  MotorNodes(const Robot& robot, const Robot& reality);
+
+  /// The fewest integration steps no longer than step_s of which a whole number makes a control
+  /// period, and another the period of every sampled loop in the drives. Throws ConfigError if
+  /// there is none within a thousand times as many.
+  std::int64_t steps_per_period(double rate_hz, double step_s) const;
+
+  int size() const noexcept { return static_cast<int>(nodes_.size()); }
+  /// Hands a frame from a bus to its nodes and sends their answers there.
+  void receive(int bus, const CanFrame& frame, const ForceModel& forces, const ArmState& x,
+               std::int64_t now_ns, BusSide* out) noexcept;
+  /// After an integration step of h seconds: sensors, loops, watchdogs, then unsolicited
+  /// frames.
+  void update(const ForceModel& forces, const ArmState& x, double h, std::int64_t now_ns,
+              std::vector<BusSide>* buses) noexcept;
+  /// Takes over the torque laws at work.
+  void command(ForceModel* forces) const noexcept;
+
+  bool all_enabled() const noexcept;
+  /// On all motors of a joint.
+  void inject(int joint, int fault, const ForceModel& forces, const ArmState& x,
+              std::int64_t until_ns) noexcept;
+  void clear_faults() noexcept;
+
+ private:
+  struct Node {
+    std::unique_ptr<MotorNode> motor;
+    int bus;
+    int joint;
+    bool senses_torque;
+  };
+  void add(const JointConfig& joint, int index, const Robot& robot);
+  JointReading reading(int motor, const ForceModel& forces, const ArmState& x) const noexcept;
+  void send_pending(int motor, std::int64_t now_ns, BusSide* out) noexcept;
+
+  std::vector<Node> nodes_;                   // in the order of the motors
+  std::vector<Encoder> motor_encoders_;       // likewise
+  std::vector<Encoder> link_encoders_;        // one a joint
+  std::vector<TorqueSensor> torque_sensors_;  // likewise
+};
+
+}  // namespace limber::sim

@@ -1,0 +1,202 @@
+#include "sim/plant/force_model.h"
+
+namespace limber::sim {
+
+ForceModel::ForceModel(const Robot& robot, const Robot& believed, bool friction)
+    : size_(robot.size()),
+      link_friction_(VectorJ::Zero(size_)),
+      stop_torque_(VectorJ::Zero(size_)),
+      tau_(VectorJ::Zero(size_)),
+      inertia_(VectorJ::Zero(size_)),
+      qdd_(VectorJ::Zero(size_)),
+      v_guess_(VectorJ::Zero(size_)),
+      v_end_(VectorJ::Zero(size_)) {
+  for (int i = 0; i < size_; ++i) {
+    const JointConfig& joint = robot.joints[i];
+    if (friction) {
+      friction_[i] = LugreFriction(joint.link_friction, joint.drive.rotor_inertia_kgm2);
+    }
+    stops_[i] = EndStop(joint);
+    first_motor_[i] = motor_count_;
+    for (int number = 0; number < joint.motors(); ++number) {
+      const JointConfig& known = believed.joints[i];
+      const DriveConfig& drive = number == 0 ? known.drive : known.antagonist;
+      joint_of_[motor_count_] = i;
+      motors_[motor_count_++] = Motor(joint, number, drive.torque_constant_Nm_per_A, friction);
+    }
+  }
+  theta_dot_guess_ = theta_dot_end_ = theta_ddot_ = drive_ = VectorM::Zero(motor_count_);
+}
+
+void ForceModel::set_stands_left(double left) noexcept {
+  for (Stand& stand : stands) stand.set_left(left);
+  for (Motor& motor : motors_) motor.stand.set_left(left);
+}
+
+AffineForce ForceModel::passive_force(int joint, double q, double v, double v_guess,
+                                      double h) const noexcept {
+  const AffineForce friction = friction_[joint].step_force(v, v_guess, h);
+  const AffineForce stop = stops_[joint].step_force(q, h);
+  const AffineForce stand = stands[joint].step_force(q, h);
+  return {friction.offset + stop.offset + stand.offset, friction.slope + stop.slope + stand.slope};
+}
+
+void ForceModel::soften_wall(ArticulatedBody* arm, double h) noexcept {
+  constexpr double kNear_m = 0.01;
+  Wall& wall = environment.wall;
+  if (!(wall.stiffness > 0.0) || wall.depth(arm->link_position(arm->tip())) < -kNear_m) return;
+  wall.limit_to(arm->tip_mobility(wall.normal), h);
+}
+
+bool ForceModel::couple_passive(const ArmState& x, double h) noexcept {
+  bool passive = false;
+  for (int i = 0; i < size_; ++i) {
+    const AffineForce force = passive_force(i, x.q[i], x.v[i], v_guess_[i], h);
+    tau_[i] = -force.offset - force.slope * x.v[i];
+    inertia_[i] = h * force.slope;
+    passive = passive || force.offset != 0.0 || force.slope != 0.0;
+  }
+  for (int k = 0; k < motor_count_; ++k) {
+    couplings_[k] = motors_[k].couple(point(x, k), theta_dot_guess_[k], h);
+    tau_[joint_of_[k]] += couplings_[k].link_torque();
+    inertia_[joint_of_[k]] += couplings_[k].link_inertia();
+    passive = passive || motors_[k].passive();
+  }
+  return passive;
+}
+
+void ForceModel::begin_step(ArticulatedBody* arm, const ArmState& x, double h,
+                            std::int64_t t_ns) noexcept {
+  constexpr int kIterations = 3;
+  t_ns_ = t_ns;
+  soften_wall(arm, h);
+  apply_environment(arm);
+  for (int k = 0; k < motor_count_; ++k) motors_[k].begin_step(drives[k], point(x, k), h);
+  v_end_ = x.v;
+  theta_dot_end_ = x.theta_dot;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    v_guess_ = v_end_;
+    theta_dot_guess_ = theta_dot_end_;
+    if (!couple_passive(x, h)) break;
+    arm->accelerations(tau_, inertia_, &qdd_);
+    motor_accelerations(qdd_, &theta_ddot_);
+    v_end_ = x.v + h * qdd_;
+    theta_dot_end_ = x.theta_dot + h * theta_ddot_;
+  }
+  finish_step(x, h);
+}
+
+void ForceModel::finish_step(const ArmState& x, double h) noexcept {
+  for (int i = 0; i < size_; ++i) {
+    link_friction_[i] = -friction_[i].finish_step(x.v[i], v_guess_[i], v_end_[i], h);
+    stop_torque_[i] =
+        stops_[i].torque(x.q[i], v_end_[i], h) + stands[i].torque(x.q[i], v_end_[i], h);
+  }
+  for (int k = 0; k < motor_count_; ++k) {
+    motors_[k].finish_step(point(x, k), theta_dot_guess_[k], theta_dot_end_[k], h);
+  }
+}
+
+void ForceModel::evaluate(ArticulatedBody* arm, const ArmState& x, ArmTorque* tau,
+                          Work* power) const noexcept {
+  *power = {};
+  power->external = apply_environment(arm) + stop_torque_.dot(x.v);
+  power->friction = link_friction_.dot(x.v);
+  tau->link = link_friction_ + stop_torque_;
+  for (int k = 0; k < motor_count_; ++k) {
+    const Motor& motor = motors_[k];
+    const MotorPoint at = point(x, k);
+    const double drive = motor.torque(at);
+    const double net = drive + motor.friction_torque() + motor.stand_torque();
+    power->motor += drive * at.theta_dot;
+    power->friction += motor.friction_torque() * at.theta_dot;
+    power->external += motor.stand_torque() * at.theta_dot;
+    if (motor.rigid()) {
+      tau->link[joint_of_[k]] += net;
+      tau->motor[k] = 0.0;
+    } else {
+      const double transmitted = motor.transmitted(at);
+      tau->link[joint_of_[k]] += motor.side() * transmitted;
+      tau->motor[k] = net - transmitted;
+      power->friction -= motor.damper_power(at);
+    }
+  }
+}
+
+void ForceModel::couple(const ArmState& x, double h, VectorJ* tau, VectorJ* inertia) noexcept {
+  *tau = link_friction_ + stop_torque_;
+  inertia->setZero();
+  for (int k = 0; k < motor_count_; ++k) {
+    const MotorPoint at = point(x, k);
+    drive_[k] = motors_[k].torque(at);
+    couplings_[k] = motors_[k].coupling(at, h);
+    (*tau)[joint_of_[k]] += couplings_[k].link_torque();
+    (*inertia)[joint_of_[k]] += couplings_[k].link_inertia();
+  }
+}
+
+void ForceModel::motor_accelerations(const VectorJ& qdd, VectorM* out) const noexcept {
+  for (int k = 0; k < motor_count_; ++k) {
+    (*out)[k] = couplings_[k].acceleration(qdd[joint_of_[k]]);
+  }
+}
+
+Work ForceModel::step_power(const ArmState& x, const VectorM& theta_ddot) const noexcept {
+  Work power;
+  power.external = stop_torque_.dot(x.v);
+  power.friction = link_friction_.dot(x.v);
+  for (int k = 0; k < motor_count_; ++k) {
+    const Motor& motor = motors_[k];
+    power.motor += (drive_[k] - couplings_[k].servo * theta_ddot[k]) * x.theta_dot[k];
+    power.friction += motor.friction_torque() * x.theta_dot[k] - motor.damper_power(point(x, k));
+    power.external += motor.stand_torque() * x.theta_dot[k];
+  }
+  return power;
+}
+
+VectorJ ForceModel::friction_torque() const noexcept {
+  VectorJ out = link_friction_;
+  for (int k = 0; k < motor_count_; ++k) {
+    out[joint_of_[k]] += motors_[k].side() * motors_[k].friction_torque();
+  }
+  return out;
+}
+
+double ForceModel::bristle_energy() const noexcept {
+  double energy = 0.0;
+  for (const LugreFriction& friction : friction_) energy += friction.bristle_energy();
+  for (const Motor& motor : motors_) energy += motor.bristle_energy();
+  return energy;
+}
+
+double ForceModel::elastic_energy(const ArmState& x) const noexcept {
+  double energy = 0.0;
+  for (int k = 0; k < motor_count_; ++k) energy += motors_[k].elastic_energy(point(x, k));
+  return energy;
+}
+
+double ForceModel::spring_torque(const ArmState& x, int joint) const noexcept {
+  double torque = 0.0;
+  for (int k = first_motor(joint); k < end_motor(joint); ++k) {
+    torque += motors_[k].side() * motors_[k].spring_torque(point(x, k));
+  }
+  return torque;
+}
+
+double ForceModel::joint_torque(const ArmState& x, int joint) const noexcept {
+  double torque = 0.0;
+  for (int k = first_motor(joint); k < end_motor(joint); ++k) {
+    torque += motors_[k].side() * motors_[k].torque_behind(point(x, k));
+  }
+  return torque;
+}
+
+double ForceModel::joint_stiffness(const ArmState& x, int joint) const noexcept {
+  double stiffness = 0.0;
+  for (int k = first_motor(joint); k < end_motor(joint); ++k) {
+    stiffness += motors_[k].stiffness(point(x, k));
+  }
+  return stiffness;
+}
+
+}  // namespace limber::sim

@@ -1,0 +1,54 @@
+#include "sim/processes/sim_port.h"
+
+#include <spdlog/spdlog.h>
+
+#include "common/clock.h"
+
+namespace limber::sim {
+namespace {
+
+constexpr std::int64_t kComplaintInterval_ns = 1'000'000'000;
+constexpr int kUserQueue = 100;  // a push or an event now and then
+
+std::vector<std::unique_ptr<CanBus>> open_buses(const Robot& robot) {
+  std::vector<std::unique_ptr<CanBus>> buses;
+  for (const BusConfig& bus : robot.buses) buses.push_back(open_can_bus(bus.can, bus.fd));
+  return buses;
+}
+
+std::vector<CanBus*> pointers(const std::vector<std::unique_ptr<CanBus>>& buses) {
+  std::vector<CanBus*> out;
+  for (const auto& bus : buses) out.push_back(bus.get());
+  return out;
+}
+
+}  // namespace
+
+SimPort::SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* timeline,
+                 const SimulatorOptions& options)
+    : buses_(open_buses(robot.robot)),
+      simulator_(robot, pointers(buses_), options),
+      user_(user_plane_url()) {
+  simulator_.set_timeline(timeline);
+  for (const auto& bus : buses_) descriptors_.push_back(bus->descriptor());
+  descriptors_.push_back(user_.descriptor());
+  user_.subscribe<push_t>(channels::kPush, kUserQueue, [this](const push_t& push) {
+    if (!simulator_.push(push)) complain("a PUSH was refused (values, link, or no free slot)");
+  });
+  user_.subscribe<scenario_event_t>(
+      channels::kScenarioEvent, kUserQueue, [this](const scenario_event_t& event) {
+        if (!simulator_.event(event))
+          complain("a SCENARIO_EVENT was refused (values out of range)");
+      });
+}
+
+void SimPort::publish_truth() noexcept { user_.publish(channels::kSimTruth, simulator_.truth()); }
+
+void SimPort::complain(const char* what) {
+  const std::int64_t now_ns = monotonic_ns();
+  if (complained_ns_ != 0 && now_ns - complained_ns_ < kComplaintInterval_ns) return;
+  complained_ns_ = now_ns;
+  spdlog::warn("{}", what);
+}
+
+}  // namespace limber::sim

@@ -1,0 +1,51 @@
+// The simulator's ends: CAN buses on one side, the user plane of LCM on the other.
+#pragma once
+
+#include <cstdint>
+#include <limber/joint_state_t.hpp>
+#include <memory>
+#include <vector>
+
+#include "common/lcm_port.h"
+#include "drivers/can/can_bus.h"
+#include "lcmtypes/channels.h"
+#include "sim/simulator.h"
+
+namespace limber::sim {
+
+/// Publishes SIM_TRUTH; hands PUSH and SCENARIO_EVENT to the simulator.
+class SimPort {
+ public:
+  /// Opens the buses as they are named in `robot`. `timeline` outlives the port. Throws
+  /// ConfigError.
+  SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* timeline,
+          const SimulatorOptions& options);
+
+  Simulator& simulator() noexcept { return simulator_; }
+  const Simulator& simulator() const noexcept { return simulator_; }
+
+  template <typename Handler>
+  void subscribe_joint_state(Handler handler);
+
+  /// Until a frame or a message waits, or the absolute CLOCK_MONOTONIC time has come.
+  void wait(std::int64_t deadline_ns) noexcept { wait_readable(descriptors_, deadline_ns); }
+  void handle_messages() noexcept { user_.handle_waiting(); }
+  void publish_truth() noexcept;
+  /// To the log, at most once a second.
+  void complain(const char* what);
+
+ private:
+  std::vector<std::unique_ptr<CanBus>> buses_;
+  Simulator simulator_;
+  LcmPort user_;
+  std::vector<int> descriptors_;
+  std::int64_t complained_ns_ = 0;
+};
+
+template <typename Handler>
+void SimPort::subscribe_joint_state(Handler handler) {
+  constexpr int kQueue = 100;  // every state matters for the arm's time
+  user_.subscribe<joint_state_t>(channels::kJointState, kQueue, handler);
+}
+
+}  // namespace limber::sim

@@ -1,0 +1,97 @@
+// Two motors that pull against each other: their preload, their limits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "controller/output/preload_servo.h"
+#include "tests/controller/one_joint.h"
+#include "tests/support/allocation_counter.h"
+
+namespace limber::controller::test_preload_servo {
+namespace {
+
+constexpr double kT = 1e-3;
+constexpr double kB = 0.04;
+
+VectorJ one(double x) { return VectorJ::Constant(1, x); }
+
+class Preload : public ::testing::Test {
+ protected:
+  Preload() : robot(limber::testing::one_pair({.B = kB}).robot), servo(robot), state(1) {
+    state.period_s = kT;
+  }
+
+  // B c'' = tau_preload - k2 (c^2 + x^2)
+  void run(double seconds, double wanted, double x, double tau) {
+    for (int i = 0; i < static_cast<int>(seconds / kT); ++i) {
+      servo.control(state, one(wanted), one(x), one(tau), kT);
+      const double force = servo.torque()[0] - 400.0 * (std::pow(state.preload[0], 2) + x * x);
+      state.preload_dot[0] += kT * force / kB;
+      state.preload[0] += kT * state.preload_dot[0];
+    }
+  }
+
+  Robot robot;
+  PreloadServo servo;
+  ArmState state;
+};
+
+TEST_F(Preload, MovesAlongItsRampAndHoldsTheSprings) {
+  state.preload[0] = 0.1;
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
+  EXPECT_NEAR(servo.torque()[0], 400.0 * 0.01, 1e-12) << "what the springs pull with there";
+  run(0.25, 0.4, 0.0, 0.0);
+  EXPECT_NEAR(state.preload[0], 0.1 + 0.25 * 0.6, 0.02) << "preload_max a second";
+  run(1.0, 0.4, 0.05, 0.0);
+  EXPECT_NEAR(state.preload[0], 0.4, 1e-4);
+  EXPECT_NEAR(servo.torque()[0], 400.0 * (0.16 + 0.0025), 0.02);
+  run(2.0, 5.0, 0.0, 0.0);
+  EXPECT_NEAR(state.preload[0], 0.6, 1e-4) << "no further than preload_max";
+}
+
+TEST_F(Preload, LeavesTheMotorsWhatTheJointNeeds) {
+  state.preload[0] = 0.3;
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
+  state.preload[0] = -5.0;  // far off: it would pull with all it has
+  for (int i = 0; i < 500; ++i) {
+    const double before = servo.torque()[0];
+    const double tau = 50.0 * std::sin(0.02 * i);
+    servo.control(state, one(0.3), one(0.0), one(tau), kT);
+    EXPECT_LE(std::abs(servo.torque()[0] - before), 0.8 + 1e-12) << "the gate's step";
+  }
+  for (const double tau : {-50.0, 10.0}) {
+    for (int i = 0; i < 200; ++i) servo.control(state, one(0.3), one(0.0), one(tau), kT);
+    EXPECT_NEAR(servo.torque()[0] + std::abs(tau), 2.0 * 80.0, 1e-9);  // |tau +- tau_preload| / 2
+  }
+}
+
+// Motors that are on, wound up, with no torque yet: as fast as the gate lets, nothing at once.
+TEST_F(Preload, StartsFromWhatWasSent) {
+  state.preload[0] = 0.3;
+  servo.rest(state, one(0.0), PreloadAtRest::kReleased, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kAsSent, false);
+  EXPECT_EQ(servo.torque()[0], 0.0);
+  for (int i = 1; i <= 45; ++i) {
+    servo.control(state, one(0.3), one(0.0), one(0.0), kT);
+    EXPECT_NEAR(servo.torque()[0], std::min(0.8 * i, 36.0), 1e-9);
+  }
+}
+
+TEST_F(Preload, LetsGoInSteps) {
+  state.preload[0] = 0.3;
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
+  servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
+  EXPECT_NEAR(servo.torque()[0], 36.0 - 0.8, 1e-12);
+  for (int i = 0; i < 100; ++i) servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
+  EXPECT_EQ(servo.torque()[0], 0.0);
+}
+
+TEST_F(Preload, DoesNotAllocate) {
+  const auto before = limber::testing::allocations();
+  run(0.01, 0.3, 0.0, 1.0);
+  servo.rest(state, one(0.0), PreloadAtRest::kWound, true);
+  EXPECT_EQ(limber::testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace limber::controller::test_preload_servo

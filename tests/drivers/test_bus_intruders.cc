@@ -1,0 +1,114 @@
+// Who else is on the bus: another master, another motor with the same id, replayed replies.
+#include <gtest/gtest.h>
+
+#include "drivers/protocols/mit.h"
+#include "tests/drivers/fake_arm.h"
+
+namespace limber::test_bus_intruders {
+namespace {
+
+using testing::FakeArm;
+using testing::test_robot;
+
+/// With somebody else on the bus, who speaks before the motors do.
+class IntrudedArm final : public FakeArm {
+ public:
+  using FakeArm::FakeArm;
+
+  void answer() override {
+    if (intruder == nullptr) intruder = memory[0]->attach();
+    for (const CanFrame& frame : intrusion) intruder->send(frame);
+    FakeArm::answer();
+  }
+
+  std::unique_ptr<CanBus> intruder;
+  std::vector<CanFrame> intrusion;
+};
+
+/// Cycles until the drives are no longer ON, or -1.
+int cycles_until_off(IntrudedArm* arm, int most) {
+  for (int i = 1; i <= most; ++i) {
+    arm->cycle_with(joint_command_t::REQUEST_KEEP);
+    if (arm->state->drive_state != joint_state_t::DRIVE_ON) return i;
+  }
+  return -1;
+}
+
+CanFrame reply_now(IntrudedArm* arm, int motor) {
+  CanFrame reply;
+  const DriveConfig& drive = arm->robot.joints[static_cast<std::size_t>(motor)].drive;
+  arm->motors[static_cast<std::size_t>(motor)].handle(
+      mit::encode_state_request(static_cast<std::uint16_t>(drive.command_id), true), &reply);
+  return reply;
+}
+
+TEST(BusIntruders, AnotherMastersCommandStopsTheArmWithTheReason) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  CanFrame command;
+  command.id = arm.robot.joints[1].drive.command_id;
+  command.fd = true;
+  command.length = 8;
+  arm.intrusion = {command};
+  EXPECT_EQ(cycles_until_off(&arm, 10), 1);
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_HOLD);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
+}
+
+TEST(BusIntruders, FramesOfOtherDevicesDoNothing) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  CanFrame other;
+  other.id = 0x321;
+  other.length = 8;
+  arm.intrusion = {other, other};
+  EXPECT_EQ(cycles_until_off(&arm, 200), -1);
+  EXPECT_GT(arm.read_status().frames_foreign[0], 300);
+}
+
+TEST(BusIntruders, ReplayedRepliesAreNoticedWithinTenCycles) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  arm.intrusion = {reply_now(&arm, 0)};
+  const int cycles = cycles_until_off(&arm, 50);
+  EXPECT_GT(cycles, 0);
+  EXPECT_LE(cycles, 11);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_REPLY_INVALID);
+  EXPECT_EQ(arm.state->fault_joint, 0);
+}
+
+TEST(BusIntruders, AFewDoubledRepliesAreBridged) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  for (int second = 0; second < 3; ++second) {
+    arm.intrusion = {reply_now(&arm, 0)};
+    EXPECT_EQ(cycles_until_off(&arm, 5), -1);
+    arm.intrusion.clear();
+    EXPECT_EQ(cycles_until_off(&arm, 1000), -1);
+  }
+}
+
+TEST(BusIntruders, AfterTheCauseIsGoneTheFaultIsAcknowledged) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  arm.intrusion = {reply_now(&arm, 0)};
+  ASSERT_GT(cycles_until_off(&arm, 50), 0);
+  arm.intrusion.clear();
+  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 400));
+}
+
+// Drives have their own numbers for what went wrong; they are published as they are.
+TEST(BusIntruders, TheDrivesOwnErrorReachesTheState) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[2].error = 0xB;
+  ASSERT_GT(cycles_until_off(&arm, 5), 0);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_DRIVE_ERROR);
+  EXPECT_EQ(arm.state->drive_status[2], 0xB);
+  EXPECT_EQ(arm.driver->fault_detail(), 0xB);
+  EXPECT_EQ(arm.driver->fault_text(arm.state->fault, 2, 0xB),
+            "error B: power stage too hot; let it cool");
+}
+
+}  // namespace
+}  // namespace limber::test_bus_intruders

@@ -1,0 +1,41 @@
+"""Lists that are kept by hand, against what they list."""
+
+import re
+
+from limber.dev import doctor, selftest
+from limber.paths import ROOT
+
+
+def programs() -> set[str]:
+    """What CMake builds, without the benchmarks."""
+    found = set()
+    for folder in selftest.cxx_folders():
+        for path in folder.rglob("CMakeLists.txt"):
+            if folder.name != "bench":
+                names = re.findall(r"^limber_program\(([\w-]+)", path.read_text(), re.MULTILINE)
+                found |= {f"limber-{name}" for name in names}
+    return found
+
+
+def test_the_script_builds_and_doctor_knows_every_program():
+    script = re.search(r"^programs=\((.*)\)$", (ROOT / "limber").read_text(), re.MULTILINE)
+    assert set(script[1].split()) == {*programs(), "limber_messages"}
+    assert set(doctor.PROGRAMS) == programs()
+
+
+def test_clang_tidy_reads_the_headers_of_every_folder():
+    listed = re.search(
+        r"^HeaderFilterRegex: '\((.*)\)/'$", (ROOT / ".clang-tidy").read_text(), re.M
+    )
+    folders = {folder.name for folder in selftest.cxx_folders() if any(folder.rglob("*.h"))}
+    assert set(listed[1].split("|")) == folders - {"tests"}
+
+
+def test_every_folder_is_built_and_tested():
+    """The order in CMakeLists.txt, and a folder of tests for each that holds code."""
+    order = re.search(r"set\(LIMBER_FOLDERS ([\w ]+)", (ROOT / "CMakeLists.txt").read_text())
+    folders = {folder.name for folder in selftest.cxx_folders()}
+    assert set(order[1].split()) == folders - {"tests", "bench"}
+    assert not [
+        f for f in folders - {"tests", "bench", "lcmtypes"} if not (ROOT / "tests" / f).is_dir()
+    ]

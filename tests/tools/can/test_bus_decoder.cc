@@ -1,0 +1,243 @@
+// Frames of every protocol, bytes worked out by hand, in words.
+#include <gtest/gtest.h>
+
+#include "tests/tools/can/arms.h"
+
+namespace limber::test_bus_decoder {
+namespace {
+
+using bus_tools::BusDecoder;
+using testing::one_motor;
+using testing::said;
+
+// --- Damiao: id 3, replies on 13, +-12.5 rad, +-30 rad/s, 500 N m/rad, 5 N m s/rad, +-10 N m
+// ------
+
+struct Damiao : ::testing::Test {
+  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  BusDecoder decoder{robot, 0};
+};
+
+// 16 bits 35388 of 65535, 12 bits 1911, 491, 1228, 2559 of 4095.
+TEST_F(Damiao, Command) {
+  EXPECT_EQ(said(decoder, "003#8A3C7771EB4CC9FF"),
+            "elbow command MIT command: position 0.99966 rad, velocity -2 rad/s, kp 59.951 "
+            "N m/rad, kd 1.4994 N m s/rad, torque 2.4982 N m");
+}
+
+TEST_F(Damiao, SpecialFrames) {
+  EXPECT_EQ(said(decoder, "003#FFFFFFFFFFFFFFFC"), "elbow command enable: ");
+  EXPECT_EQ(said(decoder, "003#FFFFFFFFFFFFFFFD"), "elbow command disable: ");
+  EXPECT_EQ(said(decoder, "003#FFFFFFFFFFFFFFFE"), "elbow command set zero: ");
+  EXPECT_EQ(said(decoder, "003#FFFFFFFFFFFFFFFB"), "elbow command clear error: ");
+}
+
+// Counts 34733, 2013, 2416 and half a count more: 0.74979 + 0.00019, -0.50549 + 0.00733, 1.7998 +
+// 0.0024.
+TEST_F(Damiao, State) {
+  EXPECT_EQ(said(decoder, "013#1387AD7DD9702926"),
+            "elbow reply state: enabled, position 0.74998 rad, velocity -0.49817 rad/s, torque "
+            "1.8022 N m, T_mos 41 degC, T_rotor 38 degC");
+  EXPECT_EQ(said(decoder, "013#D387AD7FF7FF2926")
+                .find("elbow reply state: no command within the drive's time-out, position"),
+            0U);
+  EXPECT_NE(said(decoder, "013#1487AD7DD9702926").find("WRONG ID 4"), std::string::npos);
+}
+
+TEST_F(Damiao, RegisterAnswersAreStatesUnlessSomebodyAsked) {
+  EXPECT_EQ(said(decoder, "013#0300331700002041").substr(0, 28), "elbow reply state: disabled,");
+  EXPECT_EQ(said(decoder, "7FF#0300331700000000"), "elbow command read register: TMAX");
+  EXPECT_EQ(said(decoder, "013#0300331700002041"), "elbow reply register: TMAX 10 N m");
+  EXPECT_EQ(said(decoder, "013#0300331700002041").substr(0, 28), "elbow reply state: disabled,");
+}
+
+TEST_F(Damiao, RegisterWrites) {
+  EXPECT_EQ(said(decoder, "7FF#0300550990010000"),
+            "elbow command write register: TIMEOUT 400 counts of 50 us");
+  EXPECT_EQ(said(decoder, "013#0300550990010000"),
+            "elbow reply register written: TIMEOUT 400 counts of 50 us");
+  EXPECT_EQ(said(decoder, "7FF#0300CC0000000000"), "elbow command state request: ");
+  EXPECT_EQ(said(decoder, "7FF#0300AA0100000000"), "elbow command store registers: ");
+}
+
+TEST_F(Damiao, WhatNobodyKnowsIsForeign) {
+  EXPECT_EQ(said(decoder, "7FF#0400331700000000"),
+            "- foreign frame: 04 00 33 17 00 00 00 00");  // to motor 4
+  EXPECT_EQ(said(decoder, "123#0102"), "- foreign frame: 01 02");
+  EXPECT_EQ(said(decoder, "003#0102"), "elbow command unreadable: 01 02");
+}
+
+TEST_F(Damiao, LockStepAndErrors) {
+  EXPECT_EQ(said(decoder, "1FFFFFF0#0A00000000000000"), "all command TICK: cycle 10");
+  EXPECT_EQ(said(decoder, "1FFFFFF1#0001000000000000"), "all reply TOCK: cycle 256");
+  EXPECT_EQ(said(decoder, "20000040#0000000000000000"), "- error error frame: bus-off");
+  EXPECT_EQ(said(decoder, "20000204#0020000000008007"),
+            "- error error frame: controller: transmitter passive, transmit errors 128, receive "
+            "errors 7");
+  EXPECT_EQ(said(decoder, "20000008#0000040000000000"), "- error error frame: protocol: stuff bit");
+}
+
+TEST(Antagonist, SecondMotorHasANameOfItsOwn) {
+  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  robot.joints[0].has_antagonist = true;
+  robot.joints[0].antagonist = robot.joints[0].drive;
+  robot.joints[0].antagonist.command_id = 0x004;
+  robot.joints[0].antagonist.reply_id = 0x014;
+  BusDecoder decoder(robot, 0);
+  EXPECT_EQ(said(decoder, "004#FFFFFFFFFFFFFFFC"), "elbow/2 command enable: ");
+}
+
+// --- moteus: servo 4 -----------------------------------------------------------------------------
+
+struct Moteus : ::testing::Test {
+  Robot robot = one_motor(DriveProtocol::kMoteus, 0x8004, 0x400);
+  BusDecoder decoder{robot, 0};
+};
+
+TEST_F(Moteus, CommandInFloats) {
+  EXPECT_EQ(said(decoder,
+                 "00008004##1 01000A 0C0520CDCCCC3D000000009A99593FCDCC4C3ECDCCCC3D 0D270AD7A33C "
+                 "1100 1F01 130D 50505050505050505050"),
+            "elbow command write: mode position, position 0.1 turns, velocity 0 turns/s, "
+            "feed-forward torque 0.85 N m, kp scale 0.2, kd scale 0.1, watchdog 0.02 s, asks for "
+            "mode, position, velocity, torque, voltage, board temperature, fault");
+}
+
+TEST_F(Moteus, CommandInCounts) {
+  EXPECT_EQ(said(decoder,
+                 "00008004##1 01000A 040620 0080 0000 5500 0000 0000 C800 50"
+                 "140400 130D"),
+            "elbow command write: mode position, position nan turns, velocity 0 turns/s, "
+            "feed-forward torque 0.85 N m, kp scale 0, kd scale 0, maximum torque 2 N m, asks for "
+            "mode, position, velocity, torque, voltage, board temperature, fault");
+}
+
+TEST_F(Moteus, Replies) {
+  EXPECT_EQ(said(decoder, "400##1 240400 0A00 E803 9CFF 5500 230D 60 1E 00"),
+            "elbow reply registers: mode position, position 0.1 turns, velocity -0.025 turns/s, "
+            "torque 0.85 N m, voltage 48 V, board temperature 30 degC, fault none");
+  EXPECT_EQ(said(decoder, "400##1 210001 210F25"),
+            "elbow reply registers: mode fault, fault PWM cycle overrun");
+  EXPECT_EQ(said(decoder, "400##1 311C01 50"),
+            "elbow reply refused: register 01Ch no such register");
+}
+
+TEST_F(Moteus, OtherTrafficIsShownRaw) {
+  EXPECT_EQ(said(decoder, "00008004##1 42013D"), "elbow command no registers: 42 01 3D");
+  EXPECT_EQ(said(decoder, "500##1 210001"), "- foreign frame: 21 00 01");  // from servo 5
+}
+
+// --- CANopen: node 3, 16384 counts a turn, rated torque 28 N m
+// ------------------------------------
+
+struct Canopen : ::testing::Test {
+  Robot robot = one_motor(DriveProtocol::kCia402, 0x203, 0x183);
+  BusDecoder decoder{robot, 0};
+
+  /// The master maps TPDO1 anew: status, position, torque.
+  void map_state() {
+    for (const char* write :
+         {"2300180183010080", "2F001A0000000000", "23001A0110004160", "23001A0220006460",
+          "23001A0310007760", "2F001A0003000000", "2F00180201000000", "2300180183010000"}) {
+      said(decoder, std::string("603#") + write);
+      said(decoder, "583#60" + std::string(write).substr(2, 6) + "00000000");
+    }
+  }
+};
+
+TEST_F(Canopen, NetworkManagement) {
+  EXPECT_EQ(said(decoder, "000#0103"), "elbow command NMT: start");
+  EXPECT_EQ(said(decoder, "000#8000"), "all command NMT: enter pre-operational");
+  EXPECT_EQ(said(decoder, "000#8105"), "node 5 command NMT: reset node");
+  EXPECT_EQ(said(decoder, "703#00"), "elbow reply heartbeat: boot-up");
+  EXPECT_EQ(said(decoder, "703#05"), "elbow reply heartbeat: operational");
+  EXPECT_EQ(said(decoder, "080#"), "all command SYNC: ");
+  EXPECT_EQ(said(decoder, "080#07"), "all command SYNC: counter 7");
+}
+
+TEST_F(Canopen, ServiceData) {
+  EXPECT_EQ(said(decoder, "603#2F6060000A000000"), "elbow command SDO write: 6060h:00 mode 10");
+  EXPECT_EQ(said(decoder, "583#6060600000000000"), "elbow reply SDO written: 6060h:00 mode");
+  EXPECT_EQ(said(decoder, "603#4076600000000000"), "elbow command SDO read: 6076h:00 rated torque");
+  EXPECT_EQ(said(decoder, "583#43766000606D0000"),
+            "elbow reply SDO value: 6076h:00 rated torque 28000 mN m");
+  EXPECT_EQ(said(decoder, "583#8041600002000106"),
+            "elbow reply SDO abort: 6041h:00 06010002h object is read only");
+  EXPECT_EQ(said(decoder, "603#2B40600006000000"),
+            "elbow command SDO write: 6040h:00 controlword 0006h (shutdown)");
+  EXPECT_EQ(said(decoder, "603#4002210100000000"),
+            "elbow command SDO read: 2102h:01 object 2102h:01");
+  EXPECT_EQ(said(decoder, "603#2300140100000080").substr(0, 43),
+            "elbow command SDO write: 1400h:01 RPDO1 COB");
+}
+
+TEST_F(Canopen, CommandAsTheStartUpMapsIt) {
+  EXPECT_EQ(said(decoder, "203#0F00C800"),
+            "elbow command RPDO1: controlword 000Fh (enable operation), target torque 5.6 N m");
+  EXPECT_EQ(said(decoder, "203#0F00"),
+            "elbow command RPDO1: controlword 000Fh (enable operation), TOO SHORT 0F 00");
+}
+
+// 81920 counts are five turns, 31.416 rad; -15 thousandths of 28 N m are -0.42 N m.
+TEST_F(Canopen, StateAsTheMasterMapsIt) {
+  map_state();
+  EXPECT_EQ(said(decoder, "183#371600400100F1FF"),
+            "elbow reply TPDO1: statusword 1637h (operation enabled), position 31.416 rad, torque "
+            "-0.42 N m");
+}
+
+TEST_F(Canopen, AMappingThatTheNodeRefusesChangesNothing) {
+  map_state();
+  said(decoder, "603#23001A0310007860");
+  said(decoder, "583#80001A0341000406");
+  EXPECT_NE(said(decoder, "183#371600400100F1FF").find("torque -0.42"), std::string::npos);
+  said(decoder, "603#2300180183010080");
+  said(decoder, "583#6000180100000000");
+  EXPECT_EQ(said(decoder, "183#371600400100F1FF").substr(0, 15), "- foreign frame");
+}
+
+TEST_F(Canopen, Emergencies) {
+  EXPECT_EQ(said(decoder, "083#3081110000000000"),
+            "elbow reply EMCY: 8130h heartbeat lost, error register 11h, vendor 00 00 00 00 00");
+  EXPECT_EQ(said(decoder, "083#0000000000000000"),
+            "elbow reply EMCY: 0000h all errors are gone, error register 00h, vendor 00 00 00 00 "
+            "00");
+  EXPECT_EQ(said(decoder, "083#1043080000000000").substr(0, 36),
+            "elbow reply EMCY: 4310h temperature,");
+}
+
+// --- tip sensors ---------------------------------------------------------------------------------
+
+Robot with_tip_sensor(TipSensorProtocol protocol) {
+  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  robot.has_tip_sensor = true;
+  robot.tip_sensor.protocol = protocol;
+  robot.tip_sensor.command_id = 0x64;
+  robot.tip_sensor.reply_ids = {1, 2};
+  return robot;
+}
+
+// 50 counts a newton, 2000 a newton metre: 500, -100, 0, then 2000 astride the frames, 0, -1.
+TEST(TipSensor, TwoFramesOfARobotousSensor) {
+  const Robot robot = with_tip_sensor(TipSensorProtocol::kRobotousRft);
+  BusDecoder decoder(robot, 0);
+  EXPECT_EQ(said(decoder, "064#0A00000000000000"), "tip command request: ");
+  EXPECT_EQ(said(decoder, "001#0A01F4FF9C000007"), "tip reply first half: ");
+  EXPECT_EQ(said(decoder, "002#D00000FFFF200000"),
+            "tip reply wrench: Fx 10 N, Fy -2 N, Fz 0 N, Tx 1 N m, Ty 0 N m, Tz -0.0005 N m, "
+            "OVERLOAD Fx");
+  EXPECT_EQ(said(decoder, "002#D00000FFFF200000").substr(0, 28), "tip reply second half alone:");
+}
+
+TEST(TipSensor, OneFrameOfFloats) {
+  const Robot robot = with_tip_sensor(TipSensorProtocol::kLimberFt);
+  BusDecoder decoder(robot, 0);
+  EXPECT_EQ(said(decoder, "064##10A07"), "tip command request: counter 7");
+  EXPECT_EQ(said(decoder,
+                 "001##1 0A070000 00002041 000000C0 00000000 0000803F 00000000 00000000 "
+                 "00000000"),
+            "tip reply wrench: Fx 10 N, Fy -2 N, Fz 0 N, Tx 1 N m, Ty 0 N m, Tz 0 N m, counter 7");
+}
+
+}  // namespace
+}  // namespace limber::test_bus_decoder

@@ -1,0 +1,101 @@
+"""Inverse dynamics from a URDF against the controller's own terms, energy and closed forms."""
+
+import numpy as np
+import pytest
+
+from limber.experiments.evaluate import case, evaluate
+from limber.model.dynamics import ArmDynamics
+from limber.model.robot import load_robot
+from limber.model.urdf import Chain
+
+
+def dynamics_of(name: str) -> ArmDynamics:
+    robot = load_robot(name)
+    return ArmDynamics(robot.urdf, robot.chain, robot.gravity)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["openarm", "planar2r", "ideal7", "desktop2r", "iiwa14", "panda", "baxter", "antagonist7"],
+)
+def test_same_arm_as_the_controllers(name):
+    """KDL's chain, read by other code: M from unit accelerations, C v and g."""
+    arm = dynamics_of(name)
+    n, rng = arm.size, np.random.default_rng(1)
+    q, v = rng.uniform(-1.0, 1.0, n), rng.uniform(-1.0, 1.0, n)
+    told = evaluate([case("kin_dyn", name, q=q, v=v)])[0]
+    rest = np.zeros((n, n))
+    poses = np.tile(q, (n, 1))
+    g = arm.gravity_torque(q[None])[0]
+    np.testing.assert_allclose(g, told["g"], atol=1e-9)
+    np.testing.assert_allclose(
+        arm.torque(poses, rest, np.eye(n)) - g, np.array(told["M"]).reshape(n, n), atol=1e-9
+    )
+    Cv = arm.torque(q[None], v[None], np.zeros((1, n)))[0] - g
+    np.testing.assert_allclose(Cv, told["Cv"], atol=1e-9)
+
+
+def test_gravity_is_linear_in_masses_and_moments():
+    arm = dynamics_of("openarm")
+    q = np.random.default_rng(2).uniform(-1.5, 1.5, (6, arm.size))
+    np.testing.assert_allclose(
+        arm.gravity_regressor(q) @ arm.parameters(), arm.gravity_torque(q), atol=1e-12
+    )
+
+
+URDF = """<robot name="r">
+  <link name="base"><inertial><mass value="50"/></inertial></link>
+  <link name="carriage"><inertial><mass value="2"/>
+    <inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+  <link name="arm"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>
+    <inertia ixx="0.01" iyy="0.02" izz="0.02"/></inertial></link>
+  <link name="tool"><inertial><origin xyz="0.1 0 0"/><mass value="0.5"/>
+    <inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial></link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="carriage"/>
+    <axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+  <joint name="turn" type="continuous"><parent link="carriage"/><child link="arm"/>
+    <axis xyz="0 1 0"/></joint>
+  <joint name="grip" type="revolute"><parent link="arm"/><child link="tool"/>
+    <origin xyz="0.6 0 0"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+</robot>"""
+
+
+def test_sliding_joint_and_a_branch_by_hand(tmp_path):
+    """A carriage that slides upwards with a pendulum on it; the tool hangs on as load."""
+    path = tmp_path / "r.urdf"
+    path.write_text(URDF)
+    arm = ArmDynamics(path, Chain(path, "base", "arm"), np.array([0, 0, -10.0]))
+    mass, moment = 1.5, 0.3 + 0.5 * 0.7
+    inertia = 0.02 + 0.3**2 + 0.001 + 0.5 * 0.7**2  # about the turning axis
+    assert arm.bodies[1].heaviest == "arm"
+    q, v, a = np.array([[0.2, 0.4]]), np.array([[0.7, -1.3]]), np.array([[2.0, 3.0]])
+    s, c = np.sin(0.4), np.cos(0.4)  # turning about +y lowers the arm: z = -x sin q
+    slide = (2.0 + mass) * (2.0 + 10.0) - moment * (c * 3.0 - s * 1.3**2)
+    turn = inertia * 3.0 - moment * c * (2.0 + 10.0)
+    np.testing.assert_allclose(arm.torque(q, v, a)[0], [slide, turn], rtol=1e-12)
+
+
+TELESCOPE = """<robot name="r">
+  <link name="base"/>
+  <link name="boom"><inertial><mass value="3"/>
+    <inertia ixx="1" iyy="1" izz="0.5"/></inertial></link>
+  <link name="rod"><inertial><mass value="2"/>
+    <inertia ixx="1" iyy="1" izz="0.25"/></inertial></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="boom"/>
+    <axis xyz="0 0 1"/></joint>
+  <joint name="reach" type="prismatic"><parent link="boom"/><child link="rod"/>
+    <origin xyz="0.5 0 0"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+</robot>"""
+
+
+def test_turning_telescope_by_hand(tmp_path):
+    """Polar coordinates: m (r'' - r w²) along the rod, (I + m r²) w' + 2 m r r' w about z."""
+    path = tmp_path / "r.urdf"
+    path.write_text(TELESCOPE)
+    arm = ArmDynamics(path, Chain(path, "base", "rod"), np.array([0, 0, -9.81]))
+    r, w, rate = 0.8, 1.5, -0.6
+    tau = arm.torque(np.array([[2.0, 0.3]]), np.array([[w, rate]]), np.array([[0.7, 0.9]]))[0]
+    turn = (0.75 + 2.0 * r**2) * 0.7 + 2.0 * 2.0 * r * rate * w
+    np.testing.assert_allclose(tau, [turn, 2.0 * (0.9 - r * w**2)], rtol=1e-12)

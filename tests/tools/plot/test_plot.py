@@ -1,0 +1,160 @@
+"""Plots exist, say what they show in which unit, and hold the numbers of the log."""
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from conftest import records, write_log
+from limber import messages
+from limber.log.reader import Log
+from limber.plot import charts, page, png
+from limber.plot.commands import plot
+
+COUNT = 400
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    time_ns = np.arange(COUNT) * 1_000_000
+    joints = {"num_joints": 7, "time_ns": time_ns}
+    state = records("joint_state_t", COUNT, **joints)
+    state["q"][:, 2] = np.sin(np.arange(COUNT) * 0.05)
+    status = records("controller_status_t", COUNT, **joints)
+    status["quat_BT"][:, 0] = status["quat_BD"][:, 0] = 1.0
+    status["p_BT"][:, 1] = 0.013
+    status["tau_gravity"][:, 4] = 2.5
+    truth = records("sim_truth_t", COUNT, **joints)
+    truth["F_contact"][:, 0] = -7.0
+    driver = records("driver_status_t", COUNT // 100, time_ns=time_ns[::100], num_buses=1)
+    driver["late_cycles"] = [0, 1, 1, 3]
+    path = tmp_path_factory.mktemp("plot") / "run.lcmlog"
+    channels = {
+        "JOINT_STATE": state,
+        "CONTROLLER_STATUS": status,
+        "SIM_TRUTH": truth,
+        "DRIVER_STATUS": driver,
+    }
+    return Log(write_log(path, channels))
+
+
+def drawn(chart, name):
+    return np.asarray(chart.series[name])
+
+
+def test_charts_hold_the_logs_numbers(log):
+    position = charts.build(log, "joint", ["a", "b", "elbow"])[0]
+    np.testing.assert_allclose(drawn(position, "elbow"), np.sin(np.arange(COUNT) * 0.05))
+    assert list(position.series)[3] == "joint 4", "joints without a name are numbered"
+    away = next(c for c in charts.build(log, "cartesian") if "away" in c.title)
+    np.testing.assert_allclose(drawn(away, "y"), 13.0)
+    assert away.unit == "mm"
+    torque = charts.build(log, "torque")[4]
+    np.testing.assert_allclose(drawn(torque, "gravity"), 2.5)
+    counted = next(c for c in charts.build(log, "timing") if c.title.startswith("counted"))
+    np.testing.assert_array_equal(drawn(counted, "late cycles"), [0, 1, 1, 3])
+
+
+def test_springs_only_where_there_are_sensors(log, tmp_path):
+    assert charts.build(log, "spring") == [], "no joint of this log says that it has any"
+    flags = messages.message_class("joint_state_t")
+    state = records("joint_state_t", COUNT, num_joints=3, time_ns=np.arange(COUNT) * 1_000_000)
+    state["joint_flags"][:, 1] = flags.JOINT_LINK_ENCODER | flags.JOINT_TORQUE_SENSOR
+    state["joint_flags"][:, 2] = flags.JOINT_LINK_ENCODER | flags.JOINT_TWO_MOTORS
+    state["theta"][:, 1], state["q"][:, 1] = 0.512, 0.5
+    state["tau"][:, 1], state["tau_applied"][:, 1] = 9.0, 10.0
+    state["preload"][:, 2] = 0.25
+    path = write_log(tmp_path / "run.lcmlog", {"JOINT_STATE": state})
+    ahead, torque, preload = charts.build(Log(path), "spring")
+    assert list(ahead.series) == ["joint 2", "joint 3"]
+    np.testing.assert_allclose(drawn(ahead, "joint 2"), 12.0)
+    np.testing.assert_allclose(drawn(torque, "joint 2"), 9.0)
+    np.testing.assert_allclose(drawn(torque, "joint 2 asked of the motor"), 10.0)
+    assert torque.color_numbers() == [0, 0], "asked and measured go together"
+    assert list(preload.series) == ["joint 3"]
+    np.testing.assert_allclose(drawn(preload, "joint 3"), 0.25)
+
+
+def test_contact_only_where_there_is_a_source(log, tmp_path):
+    silent = charts.build(log, "torque")
+    assert not any("contact" in chart.title for chart in silent)
+    assert all("ext" not in chart.series for chart in silent)
+    status = records("controller_status_t", COUNT, num_joints=7, contact=1)
+    status["time_ns"] = np.arange(COUNT) * 1_000_000
+    status["F_ext"][:, 1], status["F_ext"][:, 5] = 3.5, -0.25
+    status["tau_ext"][:, 4] = 1.5
+    touched = Log(write_log(tmp_path / "run.lcmlog", {"CONTROLLER_STATUS": status}))
+    force, torque, *joints = charts.build(touched, "torque")
+    assert (force.unit, torque.unit) == ("N", "N m")
+    np.testing.assert_allclose(drawn(force, "y"), 3.5)
+    np.testing.assert_allclose(drawn(torque, "z"), -0.25)
+    np.testing.assert_allclose(drawn(joints[4], "ext"), 1.5)
+
+
+@pytest.mark.parametrize("topic", [t for t in charts.TOPICS if t != "spring"])
+def test_every_axis_has_name_and_unit(log, topic):
+    built = charts.build(log, topic)
+    fig = png.figure(built, "title")
+    assert len(fig.axes) == len(built) >= 4
+    for ax, chart in zip(fig.axes, built, strict=True):
+        label = ax.get_ylabel().replace("\n", " ")
+        assert label == f"{chart.title} ({chart.unit})"
+        assert chart.unit
+        assert [text.get_text() for text in ax.get_legend().get_texts()] == list(chart.series)
+    assert fig.axes[-1].get_xlabel() == "arm time (s)"
+
+
+def test_files(log, tmp_path):
+    written = plot(log.path, [], tmp_path, Console(quiet=True))
+    assert {p.name for p in written} == {
+        *(f"{topic}.png" for topic in charts.TOPICS if topic != "spring"),
+        "plot.html",
+    }
+    for path in written:
+        assert path.stat().st_size > 10_000, path
+
+
+def data_of(page: str) -> dict:
+    return json.loads(re.search(r"const topics = (\{.*\});\n", page)[1])
+
+
+def test_page_needs_nothing_from_outside(log):
+    html = page.page({"joint": charts.build(log, "joint")}, "a <title>")
+    assert not re.search(r"(src|href)\s*=|url\(|@import|fetch\(|XMLHttp", html)
+    assert "a &lt;title&gt;" in html
+    assert "Permission is hereby granted" in html, "the licence of the drawing code goes with it"
+    assert not re.search(r"@[A-Z_]+@", html), "a placeholder was left"
+
+
+def test_page_holds_the_numbers(log):
+    built = charts.build(log, "joint")
+    chart = data_of(page.page({"joint": built}, "t"))["joint"][0]
+    values = np.frombuffer(base64.b64decode(chart["series"][2]["values"]), "<f4")
+    np.testing.assert_allclose(values, np.sin(np.arange(COUNT) * 0.05), atol=1e-6)
+    times = np.frombuffer(base64.b64decode(chart["t"]), "<f4")
+    np.testing.assert_allclose(times, np.arange(COUNT) * 1e-3, atol=1e-6)
+
+
+def test_thinning_keeps_every_spike():
+    count = 10 * page.MAX_POINTS + 7
+    values = np.zeros(count)
+    spikes = [0, 12345, 333_333, count - 1]
+    values[spikes] = [5, -7, 9, 11]
+    chart = charts.Chart("x", "N", np.arange(count) * 1e-3, {"x": values})
+    thin = page.thinned(chart)
+    assert len(thin.t_s) <= page.MAX_POINTS
+    assert {5, -7, 9, 11} <= set(thin.series["x"])
+    assert (np.diff(thin.t_s) >= 0).all()
+
+
+def test_rotation_error_is_the_small_angle_and_blind_to_sign():
+    angle = 0.3
+    turned = np.array([[np.cos(angle / 2), 0, 0, np.sin(angle / 2)]])
+    straight = np.array([[1.0, 0, 0, 0]])
+    for sign in (1, -1):
+        error = charts.rotation_error(sign * turned, straight)
+        np.testing.assert_allclose(error, [[0, 0, angle]], atol=1e-12)
+    np.testing.assert_array_equal(charts.rotation_error(np.zeros((1, 4)), straight), 0)

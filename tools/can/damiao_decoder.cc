@@ -1,0 +1,169 @@
+#include "tools/can/damiao_decoder.h"
+
+#include <array>
+
+namespace limber::bus_tools {
+namespace {
+
+constexpr std::uint8_t kReadRegister = 0x33;
+constexpr std::uint8_t kWriteRegister = 0x55;
+constexpr std::uint8_t kStoreRegisters = 0xAA;
+constexpr int kAngleBits = 16;
+constexpr int kOtherBits = 12;
+
+/// Names and formats of the maker's manual; what is not listed is shown by number.
+struct RegisterRow {
+  std::uint8_t number;
+  const char* name;
+  bool whole;  ///< uint32, else float32
+  const char* unit;
+};
+constexpr std::array kDamiaoRegisters = {
+    RegisterRow{0, "under-voltage limit", false, "V"},
+    RegisterRow{1, "torque constant", false, "N m/A"},
+    RegisterRow{2, "over-temperature limit", false, "degC"},
+    RegisterRow{3, "over-current limit", false, ""},
+    RegisterRow{4, "acceleration", false, "rad/s^2"},
+    RegisterRow{5, "deceleration", false, "rad/s^2"},
+    RegisterRow{6, "maximum speed", false, "rad/s"},
+    RegisterRow{7, "MST_ID", true, ""},
+    RegisterRow{8, "ESC_ID", true, ""},
+    RegisterRow{9, "TIMEOUT", true, "counts of 50 us"},
+    RegisterRow{10, "CTRL_MODE", true, ""},
+    RegisterRow{11, "damping", false, ""},
+    RegisterRow{12, "inertia", false, "kg m^2"},
+    RegisterRow{13, "hardware version", true, ""},
+    RegisterRow{14, "software version", true, ""},
+    RegisterRow{15, "serial number", true, ""},
+    RegisterRow{16, "pole pairs", true, ""},
+    RegisterRow{17, "phase resistance", false, "ohm"},
+    RegisterRow{18, "phase inductance", false, "H"},
+    RegisterRow{19, "flux", false, "Wb"},
+    RegisterRow{20, "gear ratio", false, ""},
+    RegisterRow{21, "PMAX", false, "rad"},
+    RegisterRow{22, "VMAX", false, "rad/s"},
+    RegisterRow{23, "TMAX", false, "N m"},
+    RegisterRow{24, "current bandwidth", false, "Hz"},
+    RegisterRow{29, "over-voltage limit", false, "V"},
+    RegisterRow{35, "can_br", true, ""},
+};
+
+const RegisterRow* row_of(std::uint8_t reg) {
+  for (const RegisterRow& row : kDamiaoRegisters) {
+    if (row.number == reg) return &row;
+  }
+  return nullptr;
+}
+
+Value register_value(std::uint8_t reg, std::uint32_t raw) {
+  const RegisterRow* row = row_of(reg);
+  if (row == nullptr) return {"register " + std::to_string(reg), "0x" + hex(raw, 8), ""};
+  const double value =
+      row->whole ? static_cast<double>(raw) : static_cast<double>(mit::bits_float(raw));
+  return {row->name, row->whole ? std::to_string(raw) : number(value), row->unit};
+}
+
+Value register_name(std::uint8_t reg) {
+  const RegisterRow* row = row_of(reg);
+  return {row == nullptr ? "register " + std::to_string(reg) : row->name, "", ""};
+}
+
+const char* special_word(mit::Special special) {
+  switch (special) {
+    case mit::Special::kEnable:
+      return "enable";
+    case mit::Special::kDisable:
+      return "disable";
+    case mit::Special::kSetZero:
+      return "set zero";
+    case mit::Special::kClearError:
+      break;
+  }
+  return "clear error";
+}
+
+}  // namespace
+
+std::optional<Reading> DamiaoDecoder::read(const CanFrame& frame) {
+  if (has_id(frame, drive_.command_id)) return read_command(frame);
+  if (has_id(frame, drive_.reply_id)) return read_reply(frame);
+  mit::RegisterRequest request;
+  if (mit::decode_register_request(frame, &request) && request.id == drive_.command_id)
+    return read_request(request);
+  return std::nullopt;
+}
+
+Reading DamiaoDecoder::read_command(const CanFrame& frame) const {
+  mit::Special special{};
+  if (mit::decode_special(frame, &special))
+    return {name_, Direction::kCommand, special_word(special), {}};
+  mit::Command command;
+  if (!mit::decode_command(frame, drive_.range, &command))
+    return {name_, Direction::kCommand, "unreadable", {{"", bytes(frame), ""}}};
+  return {name_,
+          Direction::kCommand,
+          "MIT command",
+          {{"position", number(command.position_rad), "rad"},
+           {"velocity", number(command.velocity_rad_per_s), "rad/s"},
+           {"kp", number(command.kp_Nm_per_rad), "N m/rad"},
+           {"kd", number(command.kd_Nms_per_rad), "N m s/rad"},
+           {"torque", number(command.torque_Nm), "N m"}}};
+}
+
+Reading DamiaoDecoder::read_request(const mit::RegisterRequest& request) {
+  open_.reset();
+  if (request.operation == kReadRegister) {
+    open_ = request;
+    return {name_, Direction::kCommand, "read register", {register_name(request.reg)}};
+  }
+  if (request.operation == kWriteRegister) {
+    open_ = request;
+    return {name_,
+            Direction::kCommand,
+            "write register",
+            {register_value(request.reg, request.raw_value)}};
+  }
+  const char* what = request.operation == kStoreRegisters ? "store registers" : "state request";
+  return {name_, Direction::kCommand, what, {}};
+}
+
+Reading DamiaoDecoder::read_reply(const CanFrame& frame) {
+  if (auto answer = read_register(frame)) return *answer;
+  const CommandRange& range = drive_.range;
+  mit::Reply reply;
+  if (!mit::decode_reply(frame, range, &reply))
+    return {name_, Direction::kReply, "unreadable", {{"", bytes(frame), ""}}};
+  std::string status = mit::error_text(reply.error);
+  if (status.empty()) status = "status " + hex(static_cast<std::uint32_t>(reply.error), 1);
+  // Drives truncate: half a count more is what they measured, on average.
+  const double position = reply.position_rad + mit::half_count(range.position_rad, kAngleBits);
+  const double velocity =
+      reply.velocity_rad_per_s + mit::half_count(range.velocity_rad_per_s, kOtherBits);
+  const double torque = reply.torque_Nm + mit::half_count(range.torque_Nm, kOtherBits);
+  Reading reading{name_,
+                  Direction::kReply,
+                  "state",
+                  {{"", status, ""},
+                   {"position", number(position), "rad"},
+                   {"velocity", number(velocity), "rad/s"},
+                   {"torque", number(torque), "N m"},
+                   {"T_mos", std::to_string(reply.mos_temperature_degC), "degC"},
+                   {"T_rotor", std::to_string(reply.rotor_temperature_degC), "degC"}}};
+  if (reply.id_nibble != (drive_.command_id & 0xF))
+    reading.values.push_back({"WRONG ID", hex(reply.id_nibble, 1), ""});
+  return reading;
+}
+
+std::optional<Reading> DamiaoDecoder::read_register(const CanFrame& frame) {
+  std::uint32_t raw = 0;
+  const auto id = static_cast<std::uint16_t>(drive_.command_id);
+  if (!open_ || !mit::decode_register(frame, id, open_->operation,
+                                      static_cast<mit::Register>(open_->reg), &raw))
+    return std::nullopt;
+  const char* what = open_->operation == kReadRegister ? "register" : "register written";
+  Reading reading{name_, Direction::kReply, what, {register_value(open_->reg, raw)}};
+  open_.reset();
+  return reading;
+}
+
+}  // namespace limber::bus_tools

@@ -1,0 +1,28 @@
+// Frames of one Damiao drive: MIT commands and states, special frames, registers. Angles, speeds
+// and torques are the drive's own, before sign and offset of robot.yaml.
+#pragma once
+
+#include "drivers/protocols/mit.h"
+#include "tools/can/motors_on_bus.h"
+#include "tools/can/reading.h"
+
+namespace limber::bus_tools {
+
+class DamiaoDecoder final : public FrameDecoder {
+ public:
+  explicit DamiaoDecoder(const Motor& motor) : name_(motor.name), drive_(motor.joint.drive) {}
+  std::optional<Reading> read(const CanFrame& frame) override;
+
+ private:
+  Reading read_command(const CanFrame& frame) const;
+  Reading read_request(const mit::RegisterRequest& request);
+  Reading read_reply(const CanFrame& frame);
+  std::optional<Reading> read_register(const CanFrame& frame);
+
+  std::string name_;
+  DriveConfig drive_;
+  /// The request not answered yet: an answer looks like a state, and is one if nobody asked.
+  std::optional<mit::RegisterRequest> open_;
+};
+
+}  // namespace limber::bus_tools

@@ -1,0 +1,131 @@
+#include "tools/can/frame_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "common/clock.h"
+#include "common/config_error.h"
+#include "drivers/can/can_bus.h"
+#include "drivers/can/candump_log.h"
+
+namespace limber::bus_tools {
+namespace {
+
+constexpr std::int64_t kIdle_ns = 100'000'000;
+
+/// Since 1970, less CLOCK_MONOTONIC.
+std::int64_t unix_offset_ns() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - monotonic_ns();
+}
+
+struct Heard {
+  int bus;
+  CanFrame frame;
+};
+
+class Listener {
+ public:
+  explicit Listener(const Robot& robot) {
+    for (const BusConfig& bus : robot.buses) {
+      buses_.push_back(open_can_bus(bus.can, opens_fd(bus)));
+      ends_.push_back(buses_.back().get());
+      last_ns_.push_back(0);
+    }
+  }
+
+  /// All that waits, or that comes before the deadline, in order of arrival.
+  const std::vector<Heard>& wait(std::int64_t deadline_ns) {
+    heard_.clear();
+    if (!wait_readable(ends_, deadline_ns)) return heard_;
+    for (std::size_t bus = 0; bus < ends_.size(); ++bus) take(static_cast<int>(bus), *ends_[bus]);
+    std::ranges::stable_sort(heard_, {}, [](const Heard& one) { return one.frame.timestamp_ns; });
+    return heard_;
+  }
+
+  ListeningLosses losses() const {
+    ListeningLosses losses;
+    for (const CanBus* bus : ends_) {
+      losses.overflow += bus->statistics().overflow;
+      losses.malformed += bus->statistics().malformed;
+    }
+    return losses;
+  }
+
+ private:
+  /// The kernel's stamps, brought to another clock, may go back by microseconds: frames of one bus
+  /// keep their order.
+  void take(int index, CanBus& bus) {
+    std::int64_t& last_ns = last_ns_[static_cast<std::size_t>(index)];
+    std::array<CanFrame, 64> frames;
+    for (int count; (count = bus.receive(frames)) > 0;) {
+      for (int i = 0; i < count; ++i) {
+        CanFrame& frame = frames[static_cast<std::size_t>(i)];
+        frame.timestamp_ns = last_ns = std::max(last_ns, frame.timestamp_ns);
+        heard_.push_back({index, frame});
+      }
+    }
+  }
+
+  std::vector<std::unique_ptr<CanBus>> buses_;
+  std::vector<CanBus*> ends_;
+  std::vector<std::int64_t> last_ns_;
+  std::vector<Heard> heard_;
+};
+
+ListeningLosses listen(const Robot& robot, const FrameSource& source, const FrameSink& sink,
+                       const std::function<void()>& idle) {
+  Listener listener(robot);
+  const std::int64_t offset_ns = unix_offset_ns();
+  const std::int64_t start_ns = monotonic_ns();
+  const auto end_ns = start_ns + static_cast<std::int64_t>(source.duration_s * 1e9);
+  bool enough = false;
+  while (!enough && (source.stop == nullptr || *source.stop == 0)) {
+    const std::int64_t now_ns = monotonic_ns();
+    if (source.duration_s > 0.0 && now_ns >= end_ns) break;
+    for (const Heard& heard : listener.wait(now_ns + kIdle_ns)) {
+      enough = !sink(heard.frame.timestamp_ns + offset_ns, heard.bus, heard.frame);
+      if (enough) break;
+    }
+    if (idle) idle();
+  }
+  return listener.losses();
+}
+
+}  // namespace
+
+bool opens_fd(const BusConfig& bus) { return bus.fd || bus.can.rfind("virtual:", 0) == 0; }
+
+int bus_of_interface(const Robot& robot, const std::string& interface, const std::string& file) {
+  std::string known;
+  for (std::size_t i = 0; i < robot.buses.size(); ++i) {
+    const BusConfig& bus = robot.buses[i];
+    const std::string name = candump_interface(bus.can);
+    if (interface == bus.name || interface == name) return static_cast<int>(i);
+    known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", bus.name, name);
+  }
+  throw ConfigError::at(
+      file, 0, "",
+      fmt::format("interface '{}' is none of {}'s buses, which are {}; add --bus "
+                  "{}=socketcan:{} if it is that one",
+                  interface, robot.name, known, robot.buses.front().name, interface));
+}
+
+ListeningLosses each_frame(const Robot& robot, const FrameSource& source, const FrameSink& sink,
+                           const std::function<void()>& idle) {
+  if (source.file.empty()) return listen(robot, source, sink, idle);
+  CandumpReader reader(source.file);
+  LoggedFrame logged;
+  while ((source.stop == nullptr || *source.stop == 0) && reader.next(&logged)) {
+    const int bus = bus_of_interface(robot, logged.interface, source.file);
+    if (!sink(logged.time_ns, bus, logged.frame)) break;
+  }
+  return {};
+}
+
+}  // namespace limber::bus_tools

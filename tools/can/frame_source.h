@@ -1,0 +1,40 @@
+// Where frames come from: the buses of an arm, or a file in candump's log format.
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "drivers/can/can_frame.h"
+#include "robots/loader/robot.h"
+
+namespace limber::bus_tools {
+
+struct FrameSource {
+  std::string file;       ///< empty: the buses themselves
+  double duration_s = 0;  ///< of listening; 0: until `stop`
+  const volatile std::sig_atomic_t* stop = nullptr;
+};
+
+/// A frame with its time: of the file; of arrival since 1970 if heard. False: enough.
+using FrameSink = std::function<bool(std::int64_t time_ns, int bus, const CanFrame& frame)>;
+
+/// Frames that this end of the buses has lost, and datagrams that were none.
+struct ListeningLosses {
+  std::int64_t overflow = 0;
+  std::int64_t malformed = 0;
+};
+
+/// Gives every frame to `sink`. A file's interfaces are the names of the robot's buses, or of their
+/// addresses. `idle` is called now and then while nothing arrives. Throws ConfigError.
+ListeningLosses each_frame(const Robot& robot, const FrameSource& source, const FrameSink& sink,
+                           const std::function<void()>& idle = {});
+
+/// The robot's bus that a file's interface is. Throws ConfigError, with the buses there are.
+int bus_of_interface(const Robot& robot, const std::string& interface, const std::string& file);
+
+/// Whether FD frames can be opened there: always in user space, else if the bus carries them.
+bool opens_fd(const BusConfig& bus);
+
+}  // namespace limber::bus_tools

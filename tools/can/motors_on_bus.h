@@ -1,0 +1,27 @@
+// The motors of an arm one by one, as their drives know them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "robots/loader/robot.h"
+#include "robots/loader/second_motor.h"
+
+namespace limber::bus_tools {
+
+struct Motor {
+  std::string name;   ///< of its joint, with /2 for a second motor
+  JointConfig joint;  ///< `drive` is this motor's
+};
+
+inline std::vector<Motor> motors_on_bus(const Robot& robot, int bus) {
+  std::vector<Motor> motors;
+  for (const JointConfig& joint : robot.joints) {
+    if (joint.drive.bus == bus) motors.push_back({joint.name, joint});
+    if (joint.has_antagonist && joint.antagonist.bus == bus)
+      motors.push_back({joint.name + "/2", second_motor(joint)});
+  }
+  return motors;
+}
+
+}  // namespace limber::bus_tools

@@ -1,0 +1,77 @@
+"""Commands that identify the arm from its runs: `limber identify ...`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from limber.cli.options import console
+
+app = typer.Typer(help="Identify parameters of the arm from recorded runs.", no_args_is_help=True)
+
+Runs = Annotated[list[Path], typer.Argument(help="Logs, or folders of runs.")]
+Robot = Annotated[
+    str | None,
+    typer.Option(help="The arm's name or folder; default: the copy beside the first log."),
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", help="Folder for the results; default: beside the log.")
+]
+
+
+@app.command("motion")
+def motion(
+    robot: Annotated[str, typer.Option(help="The arm's name or folder.")] = "openarm",
+    out: Annotated[Path, typer.Option("--out", help="Scenario file to write.")] = Path(
+        "identify.yaml"
+    ),
+    spread: Annotated[
+        float, typer.Option(min=0.05, max=3.0, help="How far from home joints go, rad or m.")
+    ] = 0.6,
+    poses: Annotated[int, typer.Option(min=2, max=50, help="Poses of the tour.")] = 5,
+    seed: Annotated[int, typer.Option(help="Selects the tour.")] = 1,
+) -> None:
+    """Write a scenario whose log serves the other commands: a tour of poses, slow and fast."""
+    from limber.identify import commands
+
+    commands.plan(robot, spread, poses, seed, out, console)
+
+
+def _from_motion(kind: str, what: str) -> None:
+    """The commands that need no options of their own."""
+
+    @app.command(kind, help=what)
+    def identify(runs: Runs, robot: Robot = None, out: Out = None) -> None:
+        from limber.identify import commands
+
+        commands.run(kind, runs, robot, out, console)
+
+
+for kind, what in (
+    ("torque-constant", "Identify true over assumed motor torque, from slow motions up and down."),
+    (
+        "friction",
+        "Identify Coulomb, viscous and breakaway friction, from slow and fast motions both ways.",
+    ),
+    ("stiffness", "Identify the stiffness of the joints' springs, from deflection over torque."),
+    (
+        "gravity",
+        "Identify masses and centres of the links as far as gravity shows them; propose a URDF.",
+    ),
+):
+    _from_motion(kind, what)
+
+
+@app.command("payload")
+def payload(
+    runs: Runs,
+    robot: Robot = None,
+    offsets: Annotated[
+        bool, typer.Option("--offsets", help="Estimate constant joint torque offsets as well.")
+    ] = False,
+    out: Out = None,
+) -> None:
+    """Identify mass and centre of mass of the payload at the tip, from static poses."""
+    from limber.identify import payload as module
+
+    module.run(runs, robot, offsets, out, console)

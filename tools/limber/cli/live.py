@@ -1,0 +1,53 @@
+"""Commands for a stack that is running."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from limber.cli.options import become, console
+
+app = typer.Typer()
+
+
+@app.command()
+def send(
+    entries: Annotated[
+        list[str] | None,
+        typer.Argument(help="Such as 'mode: active' or 'gains: {law: salisbury}'."),
+    ] = None,
+    robot: Annotated[str, typer.Option(help="The running arm: name or folder.")] = "openarm",
+) -> None:
+    """Send requests (mode, gains, goal, push, wall, ...) to a running stack."""
+    from limber.live.network import require_multicast
+
+    require_multicast()
+    become("limber-send", "--robot", robot, *(entries or []))
+
+
+@app.command()
+def watch(
+    robot: Annotated[str, typer.Option(help="For joint names and limits.")] = "openarm",
+    once: Annotated[bool, typer.Option("--once", help="Print one picture and exit.")] = False,
+) -> None:
+    """Show mode, joints, tip, faults and channel rates live."""
+    from limber.live import watch as module
+    from limber.live.network import require_multicast
+    from limber.model.robot import load_robot
+
+    require_multicast()
+    module.watch(load_robot(robot).joints, module.law_names(), once, console)
+
+
+@app.command()
+def record(
+    out: Annotated[Path, typer.Option("--out", help="Log file to write.")],
+    duration: Annotated[
+        float, typer.Option(min=0.0, max=1e6, help="Seconds; 0: until Ctrl-C.")
+    ] = 0.0,
+) -> None:
+    """Record all messages without loss, until Ctrl-C."""
+    from limber.paths import output_folder
+
+    output_folder(out.parent)
+    become("limber-record", "--out", str(out), "--duration", str(duration))

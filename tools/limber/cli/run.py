@@ -1,0 +1,169 @@
+"""Commands that run scenarios and judge the result."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from limber.cli.options import (
+    Bus,
+    Out,
+    Private,
+    Robot,
+    ScenarioPath,
+    become,
+    bus_words,
+    console,
+)
+from limber.errors import InputError
+
+app = typer.Typer()
+
+
+@app.command()
+def demo(
+    out: Out = None,
+    seconds: Annotated[
+        float | None, typer.Option(min=1.0, max=600.0, help="Stop after this much arm time.")
+    ] = None,
+    lockstep: Annotated[bool, typer.Option("--lockstep", help="No clock: repeatable.")] = False,
+    no_watch: Annotated[
+        bool, typer.Option("--no-watch", help="Show the progress only, not the live view.")
+    ] = False,
+    private: Private = False,
+) -> None:
+    """Push a simulated arm on a CAN bus and measure its stiffness: the main job in a minute."""
+    from limber.run import demo as module
+    from limber.run.options import RunOptions
+
+    options = RunOptions(out, lockstep, live_view=not no_watch, private_network=private)
+    raise typer.Exit(module.demo(seconds, options, console))
+
+
+@app.command()
+def run(
+    scenario: ScenarioPath,
+    out: Out = None,
+    lockstep: Annotated[
+        bool | None,
+        typer.Option("--lockstep/--realtime", help="Overrides the scenario's mode."),
+    ] = None,
+    bus: Bus = None,
+    rate: Annotated[
+        float | None,
+        typer.Option(min=1.0, max=20000.0, help="Cycles per second instead of robot.yaml's."),
+    ] = None,
+    no_sim: Annotated[
+        bool, typer.Option("--no-sim", help="A real arm (or another simulator) is on the bus.")
+    ] = False,
+    can: Annotated[
+        bool, typer.Option("--can", help="Record the CAN frames, too: run.can.log.")
+    ] = False,
+    private: Private = False,
+) -> None:
+    """Run a scenario with the real processes, record it, measure it."""
+    from limber.run import commands
+    from limber.run.options import RunOptions
+
+    options = RunOptions(
+        out, lockstep, tuple(bus or ()), not no_sim, private, rate_hz=rate, record_can=can
+    )
+    raise typer.Exit(commands.run(scenario, options, console))
+
+
+@app.command()
+def lab(
+    scenario: ScenarioPath,
+    out: Out = None,
+    can: Annotated[
+        bool, typer.Option("--can", help="Write the CAN frames, too: run.can.log.")
+    ] = False,
+) -> None:
+    """Run a scenario in one process, as fast as possible; the same bytes as run --lockstep."""
+    from limber.run import commands
+
+    raise typer.Exit(commands.lab(scenario, out, can, console))
+
+
+@app.command()
+def sim(
+    robot: Robot,
+    bus: Bus = None,
+    scenario: Annotated[
+        Path | None, typer.Option(help="Start pose, friction, what happens when.")
+    ] = None,
+    rate: Annotated[
+        float | None,
+        typer.Option(min=1.0, max=20000.0, help="Control periods per second."),
+    ] = None,
+    no_stand: Annotated[
+        bool, typer.Option("--no-stand", help="Nothing carries the arm before its drives do.")
+    ] = False,
+    no_friction: Annotated[
+        bool, typer.Option("--no-friction", help="Joints without friction.")
+    ] = False,
+) -> None:
+    """Simulate an arm behind its motor drives in real time, until Ctrl-C."""
+    from limber.run.simulate import introduce
+
+    words = [*bus_words(bus), "--realtime"]
+    if scenario is not None:
+        words += ["--scenario", str(scenario)]
+    if rate is not None:
+        words += ["--rate", f"{rate:.9g}"]
+    words += ["--no-stand"] * no_stand + ["--no-friction"] * no_friction
+    folder = introduce(robot, bus_words(bus), no_stand, console)
+    become("limber-sim", "--robot", str(folder), *words)
+
+
+@app.command()
+def measure(folder: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
+    """Measure a recorded run again, from its log and scenario."""
+    from limber.run import commands
+
+    raise typer.Exit(commands.measure_again(folder, console))
+
+
+@app.command()
+def check(
+    what: Annotated[str, typer.Argument(help="A robot's name or folder, a URDF, or a scenario.")],
+    base: Annotated[str | None, typer.Option(help="Base link, for a bare URDF.")] = None,
+    tip: Annotated[str | None, typer.Option(help="Tip link, for a bare URDF.")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw the traffic of a cycle on the robot's buses (PNG).")
+    ] = None,
+) -> None:
+    """Check a robot, URDF or scenario with the code that all programs share."""
+    from limber.model.validation import checker_arguments
+
+    arguments = checker_arguments(what, base, tip)
+    if picture is not None:
+        _bus_picture(arguments, picture)
+    become("limber-check", *arguments)
+
+
+def _bus_picture(arguments: list[str], path: Path) -> None:
+    from limber.model.validation import run_checker
+
+    if arguments[0] != "robot":
+        raise InputError("--picture is for a robot: only it has buses")
+    done = run_checker([*arguments, "--json"])
+    if done.returncode == 0:  # else the check below reports why
+        from limber.plot import bus_cycle
+
+        bus_cycle.draw(json.loads(done.stdout), path)
+        console.print(f"{path}  [dim]one cycle on each bus[/]", highlight=False, soft_wrap=True)
+
+
+@app.command(
+    "eval",
+    context_settings={
+        "ignore_unknown_options": True,
+        "allow_extra_args": True,
+        "help_option_names": [],
+    },
+)
+def evaluate(context: typer.Context) -> None:
+    """Evaluate control laws: JSON from a file or standard input in, JSON out (docs/eval.md)."""
+    become("limber-eval", *context.args)

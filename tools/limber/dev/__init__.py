@@ -1,0 +1,1 @@
+"""For those who work on limber: machine check, tests, benchmarks."""

@@ -1,0 +1,89 @@
+"""The tables of gains in scenarios/README.md, written from what the controller lists."""
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from limber.paths import ROOT, program
+
+README = ROOT / "scenarios" / "README.md"
+BEGIN = "<!-- gains: written by `limber docs` from limber-controller --list-laws --json -->"
+END = "<!-- end of gains -->"
+
+
+def listing(robot: str | None = None) -> dict[str, Any]:
+    """All gains and laws; with a robot also which laws it cannot run, and why."""
+    command = [str(program("limber-controller")), "--list-laws", "--json"]
+    if robot is not None:
+        command += ["--robot", robot]
+    return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+
+def _number(value: float) -> str:
+    return f"{value:g}".replace("e+0", "e").replace("e+", "e")
+
+
+def _range(row: dict[str, Any]) -> str:
+    bounds = f"{_number(row['low'])} to {_number(row['high'])}"
+    if "high_rotation" in row:
+        bounds += f", rotation to {_number(row['high_rotation'])}"
+    return f"{bounds} {row.get('unit', '')}".strip()
+
+
+def _default(row: dict[str, Any]) -> str:
+    value = row["default"]
+    if value == "robot.yaml":
+        return "`robot.yaml`"
+    return f"`{value}`" if isinstance(value, str) else _number(value)
+
+
+def _meaning(row: dict[str, Any]) -> str:
+    if row["kind"] == "joints":
+        return f"{row['meaning']}; one number, or one a joint"
+    if row["kind"] == "periods":
+        words = ", ".join(f"`{word['word']}`" for word in row["words"])
+        return f"{row['meaning']}: a map of {words}"
+    return row["meaning"]
+
+
+def _words(row: dict[str, Any]) -> str:
+    marked = (f"`{w['word']}`" + ("*" if w["demonstration"] else "") for w in row["words"])
+    return ", ".join(marked)
+
+
+def _row(row: dict[str, Any], law: str | None = None) -> str:
+    values = _words(row) if row["kind"] in ("choice", "switch") else _range(row)
+    cells = [f"`{row['key']}`", _meaning(row), values, _default(row)]
+    if law is not None:
+        cells.insert(1, f"`{law}`")
+    return "| " + " | ".join(cells) + " |"
+
+
+def tables() -> str:
+    found = listing()
+    numbers = [row for row in found["gains"] if row["kind"] not in ("choice", "switch")]
+    choices = [row for row in found["gains"] if row["kind"] in ("choice", "switch")]
+    lines = [BEGIN, "", "| number | what | range, unit | default |", "|---|---|---|---|"]
+    lines += [_row(row) for row in numbers]
+    lines += ["", "| choice | what | words | default |", "|---|---|---|---|"]
+    lines += [_row(row) for row in choices]
+    lines += ["", "Of single laws:", "", "| key | law | what | range or words | default |"]
+    lines += ["|---|---|---|---|---|"]
+    lines += [_row(row, law["name"]) for law in found["laws"] for row in law["parameters"]]
+    lines += ["", "*: demonstrates a mistake; refused unless every bus is simulated.", "", END]
+    return "\n".join(lines)
+
+
+def updated(text: str) -> str:
+    """The README's text with its tables as they should be."""
+    start, end = text.index(BEGIN), text.index(END) + len(END)
+    return text[:start] + tables() + text[end:]
+
+
+def write(path: Path = README) -> bool:
+    """Writes the tables into the README; False if they stood there already."""
+    before = path.read_text(encoding="utf-8")
+    after = updated(before)
+    path.write_text(after, encoding="utf-8")
+    return after != before

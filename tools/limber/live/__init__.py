@@ -1,0 +1,1 @@
+"""A running stack: its messages, a live view, requests to it, and the network they need."""

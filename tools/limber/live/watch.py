@@ -1,0 +1,203 @@
+"""`limber watch`: a live view of the arm in a terminal."""
+
+import subprocess
+import time
+from contextlib import closing
+
+import numpy as np
+from rich.columns import Columns
+from rich.console import Console, Group
+from rich.live import Live
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from limber import messages, tables
+from limber.live.listener import Listener
+from limber.model.robot import JointInfo
+from limber.model.rotations import rotation_error
+from limber.paths import program
+
+PERIODIC = ("JOINT_STATE", "JOINT_TORQUE", "CONTROLLER_STATUS", "DRIVER_STATUS", "SIM_TRUTH")
+BAR_WIDTH = 16
+GOOD, WARN, BAD = "green", "yellow", "bold red"
+
+
+def law_names() -> list[str]:
+    """In the order of their numbers in CONTROLLER_STATUS."""
+    command = [str(program("limber-controller")), "--list-laws"]
+    lines = subprocess.run(command, capture_output=True, text=True, check=False).stdout.splitlines()
+    return [line.split()[0] for line in lines if line.strip()]
+
+
+def _settings(status: np.void) -> dict[str, str]:
+    """Settings of the law that differ from the default."""
+    settings = {}
+    if status["contact"]:
+        sources = messages.constants("compliance_gains_t", "CONTACT_")
+        settings["contact"] = sources[int(status["contact"])].lower().replace("_", " ")
+    terms = messages.constants("compliance_gains_t", "PERIOD_")
+    held = {terms[i]: int(cycles) for i, cycles in enumerate(status["term_period_cycles"])}
+    periods = [f"{term} {cycles}" for term, cycles in held.items() if cycles > 1]
+    if periods:
+        settings["periods"] = ", ".join(periods) + " cycles"
+    return settings
+
+
+class View:
+    """Draws the listener's state; `joints` give names and position limits."""
+
+    def __init__(self, listener: Listener, joints: list[JointInfo], laws: list[str]) -> None:
+        self.listener = listener
+        self.laws = laws
+        self.joints = joints
+
+    def render(self) -> Group:
+        state = self.listener.newest("JOINT_STATE")
+        status = self.listener.newest("CONTROLLER_STATUS")
+        panels = [Panel(self._state(state, status), title="arm", width=39)]
+        panels.append(Panel(self._tip(status), title="tip", width=39))
+        return Group(
+            Columns(panels),
+            self._joints(state) if state is not None else Text("no JOINT_STATE yet", style=WARN),
+            self._buses(self.listener.newest("DRIVER_STATUS")),
+            self._channels(),
+        )
+
+    def _stale(self, channel: str) -> bool:
+        last = self.listener.channels[channel]
+        timeout_s = messages.channels()[channel].timeout_s
+        return last.count == 0 or time.monotonic() - last.last_s > max(timeout_s, 0.2)
+
+    def _state(self, state: np.void | None, status: np.void | None) -> Table:
+        table = Table.grid(padding=(0, 2))
+        if status is None or self._stale("CONTROLLER_STATUS"):
+            table.add_row("mode", Text("STALE: no controller", style=BAD))
+        if status is not None:
+            mode = messages.constants("controller_status_t", "MODE_")[int(status["mode"])]
+            reason = messages.constants("controller_status_t", "REASON_")[int(status["reason"])]
+            law = int(status["law"])
+            limits = messages.bit_names("controller_status_t", "LIMIT_", int(status["limits"]))
+            table.add_row("mode", Text(mode, style=GOOD if mode in ("HOLD", "ACTIVE") else WARN))
+            table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
+            if reason != "NONE":
+                table.add_row("because", Text(reason, style=BAD))
+            table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
+            for name, setting in _settings(status).items():
+                table.add_row(name, setting)
+        if state is None or self._stale("JOINT_STATE"):
+            table.add_row("drives", Text("STALE: no driver", style=BAD))
+        if state is not None:
+            drive = messages.constants("joint_state_t", "DRIVE_")[int(state["drive_state"])]
+            fault = messages.constants("joint_state_t", "FAULT_")[int(state["fault"])]
+            table.add_row("drives", Text(drive, style=GOOD if drive == "ON" else WARN))
+            joint = int(state["fault_joint"])
+            where = f" at {self._joint_name(joint)}" if joint >= 0 else ""
+            table.add_row("fault", Text(fault + where, style="" if fault == "NONE" else BAD))
+            table.add_row("arm time", f"{float(state['time_ns']) * 1e-9:.1f} s")
+        return table
+
+    def _tip(self, status: np.void | None) -> Table:
+        table = Table.grid(padding=(0, 1))
+        if status is None:
+            return table
+        away = (status["p_BT"] - status["p_BD"]) * 1e3
+        turned = rotation_error(status["quat_BT"][None], status["quat_BD"][None])[0]
+        table.add_row("", "x", "y", "z")
+        table.add_row("position", *(f"{v:+.4f}" for v in status["p_BT"]), "m")
+        table.add_row("away", *(f"{v:+.2f}" for v in away), "mm")
+        table.add_row("turned", *(f"{v:+.2f}" for v in np.degrees(turned)), "°")
+        table.add_row("force", *(f"{v:+.1f}" for v in status["F_law"][:3]), "N")
+        if status["contact"]:
+            table.add_row("contact", *(f"{v:+.1f}" for v in status["F_ext"][:3]), "N")
+            table.add_row("", *(f"{v:+.2f}" for v in status["F_ext"][3:]), "N m")
+        energies = {"spring": "spring", "tank": "tank", "passive": "passivity"}
+        for label, energy in energies.items():
+            table.add_row(label, f"{float(status[f'{energy}_energy_J']):+.3f}", "", "", "J")
+        return table
+
+    def _joint_name(self, index: int) -> str:
+        return self.joints[index].name if index < len(self.joints) else f"joint {index + 1}"
+
+    def _joints(self, state: np.void) -> Table:
+        numbers = (">speed", ">torque", ">applied", ">°C", ">age")
+        table = tables.table("<joint", ">position", "<", *numbers, "<", padding=(0, 1))
+        for i in range(int(state["num_joints"])):
+            q = float(state["q"][i])
+            flags = messages.bit_names("joint_state_t", "JOINT_", int(state["joint_flags"][i]))
+            wrong = [flag for flag in flags if flag in ("DRIVE_ERROR", "OUT_OF_RANGE")]
+            age = int(state["age_cycles"][i])
+            table.add_row(
+                self._joint_name(i),
+                f"{q:+.3f}",
+                self._bar(i, q),
+                f"{float(state['v'][i]):+.3f}",
+                f"{float(state['tau'][i]):+.2f}",
+                f"{float(state['tau_applied'][i]):+.2f}",
+                f"{float(state['temperature_degC'][i]):.0f}",
+                Text(f"{age}", style=BAD if age > 1 else ""),
+                Text(" ".join(wrong), style=BAD),
+            )
+        return table
+
+    def _bar(self, index: int, q: float) -> Text:
+        if index >= len(self.joints):
+            return Text("")
+        low, high = self.joints[index].low, self.joints[index].high
+        if not (np.isfinite(low) and np.isfinite(high)):
+            return Text("")
+        place = round((q - low) / (high - low) * (BAR_WIDTH - 1))
+        near = not 1 <= place <= BAR_WIDTH - 2
+        place = min(max(place, 0), BAR_WIDTH - 1)
+        return Text("─" * place + "●" + "─" * (BAR_WIDTH - 1 - place), style=WARN if near else GOOD)
+
+    def _buses(self, status: np.void | None) -> Table:
+        of_bus = (">load", ">predicted", ">refused", ">errors", ">foreign")
+        of_joints = (">late", ">lost", ">invalid")
+        table = tables.table("<bus", "<state", *of_bus, *of_joints, padding=(0, 1))
+        if status is None:
+            return table
+        states = messages.constants("driver_status_t", "BUS_")
+        replies = [int(np.sum(status[f"replies_{how}"])) for how in ("late", "lost", "invalid")]
+        for b in range(int(status["num_buses"])):
+            state = states[int(status["bus_state"][b])]
+            counts = [int(status[key][b]) for key in ("send_refused", "error_frames")]
+            foreign = int(status["frames_foreign"][b])
+            table.add_row(
+                f"{b + 1}",
+                Text(state.replace("_", " "), style="" if state == "GOOD" else BAD),
+                f"{float(status['bus_load_counted'][b]):.0%}",
+                f"{float(status['bus_load_predicted'][b]):.0%}",
+                *(Text(f"{n}", style=WARN if n else "") for n in (*counts, foreign)),
+                *(Text(f"{n}", style=WARN if n else "") for n in (replies if b == 0 else ())),
+            )
+        return table
+
+    def _channels(self) -> Table:
+        table = tables.table("<channel", ">Hz", ">age", ">lost", "<", padding=(0, 2))
+        for name, state in self.listener.channels.items():
+            age = f"{time.monotonic() - state.last_s:.2f} s" if state.count else "-"
+            stale = Text("STALE" if self._stale(name) else "", style=BAD)
+            lost = Text(str(state.lost), style=WARN if state.lost else "")
+            table.add_row(name, f"{state.rate_hz():.0f}", age, lost, stale)
+        return table
+
+
+def watch(
+    joints: list[JointInfo],
+    laws: list[str],
+    once: bool,
+    console: Console,
+    rate_hz: float = 10.0,
+) -> None:
+    """Draws until Ctrl-C; with `once`, one picture after one second."""
+    with closing(Listener(*PERIODIC)) as listener:
+        view = View(listener, joints, laws)
+        if once:
+            time.sleep(1.0)
+            console.print(view.render())
+            return
+        with Live(view.render(), console=console, auto_refresh=False, screen=True) as live:
+            while True:
+                time.sleep(1.0 / rate_hz)
+                live.update(view.render(), refresh=True)

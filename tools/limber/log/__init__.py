@@ -1,0 +1,1 @@
+"""Recorded logs: reading them, and the commands that print or convert them."""

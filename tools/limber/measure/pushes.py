@@ -1,0 +1,226 @@
+"""Apparent stiffness: displacement of the tip for each push of a scenario, beside the expected."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.log.reader import Log, time_s
+from limber.measure import statics
+from limber.measure.results import Result, close_to
+from limber.model.scenario import Push, Scenario
+
+BEFORE_S = 0.2  # rest that is averaged before a push
+PLATEAU_SHARE = 0.4  # the last part of a push's plateau, in which the arm is at rest again
+AXIS_NAMES = ("x", "y", "z", "rx", "ry", "rz")
+
+
+@dataclass
+class MeasuredPush:
+    """One push. All is the difference of two rests: before the push, and at its end."""
+
+    push: Push
+    wrench: np.ndarray  # 6, N and N m, base axes
+    displacement: np.ndarray  # 6, m and rad
+    direction: np.ndarray  # 6, unit, of the push's force or torque
+    C_expected: np.ndarray  # 6x6
+    friction_bound: float  # most of the push that joint friction can hold at a rest, N or N m
+    friction_took: float  # what it did hold, by the simulator's friction torques
+    offset_after_m: float  # how far from where it was the tip came to rest after the release
+
+    @property
+    def force(self) -> float:
+        return float(self.wrench @ self.direction)
+
+    @property
+    def moved(self) -> float:
+        """Along the push, m or rad."""
+        return float(self.displacement @ self.direction)
+
+    @property
+    def stiffness(self) -> float:
+        """What a hand feels: force over distance, N/m or N m/rad; infinite if nothing moved."""
+        return self.force / self.moved if self.moved != 0.0 else float("inf")
+
+    @property
+    def stiffness_without_friction(self) -> float:
+        """The law's part of it: what is left of the push, over distance."""
+        left = self.force - self.friction_took
+        return left / self.moved if self.moved != 0.0 else float("inf")
+
+    @property
+    def expected(self) -> float:
+        return statics.stiffness_along(self.C_expected, self.direction)
+
+    @property
+    def angular(self) -> bool:
+        return bool(np.any(self.direction[3:]))
+
+    @property
+    def axis(self) -> str:
+        """Such as +x or -rz; the numbers if it is along none."""
+        largest = int(np.argmax(np.abs(self.direction)))
+        if abs(self.direction[largest]) > 1 - 1e-6:
+            return "+-"[int(self.direction[largest] < 0)] + AXIS_NAMES[largest]
+        part = self.direction[3:] if self.angular else self.direction[:3]
+        return "(" + " ".join(f"{value:+.2f}" for value in part) + ")"
+
+
+def measure_pushes(log: Log, scenario: Scenario) -> list[MeasuredPush]:
+    """All pushes of the tip that the log covers and that a law resists with a stiffness."""
+    truth, status = log.read("SIM_TRUTH"), log.read("CONTROLLER_STATUS")
+    if not len(truth):
+        return []
+    pushes = [push for push in scenario.pushes if not push.link]
+    found = [_measure(truth, status, push, scenario) for push in pushes]
+    return [measured for measured in found if measured is not None]
+
+
+@dataclass(frozen=True)
+class _Rests:
+    """The two stretches of time a push is measured in."""
+
+    before: tuple[float, float]
+    during: tuple[float, float]
+
+    @staticmethod
+    def of(push: Push) -> "_Rests":
+        plateau = push.duration_s - 2 * push.ramp_s
+        end = push.at_s + push.duration_s - push.ramp_s
+        return _Rests((push.at_s - BEFORE_S, push.at_s), (end - PLATEAU_SHARE * plateau, end))
+
+    def mean(self, records: np.ndarray, field: str, when: str = "during") -> np.ndarray:
+        low, high = getattr(self, when)
+        t = time_s(records)
+        return records[field][(t >= low) & (t < high)].mean(axis=0)
+
+    def change(self, records: np.ndarray, field: str) -> np.ndarray:
+        return self.mean(records, field) - self.mean(records, field, "before")
+
+    def covered_by(self, records: np.ndarray) -> bool:
+        t = time_s(records)
+        inside = [((t >= low) & (t < high)).sum() >= 2 for low, high in (self.before, self.during)]
+        return all(inside) and t[-1] >= self.during[1]
+
+
+def _measure(
+    truth: np.ndarray, status: np.ndarray, push: Push, scenario: Scenario
+) -> MeasuredPush | None:
+    rests = _Rests.of(push)
+    if not rests.covered_by(truth):
+        return None
+    gains = scenario.gains_at(push.at_s)
+    n = len(scenario.robot.joints)
+    J = scenario.robot.chain.jacobian(rests.mean(truth, "q"))
+    G = statics.tip_response(gains.law, J, gains.K_x, gains.K_q)
+    direction = _direction(push.wrench)
+    if G is None or not direction @ G @ J.T @ direction > 0:
+        return None
+    C = G @ J.T
+    bound = took = 0.0
+    if scenario.friction:
+        held = np.array([joint.friction for joint in scenario.robot.joints])
+        bound = statics.greatest_friction_force(G, C, direction, held)
+        torque = rests.change(truth, "tau_friction")[:n]
+        if len(status) and rests.covered_by(status):
+            torque = torque + rests.change(status, "tau_null")[:n]
+        took = -statics.force_of_torque(G, C, direction, torque)
+    return MeasuredPush(
+        push,
+        rests.change(truth, "F_push"),
+        _displacement(truth, rests),
+        direction,
+        C,
+        bound,
+        took,
+        _offset_after(truth, rests, scenario),
+    )
+
+
+def _direction(wrench: np.ndarray) -> np.ndarray:
+    """Unit vector of the force, or of the torque if there is no force."""
+    direction = np.zeros(6)
+    part = slice(0, 3) if np.any(wrench[:3]) else slice(3, 6)
+    direction[part] = wrench[part] / np.linalg.norm(wrench[part])
+    return direction
+
+
+def _displacement(truth: np.ndarray, rests: _Rests) -> np.ndarray:
+    R = {}
+    t = time_s(truth)
+    for when, (low, high) in (("before", rests.before), ("during", rests.during)):
+        quaternions = truth["quat_BT"][(t >= low) & (t < high)]
+        R[when] = Rotation.from_quat(quaternions, scalar_first=True).mean()
+    turned = (R["during"] * R["before"].inv()).as_rotvec()
+    return np.concatenate([rests.change(truth, "p_BT"), turned])
+
+
+def _offset_after(truth: np.ndarray, rests: _Rests, scenario: Scenario) -> float:
+    """Distance from the rest before the push to the rest before whatever happens next."""
+    t, end = time_s(truth), rests.during[1]
+    following = min((at for at in scenario.event_times if at > end), default=t[-1])
+    after = (t >= following - BEFORE_S) & (t < following) & (t > end + 2 * BEFORE_S)
+    if not after.any():
+        return float("nan")
+    offset = truth["p_BT"][after].mean(axis=0) - rests.mean(truth, "p_BT", "before")
+    return float(np.linalg.norm(offset))
+
+
+def push_results(pushes: list[MeasuredPush], tolerance: float) -> list[Result]:
+    """With friction a push feels stiffer than the law is; then the part of the law is judged."""
+    results = []
+    for measured in pushes:
+        unit, force_unit = ("N m/rad", "N m") if measured.angular else ("N/m", "N")
+        name = f"stiffness {measured.axis}"
+        note = f"{measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
+        allowed = tolerance * measured.expected
+        if measured.friction_bound == 0.0:
+            results.append(
+                close_to(name, measured.stiffness, unit, measured.expected, allowed, note)
+            )
+            continue
+        results.append(Result(name, measured.stiffness, unit, note=note))
+        value = measured.stiffness_without_friction
+        note = f"friction took {measured.friction_took:.2g} {force_unit}"
+        results.append(
+            close_to(f"{name} less friction", value, unit, measured.expected, allowed, note)
+        )
+        name = f"friction band {measured.axis}"
+        note = "predicted, at a rest"
+        results.append(Result(name, measured.friction_bound, force_unit, note=note))
+        offset_mm = measured.offset_after_m * 1e3
+        if np.isfinite(offset_mm):
+            results.append(
+                Result(f"offset after {measured.axis}", offset_mm, "mm", note="kept by friction")
+            )
+    return results
+
+
+def stiffness_matrix(pushes: list[MeasuredPush]) -> np.ndarray | None:
+    """6x6 stiffness by least squares; None if the pushes do not span all six axes."""
+    if len(pushes) < 6:
+        return None
+    F = np.column_stack([measured.wrench for measured in pushes])
+    D = np.column_stack([measured.displacement for measured in pushes])
+    scaled = F / np.abs(F).max(axis=1, keepdims=True, initial=1e-12)
+    if np.linalg.matrix_rank(scaled, tol=1e-3) < 6:
+        return None
+    C = D @ np.linalg.pinv(F)
+    return np.linalg.inv(C)
+
+
+def matrix_results(pushes: list[MeasuredPush], tolerance: float, friction: bool) -> list[Result]:
+    """The whole matrix against the expected one, both made unitless by the expected diagonal."""
+    K = stiffness_matrix(pushes)
+    if K is None or any(
+        not np.allclose(p.C_expected, pushes[0].C_expected, rtol=0.2) for p in pushes
+    ):
+        return []
+    K_expected = np.linalg.inv(pushes[0].C_expected)
+    scale = 1.0 / np.sqrt(np.diag(K_expected))
+    S = np.outer(scale, scale)
+    off = float(np.linalg.norm((K - K_expected) * S) / np.linalg.norm(K_expected * S))
+    result = Result("stiffness matrix, off by", off, note="6x6, relative")
+    if not friction:
+        result.expected, result.tolerance, result.passed = 0.0, tolerance, bool(off <= tolerance)
+    return [result]

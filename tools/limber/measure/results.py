@@ -1,0 +1,97 @@
+"""The results of a run: named numbers with expected value, tolerance and verdict."""
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from limber import tables
+from limber.errors import InputError
+
+
+@dataclass
+class Result:
+    """`tolerance` is in the unit of the value. `passed` is None without an expected value."""
+
+    name: str
+    value: float | int | str | bool
+    unit: str = ""
+    expected: float | int | str | None = None
+    tolerance: float | None = None
+    passed: bool | None = None
+    note: str = ""
+
+
+def at_most(name: str, value: float, unit: str, limit: float, note: str = "") -> Result:
+    return Result(name, value, unit, limit, 0.0, bool(value <= limit), note)
+
+
+def close_to(
+    name: str, value: float, unit: str, expected: float, tolerance: float, note: str = ""
+) -> Result:
+    """A value that is not a number never passes."""
+    passed = bool(abs(value - expected) <= tolerance)
+    return Result(name, float(value), unit, float(expected), float(tolerance), passed, note)
+
+
+@dataclass
+class Summary:
+    header: dict[str, Any] = field(default_factory=dict)
+    results: list[Result] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        return all(result.passed is not False for result in self.results)
+
+    def find(self, name: str) -> Result | None:
+        return next((result for result in self.results if result.name == name), None)
+
+    def save(self, path: Path) -> None:
+        content = {
+            **self.header,
+            "pass": self.passed,
+            "results": [_as_json(result) for result in self.results],
+        }
+        path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+    def table(self, title: str) -> Table:
+        table = tables.table("<", ">measured", ">expected", "<", "~", title=title)
+        table.columns[-1].style = "dim"
+        for result in self.results:
+            value = f"{text(result.value)} {result.unit}".strip()
+            judged = tables.verdict(result.passed)
+            table.add_row(result.name, value, _expected(result), judged, result.note)
+        return table
+
+
+def _as_json(result: Result) -> dict[str, Any]:
+    content = asdict(result)
+    content["pass"] = content.pop("passed")
+    if not content["note"]:
+        del content["note"]
+    return content
+
+
+def _expected(result: Result) -> str:
+    if result.expected is None:
+        return ""
+    within = f" ± {text(result.tolerance)}" if result.tolerance else ""
+    return text(result.expected) + within
+
+
+def text(value: float | int | str | bool) -> str:
+    """As it is shown."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def load_header(folder: Path) -> dict[str, Any]:
+    """The summary a run left; used to measure it again."""
+    path = folder / "summary.json"
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, json.JSONDecodeError) as error:
+        raise InputError(f"{folder} holds no readable summary.json: give a run's folder") from error

@@ -1,0 +1,1 @@
+"""Robots and scenarios as the tools need them; kinematics and dynamics independent of the C++."""

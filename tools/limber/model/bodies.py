@@ -1,0 +1,98 @@
+"""What each moving joint of a chain carries: the masses of a URDF, lumped.
+
+Links joined by fixed joints are one body; whatever branches off the chain belongs to the body it
+hangs from, its own joints at zero.
+"""
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.errors import InputError
+from limber.model.urdf import MOVING, Chain, Joint, numbers_of, read_joints
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Of one link, in its own frame: kg, m, kg m² about the centre of mass."""
+
+    mass: float
+    com: np.ndarray
+    inertia: np.ndarray
+
+
+@dataclass(frozen=True)
+class Body:
+    """Behind one moving joint, in the axes and from the origin of that joint's child link.
+
+    `heaviest` is the link with the greatest mass in it, at `X_CH` of the child link, and `inertial`
+    its inertial in the URDF.
+    """
+
+    mass: float  # kg
+    moment: np.ndarray  # mass times centre of mass, kg m
+    inertia: np.ndarray  # 3x3 about the origin, kg m²
+    heaviest: str
+    inertial: Inertial
+    X_CH: np.ndarray
+
+
+def bodies(urdf: Path, chain: Chain) -> list[Body]:
+    """One for each moving joint of the chain, in order."""
+    joints, inertials = read_joints(urdf), read_inertials(urdf)
+    children = [joint.child for joint in chain.joints if joint.kind in MOVING]
+    parts: dict[str, list[tuple[str, Inertial, np.ndarray]]] = {child: [] for child in children}
+    for link, inertial in inertials.items():
+        owner, X = _owner(link, parts, joints)
+        if owner is not None:
+            parts[owner].append((link, inertial, X))
+    return [_lump(child, parts[child]) for child in children]
+
+
+def read_inertials(urdf: Path) -> dict[str, Inertial]:
+    """By link; links without mass are left out."""
+    found = {}
+    for link in ElementTree.parse(urdf).getroot().findall("link"):
+        element = link.find("inertial")
+        mass = numbers_of(element.find("mass"), "value", "0")[0] if element is not None else 0.0
+        if not mass > 0:
+            continue
+        origin, tensor = element.find("origin"), element.find("inertia")
+        R = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0")).as_matrix()
+        xx, xy, xz, yy, yz, zz = (
+            numbers_of(tensor, key, "0")[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        )
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        found[link.get("name")] = Inertial(
+            mass, numbers_of(origin, "xyz", "0 0 0"), R @ inertia @ R.T
+        )
+    return found
+
+
+def _owner(
+    link: str, owners: dict[str, list], joints: dict[str, Joint]
+) -> tuple[str | None, np.ndarray]:
+    """The body a link belongs to and the link's pose in it; None for what does not move."""
+    X = np.eye(4)
+    while link not in owners:
+        if link not in joints:
+            return None, X
+        X = joints[link].X_PF @ X
+        link = joints[link].parent
+    return link, X
+
+
+def _lump(child: str, parts: list[tuple[str, Inertial, np.ndarray]]) -> Body:
+    if not parts:
+        raise InputError(f"the link '{child}' moves and has no mass")
+    mass, moment, inertia = 0.0, np.zeros(3), np.zeros((3, 3))
+    for _, part, X in parts:
+        R, c = X[:3, :3], X[:3, :3] @ part.com + X[:3, 3]
+        mass += part.mass
+        moment += part.mass * c
+        inertia += R @ part.inertia @ R.T + part.mass * (c @ c * np.eye(3) - np.outer(c, c))
+    heaviest = max(parts, key=lambda part: part[1].mass)
+    return Body(mass, moment, inertia, *heaviest)

@@ -1,0 +1,129 @@
+"""Inverse dynamics of a serial arm from its URDF, for many samples at once.
+
+    tau = M(q) a + C(q, v) v + g(q)
+
+by the recursive Newton-Euler algorithm (Luh, Walker, Paul, 1980) in base axes. Like `urdf.py`
+independent of the C++ chain on purpose. Rotors are not part of it.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.model.bodies import Body, bodies
+from limber.model.urdf import MOVING, Chain
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Of the child link of each moving joint; first index the joint, second the sample."""
+
+    R: np.ndarray  # n x N x 3 x 3
+    p: np.ndarray  # n x N x 3, origins
+    z: np.ndarray  # n x N x 3, joint axes
+
+
+class ArmDynamics:
+    """`gravity`: acceleration in base axes, m/s²."""
+
+    def __init__(self, urdf: Path, chain: Chain, gravity: np.ndarray) -> None:
+        self.chain, self.gravity = chain, np.asarray(gravity, float)
+        self.bodies = bodies(urdf, chain)
+        self._slides = [j.kind == "prismatic" for j in chain.joints if j.kind in MOVING]
+
+    @cached_property
+    def size(self) -> int:
+        return len(self.bodies)
+
+    def torque(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """N x n from N x n: one row a sample."""
+        frames = self.frames(q)
+        F, N = self._wrenches(frames, v, a)
+        return self._project(frames, F, N)
+
+    def gravity_torque(self, q: np.ndarray) -> np.ndarray:
+        zero = np.zeros_like(q)
+        return self.torque(q, zero, zero)
+
+    def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
+        """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
+        frames, a, n = self.frames(q), self.gravity, self.size
+        Y = np.zeros((len(q), n, 4 * n))
+        for k in range(n):
+            for i in range(k + 1):
+                z, column = frames.z[i], 4 * k
+                if self._slides[i]:
+                    Y[:, i, column] = -z @ a
+                    continue
+                Y[:, i, column] = -np.cross(z, frames.p[k] - frames.p[i]) @ a
+                for axis in range(3):
+                    lever = np.cross(z, frames.R[k][:, :, axis])
+                    Y[:, i, column + 1 + axis] = -lever @ a
+        return Y
+
+    def parameters(self) -> np.ndarray:
+        """4n: what `gravity_regressor` multiplies, kg and kg m."""
+        return np.concatenate([[body.mass, *body.moment] for body in self.bodies])
+
+    def frames(self, q: np.ndarray) -> Frames:
+        R = np.tile(np.eye(3), (len(q), 1, 1))
+        p, columns = np.zeros((len(q), 3)), iter(np.asarray(q, float).T)
+        found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        for joint in self.chain.joints:
+            p = p + R @ joint.X_PF[:3, 3]
+            R = R @ joint.X_PF[:3, :3]
+            if joint.kind not in MOVING:
+                continue
+            angle, z = next(columns), R @ joint.axis
+            if joint.kind == "prismatic":
+                p = p + angle[:, None] * z
+            else:
+                R = R @ Rotation.from_rotvec(angle[:, None] * joint.axis).as_matrix()
+            found.append((R, p, z))
+        return Frames(*(np.array(part) for part in zip(*found, strict=True)))
+
+    def _wrenches(
+        self, frames: Frames, v: np.ndarray, a: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Force and moment about its origin that each body needs, outwards from the base."""
+        w, wd = np.zeros((2, len(v), 3))
+        acceleration, before = np.tile(-self.gravity, (len(v), 1)), np.zeros((len(v), 3))
+        F, N = np.zeros((2, self.size, len(v), 3))
+        for i, body in enumerate(self.bodies):
+            r, z = frames.p[i] - before, frames.z[i]
+            zv, za = z * v[:, i : i + 1], z * a[:, i : i + 1]
+            acceleration = acceleration + np.cross(wd, r) + np.cross(w, np.cross(w, r))
+            if self._slides[i]:
+                acceleration = acceleration + za + 2.0 * np.cross(w, zv)
+            else:
+                wd = wd + za + np.cross(w, zv)
+                w = w + zv
+            F[i], N[i] = _body_wrench(body, frames.R[i], acceleration, w, wd)
+            before = frames.p[i]
+        return F, N
+
+    def _project(self, frames: Frames, F: np.ndarray, N: np.ndarray) -> np.ndarray:
+        """On the joint axes, inwards from the tip."""
+        tau = np.zeros((F.shape[1], self.size))
+        force, moment = np.zeros((2, F.shape[1], 3))
+        beyond = frames.p[-1]
+        for i in reversed(range(self.size)):
+            moment = N[i] + moment + np.cross(beyond - frames.p[i], force)
+            force = F[i] + force
+            tau[:, i] = np.sum(frames.z[i] * (force if self._slides[i] else moment), axis=1)
+            beyond = frames.p[i]
+        return tau
+
+
+def _body_wrench(
+    body: Body, R: np.ndarray, acceleration: np.ndarray, w: np.ndarray, wd: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    moment = R @ body.moment
+    inertia = R @ body.inertia @ R.transpose(0, 2, 1)
+    force = body.mass * acceleration + np.cross(wd, moment) + np.cross(w, np.cross(w, moment))
+    spin = np.einsum("nij,nj->ni", inertia, w)
+    turn = np.einsum("nij,nj->ni", inertia, wd)
+    return force, np.cross(moment, acceleration) + turn + np.cross(w, spin)

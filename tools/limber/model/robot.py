@@ -1,0 +1,127 @@
+"""A robot folder as the tools need it; the C++ programs are the ones that check it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from limber.errors import InputError
+from limber.model.dynamics import ArmDynamics
+from limber.model.urdf import Chain
+from limber.paths import robot_folder
+
+EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
+
+
+@dataclass(frozen=True)
+class JointInfo:
+    """Position limits and the friction that holds it at rest: rad and N m, or m and N."""
+
+    name: str
+    low: float
+    high: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class Robot:
+    """`K_q`, N m/rad, and `K_x`, 6x6 [linear; angular], are what a law starts with.
+
+    `gravity` is the acceleration in base axes, m/s²; `home` in rad or m.
+    """
+
+    name: str
+    folder: Path
+    urdf: Path
+    base: str
+    tip: str
+    rate_hz: float
+    gravity: np.ndarray
+    buses: dict[str, str]  # name -> address
+    joints: list[JointInfo]
+    home: np.ndarray
+    K_q: np.ndarray
+    K_x: np.ndarray
+
+    @cached_property
+    def chain(self) -> Chain:
+        return Chain(self.urdf, self.base, self.tip)
+
+    @cached_property
+    def dynamics(self) -> ArmDynamics:
+        return ArmDynamics(self.urdf, self.chain, self.gravity)
+
+    @property
+    def joint_names(self) -> list[str]:
+        return [joint.name for joint in self.joints]
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = yaml.safe_load(file)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from error
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is not a table of keys and values")
+    return content
+
+
+def load_robot(name_or_path: str, beside: Path | None = None) -> Robot:
+    folder = robot_folder(name_or_path, beside)
+    content = read_yaml(folder / "robot.yaml")
+    try:
+        return _robot(content, folder)
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{folder / 'robot.yaml'}: {error} is missing or wrong; see `limber check {folder}`"
+        ) from error
+
+
+def _robot(content: dict[str, Any], folder: Path) -> Robot:
+    urdf, gains = folder / content["urdf"], content["gains"]
+    chain = Chain(urdf, content["base"], content["tip"])
+    K_t, K_r = gains["K_x_translation_N_per_m"], gains["K_x_rotation_Nm_per_rad"]
+    names = chain.joint_names
+    joints = [content["joints"][name] for name in names]
+    return Robot(
+        name=content["name"],
+        folder=folder,
+        urdf=urdf,
+        base=content["base"],
+        tip=content["tip"],
+        rate_hz=float(content["rate_hz"]),
+        gravity=chain.R_RB.T @ np.asarray(content.get("gravity_m_per_s2", EARTH), float),
+        buses={bus["name"]: bus["can"] for bus in content["buses"]},
+        joints=[
+            _joint(name, joint, chain.limits(name))
+            for name, joint in zip(names, joints, strict=True)
+        ],
+        home=np.array([_either(joint, "home_rad", "home_m", otherwise=0.0) for joint in joints]),
+        K_q=np.broadcast_to(np.asarray(gains["K_q_Nm_per_rad"], float), len(names)).copy(),
+        K_x=np.diag([float(K_t)] * 3 + [float(K_r)] * 3),
+    )
+
+
+def _joint(name: str, content: dict[str, Any], limits: tuple[float, float]) -> JointInfo:
+    low, high = limits
+    friction = content.get("friction") or {}
+    return JointInfo(
+        name,
+        _either(content, "position_min_rad", "position_min_m", otherwise=low),
+        _either(content, "position_max_rad", "position_max_m", otherwise=high),
+        max(
+            _either(friction, "coulomb_Nm", "coulomb_N", otherwise=0.0),
+            _either(friction, "static_Nm", "static_N", otherwise=0.0),
+        ),
+    )
+
+
+def _either(mapping: dict[str, Any], *keys: str, otherwise: float) -> float:
+    """The value of whichever key there is: rotary and prismatic joints name their units."""
+    return float(next((mapping[key] for key in keys if key in mapping), otherwise))

@@ -1,0 +1,169 @@
+"""A scenario as the tools need it; the C++ programs are the ones that check it."""
+
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from limber.errors import InputError
+from limber.model.robot import Robot, load_robot, read_yaml
+
+GAINS_S = 1.0  # when the gains of `active_with` arrive
+DEFAULT_LAW = "cartesian_impedance"
+
+
+@dataclass(frozen=True)
+class Push:
+    """A hand on the arm: `wrench` in base axes, N and N m; both edges take `ramp_s` of
+    `duration_s`.
+    """
+
+    at_s: float
+    wrench: np.ndarray
+    ramp_s: float
+    duration_s: float
+    link: str = ""  # empty: the tip
+
+
+@dataclass(frozen=True)
+class Gains:
+    """What holds from `at_s` on."""
+
+    at_s: float
+    law: str
+    K_x: np.ndarray
+    K_q: np.ndarray
+
+
+@dataclass(frozen=True)
+class Wall:
+    at_s: float
+    point: np.ndarray
+    normal: np.ndarray
+    stiffness_N_per_m: float
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Relative; from the scenario's `measure` section."""
+
+    stiffness: float = 0.02
+    contact_force: float = 0.02
+
+
+@dataclass
+class Scenario:
+    name: str
+    path: Path
+    robot: Robot
+    lockstep: bool = True
+    duration_s: float = 10.0
+    seed: int = 1
+    friction: bool = True
+    pushes: list[Push] = field(default_factory=list)
+    gains: list[Gains] = field(default_factory=list)
+    walls: list[Wall] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+    event_times: list[float] = field(default_factory=list)
+    tolerances: Tolerances = field(default_factory=Tolerances)
+
+    def gains_at(self, time_s: float) -> Gains:
+        """The requested gains at a time; `gains` starts with the robot's own."""
+        return [gains for gains in self.gains if gains.at_s <= time_s][-1]
+
+
+def load_scenario(path: Path, robot: Path | None = None) -> Scenario:
+    """`robot`: the folder to read it from instead of the one the scenario names."""
+    content = read_yaml(path)
+    try:
+        loaded = load_robot(str(robot or content["robot"]), beside=path.resolve().parent)
+        scenario = Scenario(
+            name=str(content.get("name", path.stem)),
+            path=path.resolve(),
+            robot=loaded,
+            lockstep=content.get("mode", "lockstep") == "lockstep",
+            duration_s=float(content["duration_s"]),
+            seed=int(content.get("seed", 1)),
+            friction=bool(content.get("friction", True)),
+            gains=[Gains(0.0, DEFAULT_LAW, loaded.K_x, loaded.K_q)],
+            tolerances=_tolerances(content.get("measure"), path),
+        )
+        for entry in sorted(content.get("timeline") or [], key=lambda entry: float(entry["at_s"])):
+            _add(scenario, entry)
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{path}: {error} is missing or wrong; see `limber check {path}`"
+        ) from error
+    return scenario
+
+
+def active_with(gains: dict[str, Any]) -> list[dict[str, Any]]:
+    """How most timelines begin: the arm is held, becomes active, and gets its gains."""
+    return [
+        {"at_s": 0.3, "mode": "hold"},
+        {"at_s": 0.8, "mode": "active"},
+        {"at_s": GAINS_S, "gains": gains},
+    ]
+
+
+def _tolerances(content: Any, path: Path) -> Tolerances:
+    """The mapping `measure`: {stiffness: 0.02, contact_force: 0.02}; a list is for the
+    experiments.
+    """
+    if not isinstance(content, dict):
+        return Tolerances()
+    known = [item.name for item in fields(Tolerances)]
+    for key, value in content.items():
+        if key not in known:
+            raise InputError(
+                f"{path}: measure: unknown key '{key}'; allowed here: {', '.join(known)}"
+            )
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
+            raise InputError(
+                f"{path}: measure: {key}: '{value}' is wrong; expected a number in (0, 1]"
+            )
+    return Tolerances(**content)
+
+
+def _add(scenario: Scenario, entry: dict[str, Any]) -> None:
+    at_s = float(entry["at_s"])
+    kind = next(key for key in entry if key != "at_s")
+    content = entry[kind]
+    scenario.event_times.append(at_s)
+    if kind == "push":
+        scenario.pushes.append(_push(at_s, content))
+    elif kind == "gains":
+        scenario.gains.append(_changed(scenario.gains[-1], at_s, content))
+    elif kind == "wall" and isinstance(content, dict):
+        normal = np.asarray(content["normal"], float)
+        stiffness = float(content["stiffness_N_per_m"])
+        point = np.asarray(content["point_m"], float)
+        scenario.walls.append(Wall(at_s, point, normal / np.linalg.norm(normal), stiffness))
+    elif kind == "fault":
+        scenario.faults.append(str(content["kind"]))
+
+
+def _push(at_s: float, content: dict[str, Any]) -> Push:
+    wrench = np.zeros(6)
+    wrench[:3] = content.get("force_N", 0.0)
+    wrench[3:] = content.get("torque_Nm", 0.0)
+    ramp_s, duration_s = float(content.get("ramp_s", 0.0)), float(content["for_s"])
+    return Push(at_s, wrench, ramp_s, duration_s, str(content.get("link", "")))
+
+
+def _changed(before: Gains, at_s: float, content: dict[str, Any]) -> Gains:
+    """What is not named stays as it was. Naming one half's diagonal clears the coupling with the
+    other.
+    """
+    K_x, K_q = before.K_x.copy(), before.K_q.copy()
+    if "K_x" in content:
+        K_x = np.asarray(content["K_x"], float)
+    blocks = {"K_x_translation_N_per_m": slice(0, 3), "K_x_rotation_Nm_per_rad": slice(3, 6)}
+    for key, rows in blocks.items():
+        if key in content:
+            K_x[rows, :] = K_x[:, rows] = 0.0
+            K_x[rows, rows] = np.diag(np.broadcast_to(np.asarray(content[key], float), 3))
+    if "K_q_Nm_per_rad" in content:
+        K_q[:] = content["K_q_Nm_per_rad"]
+    return Gains(at_s, str(content.get("law", before.law)), K_x, K_q)

@@ -1,0 +1,42 @@
+"""Robots, URDFs and scenarios, checked by limber-check: the code that all programs share."""
+
+import subprocess
+from pathlib import Path
+
+from limber.errors import InputError
+from limber.model.scenario import Scenario, load_scenario
+from limber.paths import existing_file, program, robot_folder
+
+
+def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]:
+    """Arguments of limber-check for a robot's name or folder, a URDF, or a scenario."""
+    path = Path(what)
+    if path.suffix == ".urdf":
+        existing_file(path, "URDF file")
+        if base is None or tip is None:
+            raise InputError(
+                f"a bare URDF needs both ends: limber check {path} --base LINK --tip LINK"
+            )
+        return ["urdf", str(path), "--base", base, "--tip", tip]
+    if base is not None or tip is not None:
+        raise InputError("--base and --tip are for a bare .urdf; a robot's are in its robot.yaml")
+    if path.is_file() and path.suffix in (".yaml", ".yml") and path.name != "robot.yaml":
+        return ["scenario", str(path)]
+    folder = robot_folder(str(path.parent) if path.name == "robot.yaml" else what)
+    return ["robot", str(folder)]
+
+
+def run_checker(arguments: list[str]) -> subprocess.CompletedProcess[str]:
+    command = [str(program("limber-check")), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def load_checked(path: Path) -> Scenario:
+    """Raises InputError with limber-check's message if the scenario or its robot is wrong."""
+    existing_file(path, "scenario file (.yaml)")
+    done = run_checker(["scenario", str(path)])
+    if done.returncode != 0:
+        lines = [line for line in done.stderr.splitlines() if line.strip()]
+        message = lines[-1] if lines else f"limber-check failed (exit code {done.returncode})"
+        raise InputError(message.removeprefix("limber-check: "))
+    return load_scenario(path)

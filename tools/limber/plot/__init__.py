@@ -1,0 +1,1 @@
+"""Charts of a log, as PNG files and as an interactive page."""

@@ -1,0 +1,1 @@
+"""Runs of a scenario: the processes of the stack, or all of it in one process; the demo."""

@@ -1,0 +1,72 @@
+"""The commands run, lab and measure: check the scenario, run it, measure the log, print."""
+
+import re
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import OK, OUT_OF_TOLERANCE, InputError
+from limber.live import network
+from limber.log.reader import Log
+from limber.measure.results import Summary, load_header
+from limber.measure.summarize import measure
+from limber.model.scenario import Scenario, load_scenario
+from limber.model.validation import load_checked
+from limber.paths import existing_file, output_folder
+from limber.run import buses, runner
+from limber.run.options import FinishedRun, RunOptions
+
+
+def next_folder(name: str) -> Path:
+    """out/NAME-<n> with the lowest n that is free."""
+    taken = [re.fullmatch(rf"{re.escape(name)}-(\d+)", path.name) for path in Path("out").glob("*")]
+    number = 1 + max((int(match[1]) for match in taken if match), default=0)
+    return Path("out") / f"{name}-{number}"
+
+
+def run(path: Path, options: RunOptions, console: Console) -> int:
+    scenario = load_checked(path)
+    addresses = buses.addresses(scenario.robot, options.buses)
+    buses.warn_of_motion(addresses, options.with_simulator, console)
+    if buses.real(addresses):
+        network.require_shared_network(options.private_network)
+    else:
+        network.ensure_multicast(options.private_network)
+    folder = output_folder(options.out or next_folder(scenario.name))
+    return report(runner.run(scenario, folder, options, console), scenario, console)
+
+
+def lab(path: Path, out: Path | None, record_can: bool, console: Console) -> int:
+    scenario = load_checked(path)
+    folder = output_folder(out or next_folder(scenario.name))
+    return report(runner.lab(scenario, folder, console, record_can), scenario, console)
+
+
+def measure_again(folder: Path, console: Console) -> int:
+    """From the copies of robot and scenario beside the log."""
+    header = load_header(folder)
+    scenario = load_scenario(existing_file(folder / "scenario.yaml", "scenario"), robot=folder)
+    finished = FinishedRun(folder, header.get("mode", "unknown"))
+    finished.recorder = {"lost": header.get("recorder_lost", {})}
+    return report(finished, scenario, console)
+
+
+def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
+    """Measures the log, writes summary.json and prints it; returns the exit code."""
+    summary, _ = summarize(finished, scenario)
+    console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
+    console.print(f"log and summary: {finished.folder}", soft_wrap=True)
+    return OK if summary.passed else OUT_OF_TOLERANCE
+
+
+def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:
+    log = Log(finished.log)
+    lost = finished.recorder.get("lost", {})
+    summary, pushes = measure(log, scenario, finished.mode, lost)
+    if len(log.read("JOINT_STATE")) == 0:
+        raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
+    summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}
+    if finished.stopped_early:
+        summary.header["stopped_early"] = True
+    summary.save(finished.folder / "summary.json")
+    return summary, pushes

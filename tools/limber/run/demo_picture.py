@@ -1,0 +1,141 @@
+"""The demo in one picture: pushes, displacements, stiffness, contact with the wall, torques."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from limber.log.reader import Log, time_s
+from limber.measure.pushes import BEFORE_S, MeasuredPush
+from limber.model.scenario import Scenario
+from limber.plot.style import COLORS, STYLE, name_axes, note
+
+TERMS = {
+    "stiffness": "spring",
+    "damping": "damper",
+    "null": "posture",
+    "gravity": "gravity",
+    "coriolis": "Coriolis",
+}
+AXIS_COLORS = {"x": COLORS[1], "y": COLORS[2], "z": COLORS[0]}
+
+
+def save(log: Log, scenario: Scenario, pushes: list[MeasuredPush], path: Path) -> None:
+    truth, status = log.read("SIM_TRUTH"), log.read("CONTROLLER_STATUS")
+    linear = [measured for measured in pushes if not measured.angular]
+    with plt.rc_context(STYLE):
+        fig = plt.figure(figsize=(13, 10), layout="constrained")
+        grid = fig.add_gridspec(3, 3)
+        _moved(fig.add_subplot(grid[0, :2]), truth, linear)
+        _softness(fig.add_subplot(grid[0, 2]), linear)
+        _forces(fig.add_subplot(grid[1, :]), truth, scenario)
+        _torques(fig.add_subplot(grid[2, :]), status, scenario)
+        friction = "with" if scenario.friction else "without"
+        fig.suptitle(
+            f"{scenario.robot.name}: how soft is the arm? ({friction} joint friction)", fontsize=13
+        )
+        fig.savefig(path, dpi=120)
+    plt.close(fig)
+
+
+def _color(measured: MeasuredPush) -> str:
+    return AXIS_COLORS.get(measured.axis.lstrip("+-"), "#444444")
+
+
+def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[MeasuredPush]) -> None:
+    """The tip along each push, and where the expected stiffness would put it."""
+    t = time_s(truth)
+    for i, measured in enumerate(pushes):
+        start, length = measured.push.at_s, measured.push.duration_s
+        window = (t >= start - BEFORE_S) & (t <= start + length + 0.5)
+        rest = truth["p_BT"][(t >= start - BEFORE_S) & (t < start)].mean(axis=0)
+        sign = np.sign(measured.direction[np.argmax(np.abs(measured.direction))])
+        moved_mm = (truth["p_BT"][window] - rest) @ measured.direction[:3] * 1e3 * sign
+        ax.plot(t[window], moved_mm, color=_color(measured))
+        plateau = [start + measured.push.ramp_s, start + length - measured.push.ramp_s]
+        mm_per_N = sign * 1e3 / measured.expected
+        expected = measured.force * mm_per_N
+        left = (measured.force - measured.friction_took) * mm_per_N
+        labels = ("expected: force / stiffness", "expected, less what friction took")
+        ax.plot(plateau, [expected] * 2, "k--", lw=1.2, label=None if i else labels[0])
+        if measured.friction_bound:
+            ax.plot(plateau, [left] * 2, "k:", lw=1.6, label=None if i else labels[1])
+        tops = [*moved_mm, expected]
+        note(
+            ax,
+            f"{measured.force:.0f} N\nalong {measured.axis}",
+            (start + length / 2, max(tops) if sign > 0 else min(tops)),
+            (0, 6 * sign),
+            ha="center",
+            va="bottom" if sign > 0 else "top",
+            color=_color(measured),
+            fontsize=8,
+        )
+    ax.margins(y=0.25)
+    ax.set_title("The tip gives way when pushed", loc="left")
+    name_axes(ax, "arm time (s)", "tip moved along the push's axis (mm)")
+    if pushes:
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8)
+
+
+def _softness(ax: plt.Axes, pushes: list[MeasuredPush]) -> None:
+    """Force over distance: as felt, and after friction has taken its part; the line is expected."""
+    reach_mm = max((measured.force / measured.expected for measured in pushes), default=0.0) * 1250
+    for expected in sorted({round(measured.expected) for measured in pushes}):
+        ax.plot([0, reach_mm], [0, expected * reach_mm * 1e-3], "k--", lw=1.0)
+        place = (reach_mm * 0.97, expected * reach_mm * 0.97e-3)
+        ax.annotate(f"expected: {expected} N/m", place, ha="right", va="bottom", fontsize=8)
+    for measured in pushes:
+        d_mm, left = measured.moved * 1e3, measured.force - measured.friction_took
+        color = _color(measured)
+        value = measured.stiffness_without_friction
+        label = f"{measured.axis}: {value:.0f} N/m"
+        if measured.friction_bound:
+            label += " less friction"
+            ax.plot(d_mm, measured.force, "o", color=color, mfc="white")
+            ax.plot([d_mm] * 2, [measured.force, left], ":", color=color, lw=1.5)
+        ax.plot(d_mm, left, "o", color=color, label=label)
+    ax.set_title("Force over distance is stiffness", loc="left")
+    name_axes(ax, "tip moved (mm)", "push (N)")
+    ax.set(xlim=(0, None), ylim=(0, None))
+    if pushes:
+        ax.plot([], [], "o", color="0.4", mfc="white", label="as felt, with friction")
+        ax.legend(loc="lower right", fontsize=8)
+
+
+def _forces(ax: plt.Axes, truth: np.ndarray, scenario: Scenario) -> None:
+    t = time_s(truth)
+    push = np.linalg.norm(truth["F_push"][:, :3], axis=1)
+    contact = np.linalg.norm(truth["F_contact"][:, :3], axis=1)
+    ax.fill_between(t, push, color="0.8", lw=0, label="pushes")
+    ax.plot(t, contact, color=COLORS[3], label="wall on the arm")
+    if contact.any():
+        peak = int(contact.argmax())
+        place, style = (t[peak], contact[peak]), {"va": "center", "color": COLORS[3]}
+        note(ax, f"peak {contact[peak]:.1f} N", place, (-8, 0), ha="right", **style)
+    for wall in scenario.walls:
+        ax.axvline(wall.at_s, color="0.5", ls=":", lw=1)
+        ax.annotate(" wall put up", (wall.at_s, 0), va="bottom", color="0.4", fontsize=8)
+    title = "Forces on the arm" if not contact.any() else "Forces on the arm: pushes, then a wall"
+    ax.set_title(title, loc="left")
+    name_axes(ax, "arm time (s)", "force (N)")
+    ax.margins(x=0, y=0.15)
+    ax.legend(loc="upper left", fontsize=8)
+
+
+def _torques(ax: plt.Axes, status: np.ndarray, scenario: Scenario) -> None:
+    """The terms at the joint whose spring torque moves most."""
+    t = time_s(status)
+    count = len(scenario.robot.joints)
+    spring = status["tau_stiffness"][:, :count]
+    joint = int(np.ptp(spring, axis=0).argmax()) if len(status) else 0
+    for i, (term, name) in enumerate(TERMS.items()):
+        values = status[f"tau_{term}"][:, joint]
+        if np.abs(values).max(initial=0.0) > 1e-3:
+            ax.plot(t, values, label=name, color=COLORS[i])
+    ax.plot(t, status["tau_sent"][:, joint], "k", lw=0.8, label="sum, as sent")
+    name = scenario.robot.joints[joint].name
+    ax.set_title(f"Which part of the law does it: torque of {name}, term by term", loc="left")
+    name_axes(ax, "arm time (s)", "torque (N m)")
+    ax.legend(loc="upper left", fontsize=8, ncols=6)
+    ax.margins(x=0, y=0.2)

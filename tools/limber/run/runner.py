@@ -1,0 +1,149 @@
+"""Runs a scenario: starts the processes, watches them, stops them, leaves a folder of results."""
+
+import json
+import shutil
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import RunError
+from limber.live.listener import driver_is_running
+from limber.model.scenario import Scenario
+from limber.paths import program
+from limber.run.display import display
+from limber.run.options import CAN_LOG_NAME, LOG_NAME, FinishedRun, RunOptions
+from limber.run.processes import Child, ProcessGroup, process_group
+
+START_TIMEOUT_S = 10.0
+STOP_TIMEOUT_S = 5.0
+
+
+def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> FinishedRun:
+    """The three processes and a recorder. Ctrl-C ends the run in good order, the log stays."""
+    if driver_is_running():
+        raise RunError(
+            "another driver is publishing on this machine: stop it, or run beside it with --private"
+        )
+    lockstep = scenario.lockstep if options.lockstep is None else options.lockstep
+    commands = _commands(scenario, folder, options, lockstep)
+    copy_inputs(scenario, folder)
+    result = FinishedRun(folder, "lockstep" if lockstep else "realtime")
+    with process_group(folder) as group, _sigterm_as_interrupt():
+        for name, command in commands.items():
+            _start(group, name, command)
+        code = _follow(group, display(scenario, console, options.live_view), result)
+        if code != 0 and not result.stopped_early:
+            raise group.children["limber-driver"].failure()
+        result.recorder = _stop_others(group)
+        for line in group.children["limber-driver"].warnings():
+            console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
+    return result
+
+
+def lab(
+    scenario: Scenario, folder: Path, console: Console, record_can: bool = False
+) -> FinishedRun:
+    """The whole stack in one process, in lock step, as fast as the processor allows."""
+    copy_inputs(scenario, folder)
+    result = FinishedRun(folder, "lab")
+    path = str(scenario.path)
+    command = [str(program("limber-lab")), path, "--log", str(result.log), "--progress"]
+    if record_can:
+        command += ["--can", str(result.can_log)]
+    with process_group(folder) as group, _sigterm_as_interrupt():
+        child = group.start("limber-lab", command)
+        with console.status(f"{scenario.name} in the lab") as status:
+            code = group.run_until("limber-lab", lambda: status.update(_last_line(child)))
+        if code != 0:
+            raise child.failure()
+    console.print(_last_line(child))
+    return result
+
+
+def copy_inputs(scenario: Scenario, folder: Path) -> None:
+    """The scenario and the robot as they were: a log without them cannot be understood later."""
+    shutil.copyfile(scenario.path, folder / "scenario.yaml")
+    shutil.copyfile(scenario.robot.folder / "robot.yaml", folder / "robot.yaml")
+    shutil.copyfile(scenario.robot.urdf, folder / scenario.robot.urdf.name)
+
+
+def _last_line(child: Child) -> str:
+    lines = child.last_lines(1)
+    return lines[0].strip() if lines else "starting"
+
+
+def _commands(
+    scenario: Scenario, folder: Path, options: RunOptions, lockstep: bool
+) -> dict[str, list[str]]:
+    """Program -> command line in the order of starting: the driver, the clock, is last."""
+    buses = [word for bus in options.buses for word in ("--bus", bus)]
+    path, robot = str(scenario.path), str(scenario.robot.folder)
+    duration = ["--duration", f"{scenario.duration_s:.9g}"]
+    if lockstep:
+        rate_hz = options.rate_hz or scenario.robot.rate_hz
+        duration = ["--cycles", str(round(scenario.duration_s * rate_hz))]
+    rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
+    commands = {"limber-record": ["--out", str(folder / LOG_NAME)]}
+    if options.record_can:
+        can_log = str(folder / CAN_LOG_NAME)
+        commands["limber-can"] = ["record", robot, "--out", can_log, *buses]
+    pace = "--lockstep" if lockstep else "--realtime"
+    if options.with_simulator:
+        commands["limber-sim"] = ["--scenario", path, *buses, *rate, pace]
+    commands["limber-controller"] = ["--scenario", path, "--robot", robot, pace]
+    commands["limber-driver"] = ["--robot", robot, *buses, *rate, *duration]
+    if lockstep:
+        commands["limber-driver"].append("--lockstep")
+    return {name: [str(program(name)), *words] for name, words in commands.items()}
+
+
+def _start(group: ProcessGroup, name: str, command: list[str]) -> None:
+    """Waits until the program is ready, which its first line of output shows."""
+    child = group.start(name, command)
+    if name != "limber-driver":
+        group.wait_for_line(child, "\n", START_TIMEOUT_S)
+
+
+def _follow(
+    group: ProcessGroup,
+    display: AbstractContextManager[Callable[[], None]],
+    result: FinishedRun,
+) -> int:
+    """Shows the run until the driver ends, or ends the driver on Ctrl-C; returns its exit code."""
+    try:
+        with display as update:
+            return group.run_until("limber-driver", update)
+    except KeyboardInterrupt:
+        result.stopped_early = True
+        return group.stop("limber-driver", signal.SIGINT, STOP_TIMEOUT_S)
+
+
+def _stop_others(group: ProcessGroup) -> dict:
+    """Ends the rest, the recorder last, so that its log is complete; returns its report."""
+    for name in ("limber-controller", "limber-sim", "limber-can"):
+        if name in group.children:
+            group.stop(name, signal.SIGTERM, STOP_TIMEOUT_S)
+    recorder = group.children["limber-record"]
+    if group.stop("limber-record", signal.SIGINT, 2 * STOP_TIMEOUT_S) != 0:
+        raise recorder.failure()
+    try:
+        return json.loads(recorder.last_lines(1)[0])
+    except (IndexError, json.JSONDecodeError) as error:
+        raise RunError(f"limber-record left no report: see {recorder.log}") from error
+
+
+@contextmanager
+def _sigterm_as_interrupt() -> Iterator[None]:
+    """`kill` ends a run as Ctrl-C does: the arm first, the log last."""
+
+    def interrupt(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

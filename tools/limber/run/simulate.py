@@ -1,0 +1,30 @@
+"""`limber sim`: what is about to be simulated, and how other programs join its buses."""
+
+import subprocess
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import InputError
+from limber.live import network
+from limber.paths import program, robot_folder
+
+
+def introduce(robot: str, bus_words: list[str], without_stand: bool, console: Console) -> Path:
+    """Says which motors are on which bus; returns the robot's folder."""
+    folder = robot_folder(robot)
+    network.require_multicast()
+    command = [str(program("limber-can")), "nodes", str(folder), *bus_words]
+    nodes = subprocess.run(command, capture_output=True, text=True, check=False)
+    if nodes.returncode != 0:
+        raise InputError(nodes.stderr.strip().removeprefix("limber-can: "))
+    print(nodes.stdout, end="")
+    if without_stand:
+        console.print("Nothing carries the arm: it falls until its drives hold it.")
+    else:
+        console.print(
+            "The arm lies in its stand until every drive has been enabled for 0.3 s; --no-stand "
+            "leaves it out."
+        )
+    console.print("In real time until Ctrl-C.")
+    return folder

@@ -1,0 +1,86 @@
+#include "tools/send/request_sender.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <variant>
+
+#include "common/clock.h"
+#include "common/config_error.h"
+#include "common/overloaded.h"
+#include "controller/laws/registry.h"
+#include "lcmtypes/channels.h"
+#include "robots/loader/default_gains.h"
+
+namespace limber {
+namespace {
+
+constexpr std::int64_t kAnswer_ns = 1'000'000'000;
+constexpr int kAnswerQueue = 16;
+
+// The same words as in a scenario, at no particular time.
+std::string as_entry(const std::string& text) {
+  const auto brace = text.find_first_not_of(" \t");
+  if (brace != std::string::npos && text[brace] == '{') {
+    return "{at_s: 0, " + text.substr(brace + 1);
+  }
+  return "{at_s: 0, " + text + "}";
+}
+
+}  // namespace
+
+RequestSender::RequestSender(const LoadedRobot& robot, std::int64_t client)
+    : robot_(robot),
+      client_(client),
+      context_{robot_, &controller::law_catalog(), 0.0, default_gains(robot.robot)},
+      port_(user_plane_url()),
+      seq_(monotonic_ns()) {  // those of an sender before this one are smaller
+  port_.subscribe<request_answer_t>(channels::kRequestAnswer, kAnswerQueue,
+                                    [this](const request_answer_t& answer) {
+                                      if (answer.client == client_ && answer.seq == seq_)
+                                        answer_ = answer;
+                                    });
+}
+
+bool RequestSender::wait_for_answer() {
+  const std::int64_t end_ns = monotonic_ns() + kAnswer_ns;
+  const std::array descriptors{port_.descriptor()};
+  while (!answer_ && monotonic_ns() < end_ns) {
+    if (wait_readable(descriptors, end_ns)) port_.handle_waiting();
+  }
+  return answer_.has_value();
+}
+
+void RequestSender::send_entry(const std::string& entry) {
+  const YamlMap yaml = YamlMap::from_text(as_entry(entry), "request");
+  const TimedMessage timed = *read_entry(yaml, &context_);  // laws are known: nothing is left out
+  const bool to_controller = !std::holds_alternative<push_t>(timed.message) &&
+                             !std::holds_alternative<scenario_event_t>(timed.message);
+  answer_.reset();
+  send(timed.message);
+  if (!to_controller) return;
+  if (!wait_for_answer()) throw ConfigError("no controller answers");
+  if (answer_->accepted == 0) {
+    throw ConfigError("refused by the controller: " + answer_->reason);
+  }
+}
+
+void RequestSender::send(const ScenarioMessage& message) {
+  ++seq_;
+  const auto publish = [this](const char* channel, auto copy) {
+    copy.time_ns = monotonic_ns();
+    if constexpr (requires { copy.seq; }) copy.seq = seq_;
+    if constexpr (requires { copy.client; }) copy.client = client_;
+    if (!port_.publish(channel, copy)) throw ConfigError("the message could not be sent");
+  };
+  std::visit(Overloaded{
+                 [&](const mode_request_t& m) { publish(channels::kModeRequest, m); },
+                 [&](const compliance_goal_t& m) { publish(channels::kComplianceGoal, m); },
+                 [&](const compliance_gains_t& m) { publish(channels::kComplianceGains, m); },
+                 [&](const push_t& m) { publish(channels::kPush, m); },
+                 [&](const scenario_event_t& m) { publish(channels::kScenarioEvent, m); },
+             },
+             message);
+}
+
+}  // namespace limber

@@ -1,0 +1,38 @@
+// Sends entries of a scenario to a running stack and tells what became of them.
+#pragma once
+
+#include <cstdint>
+#include <limber/request_answer_t.hpp>
+#include <optional>
+#include <string>
+
+#include "common/lcm_port.h"
+#include "robots/loader/load_robot.h"
+#include "scenarios/loader/entry_yaml.h"
+
+namespace limber {
+
+/// A user with a lease of its own. Gains entries build on each other, the first on robot.yaml.
+class RequestSender {
+ public:
+  /// Throws ConfigError if there is no multicast route.
+  RequestSender(const LoadedRobot& robot, std::int64_t client);
+
+  /// Sends one entry, such as `gains: {law: salisbury}`, and waits for the controller's answer (for
+  /// a push, wall, payload or fault, which the simulator takes, for nothing). Throws ConfigError if
+  /// the entry is wrong, no controller answers, or it refuses, with its reason.
+  void send_entry(const std::string& entry);
+
+ private:
+  void send(const ScenarioMessage& message);
+  bool wait_for_answer();
+
+  const LoadedRobot& robot_;
+  std::int64_t client_;
+  EntryContext context_;
+  LcmPort port_;
+  std::int64_t seq_ = 0;
+  std::optional<request_answer_t> answer_;
+};
+
+}  // namespace limber
