@@ -22,11 +22,27 @@ std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& bus
   return ends;
 }
 
+const char* text_of(Contradiction contradiction) noexcept {
+  switch (contradiction) {
+    case Contradiction::kVelocity:
+      return "the velocity does not fit the positions; check the encoder and the drive's scaling";
+    case Contradiction::kLinkVelocity:
+      return "the link's velocity does not fit its positions; check the link encoder";
+    case Contradiction::kTorque:
+      return "the torque is opposite to the command, or far beyond it; check the drive's torque "
+             "constant and phases";
+    case Contradiction::kNone:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
 ArmDriver::ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses,
                      const ArmDriverOptions& options)
     : rate_hz_(robot.rate_hz),
+      motors_(robot.motors()),
       lockstep_(options.lockstep),
       session_(options.session),
       buses_(bus_ends(robot, buses, options.session)),
@@ -108,7 +124,7 @@ void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcep
   } else if (!drives_.receive(bus, frame, late)) {
     buses_[bus].count_foreign();
     // This driver's own frames do not come back to it.
-    if (drives_.is_command(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
+    if (drives_.is_order(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
   }
 }
 
@@ -120,7 +136,7 @@ bool ArmDriver::complete() const noexcept {
 // --- 3. finish_cycle -----------------------------------------------------------------------------
 
 const joint_state_t& ArmDriver::finish_cycle() noexcept {
-  drives_.close_cycle(cycle_);
+  drives_.close_cycle(cycle_, 1e-9 * static_cast<double>(time_ns_));
   if (tip_sensor_) tip_sensor_->close_cycle();
   supervisor_.check(buses_, &drives_);
   drives_.update_torque_present();
@@ -159,6 +175,9 @@ GateSituation ArmDriver::situation() const noexcept {
 std::uint16_t ArmDriver::fault_detail() const noexcept {
   if (state_.fault == joint_state_t::FAULT_DRIVE_ERROR && state_.fault_joint >= 0)
     return static_cast<std::uint16_t>(state_.drive_status[state_.fault_joint]);
+  if (state_.fault == joint_state_t::FAULT_FEEDBACK && state_.fault_joint >= 0)
+    return static_cast<std::uint16_t>(
+        drives_.joints()[static_cast<std::size_t>(state_.fault_joint)].contradiction());
   if (state_.fault != joint_state_t::FAULT_BUS) return 0;
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     if (buses_[b].lost()) return static_cast<std::uint16_t>(b << 8U | buses_[b].state());
@@ -170,6 +189,7 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
   if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_DRIVE_ERROR)
     return drives_.status_text(static_cast<std::size_t>(joint), detail);
+  if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
   const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
   switch (detail & 0xFFU) {
     case driver_status_t::BUS_OFF:

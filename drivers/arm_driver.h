@@ -78,12 +78,20 @@ class ArmDriver {
   std::string configuration_problem() const { return drives_.configuration_problem(); }
 
   /// What the start-up found missing in drives that may miss it ("joint3: object 1400h:05 is
-  /// missing: ..."); a line each. Allocates likewise.
+  /// missing: ..."), and joints outside their limits; a line each. Allocates likewise.
   std::vector<std::string> configuration_warnings() const {
     return drives_.configuration_warnings();
   }
-  /// What lies behind the fault of the last state: of a drive's error its drive_status, of a lost
-  /// bus its number << 8 and BUS_*; else 0. Allowed in the cycle.
+  /// Motors of the arm, counted along its joints.
+  int motors() const noexcept { return motors_; }
+  /// What motor 0, 1, .. is to be looked at for. Allowed in the cycle.
+  DriveWarning warning(int motor) const noexcept { return drives_.warning(motor); }
+  /// The same in words; "... no warning any more" if there is nothing. Allocates: for messages.
+  std::string warning_text(int motor, const DriveWarning& warning) const {
+    return drives_.warning_text(motor, warning);
+  }
+  /// What lies behind the fault of the last state: of a drive's error its drive_status, of
+  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*; else 0. Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
   /// The same in words; "" for 0. Allocates: for messages.
   std::string fault_text(int fault, int joint, std::uint16_t detail) const;
@@ -98,6 +106,7 @@ class ArmDriver {
   GateSituation situation() const noexcept;
 
   double rate_hz_;
+  int motors_;
   bool lockstep_;
   std::int64_t session_;
   std::vector<BusEnd> buses_;

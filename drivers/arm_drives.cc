@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "drivers/driver_setup.h"
-#include "robots/loader/protocols/drive_protocol.h"
+#include "drivers/protocols/canopen.h"
 
 namespace limber {
 namespace {
@@ -15,6 +15,13 @@ constexpr double kSettling_s = 0.1;
 std::string line_about(const Drive& motor, const std::string& words) {
   const JointConfig& joint = motor.link().joint();
   return fmt::format("{} (id 0x{:X}): {}", joint.name, joint.drive.command_id, words);
+}
+
+std::string out_of_range_line(const ArmJoint& joint) {
+  const JointConfig& config = joint.motors().front().link().joint();
+  return fmt::format("{}: at {:.4g}, outside its limits {:g} to {:g}: the drives cannot be enabled; "
+                     "move it by hand, or correct its offset_rad and sign",
+                     config.name, joint.q(), config.position_min, config.position_max);
 }
 
 }  // namespace
@@ -58,8 +65,34 @@ std::vector<std::string> ArmDrives::configuration_warnings() const {
       for (const std::string& warning : motor.configuration_warnings())
         lines.push_back(line_about(motor, warning));
     }
+    if (joint.out_of_range()) lines.push_back(out_of_range_line(joint));
   }
   return lines;
+}
+
+DriveWarning ArmDrives::warning(int motor) const noexcept { return motor_at(motor).warning(); }
+
+std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) const {
+  const Drive& drive = motor_at(motor);
+  std::string words;
+  const auto add = [&](const std::string& word) { words += (words.empty() ? "" : "; ") + word; };
+  if (warning.hot)
+    add(fmt::format("{} degC, more than {:g} (warning_temperature_degC): let it cool, or the drive "
+                    "will stop",
+                    warning.temperature_degC,
+                    drive.link().joint().drive.warning_temperature_degC));
+  if (warning.flagged) add("the drive warns (statusword, bit 7)");
+  if (warning.emergency != 0)
+    add(fmt::format("emergency {:04X}h: {}", warning.emergency,
+                    canopen::emergency_text(warning.emergency)));
+  return line_about(drive, words.empty() ? "no warning any more" : words);
+}
+
+const Drive& ArmDrives::motor_at(int motor) const noexcept {
+  std::size_t i = 0;
+  while (motor >= static_cast<int>(joints_[i].motors().size()))
+    motor -= static_cast<int>(joints_[i++].motors().size());
+  return joints_[i].motors()[static_cast<std::size_t>(motor)];
 }
 
 // --- towards the drives --------------------------------------------------------------------------
@@ -103,13 +136,11 @@ Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   return nullptr;
 }
 
-bool ArmDrives::is_command(std::size_t bus, const CanFrame& frame) const noexcept {
+bool ArmDrives::is_order(std::size_t bus, const CanFrame& frame) const noexcept {
   for (const ArmJoint& joint : joints_) {
     for (const Drive& motor : joint.motors()) {
       if (motor.bus() != bus) continue;
-      const DriveConfig& drive = motor.link().joint().drive;
-      if (has_id(frame, drive.command_id) || (!frame.extended && accepts_id(drive, frame.id)))
-        return true;
+      if (motor.link().is_order(frame)) return true;
     }
   }
   return false;
@@ -126,8 +157,8 @@ bool ArmDrives::receive(std::size_t bus, const CanFrame& frame, bool late) noexc
   return true;
 }
 
-void ArmDrives::close_cycle(std::int64_t cycle) noexcept {
-  for (ArmJoint& joint : joints_) joint.close_cycle(machine_.state(), cycle);
+void ArmDrives::close_cycle(std::int64_t cycle, double time_s) noexcept {
+  for (ArmJoint& joint : joints_) joint.close_cycle(machine_.state(), cycle, time_s);
 }
 
 void ArmDrives::update_torque_present() noexcept {

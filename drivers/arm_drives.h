@@ -39,8 +39,13 @@ class ArmDrives {
   }
   /// The drive whose start-up failed and why; empty if none. Allocates: for messages.
   std::string configuration_problem() const;
-  /// What drives lack without being wrong, one line each. Allocates likewise.
+  /// What drives lack without being wrong, and joints outside their limits; one line each.
+  /// Allocates likewise.
   std::vector<std::string> configuration_warnings() const;
+  /// What motor 0, 1, .. of the arm, counted along its joints, is to be looked at for.
+  DriveWarning warning(int motor) const noexcept;
+  /// The same in words. Allocates: for messages.
+  std::string warning_text(int motor, const DriveWarning& warning) const;
   /// A drive's status code in words. Allocates: for messages.
   std::string status_text(std::size_t joint, std::uint16_t status) const {
     return joints_[joint].motors().front().link().status_text(status);
@@ -58,12 +63,13 @@ class ArmDrives {
 
   // --- from the drives ------------------------------------------------------------------------
 
-  /// The frame would command a drive of this arm.
-  bool is_command(std::size_t bus, const CanFrame& frame) const noexcept;
+  /// The frame, of somebody else, commands a drive of this arm or writes its settings.
+  bool is_order(std::size_t bus, const CanFrame& frame) const noexcept;
   /// False if the frame is of no drive of this arm. `late`: it came after its cycle.
   bool receive(std::size_t bus, const CanFrame& frame, bool late) noexcept;
   /// End of the cycle: replies that are missing now are missing.
-  void close_cycle(std::int64_t cycle) noexcept;
+  /// `time_s`: arm time of the cycle.
+  void close_cycle(std::int64_t cycle, double time_s) noexcept;
   /// After the cycle's last change of state: outside ON, the first step to the controller's torque
   /// counts from what the drives exert by themselves.
   void update_torque_present() noexcept;
@@ -87,6 +93,7 @@ class ArmDrives {
   void turn_on(bool acknowledge) noexcept;
   void acknowledge() noexcept;
   Drive* sender_of(std::size_t bus, const CanFrame& frame) noexcept;
+  const Drive& motor_at(int motor) const noexcept;
 
   std::vector<ArmJoint> joints_;
   DriveStateMachine machine_;

@@ -36,8 +36,8 @@ void ArmJoint::enter(DriveState state, const JointTorque& held) noexcept {
   for (std::size_t m = 0; m < motors_.size(); ++m) motors_[m].enter(state, share(held, m));
 }
 
-void ArmJoint::close_cycle(DriveState state, std::int64_t cycle) noexcept {
-  for (Drive& motor : motors_) motor.close_cycle(state, cycle);
+void ArmJoint::close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept {
+  for (Drive& motor : motors_) motor.close_cycle(state, cycle, time_s);
   if (!fresh()) return;
   fast_cycles_ = std::abs(v()) <= kVelocityMargin * joint_.velocity_limit ? 0 : fast_cycles_ + 1;
 }
@@ -88,12 +88,21 @@ std::int32_t ArmJoint::age_cycles() const noexcept {
 
 std::int32_t ArmJoint::flags() const noexcept {
   using State = joint_state_t;
+  const bool warned =
+      std::ranges::any_of(motors_, [](const Drive& motor) { return motor.warning().any(); });
   return (fresh() ? State::JOINT_FRESH : 0) | (enabled() ? State::JOINT_ENABLED : 0) |
-         (std::ranges::any_of(motors_, &Drive::failed) ? State::JOINT_DRIVE_ERROR : 0) |
+         (failed() ? State::JOINT_DRIVE_ERROR : 0) | (warned ? State::JOINT_WARNING : 0) |
          (out_of_range() ? State::JOINT_OUT_OF_RANGE : 0) |
          (joint_.link_encoder.present ? State::JOINT_LINK_ENCODER : 0) |
          (joint_.torque_sensor.present ? State::JOINT_TORQUE_SENSOR : 0) |
          (two_motors() ? State::JOINT_TWO_MOTORS : 0);
+}
+
+Contradiction ArmJoint::contradiction() const noexcept {
+  for (const Drive& motor : motors_) {
+    if (motor.contradiction() != Contradiction::kNone) return motor.contradiction();
+  }
+  return Contradiction::kNone;
 }
 
 std::int64_t ArmJoint::silent_cycles() const noexcept {

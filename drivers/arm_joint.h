@@ -44,7 +44,8 @@ class ArmJoint {
   double share(const JointTorque& torque, std::size_t motor) const noexcept;
   /// The arm's state changed; `held` is what the motors go on making in FALLBACK.
   void enter(DriveState state, const JointTorque& held) noexcept;
-  void close_cycle(DriveState state, std::int64_t cycle) noexcept;
+  /// `time_s`: arm time of the cycle.
+  void close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept;
   /// The operator has acknowledged the fault: the watchdogs start afresh.
   void acknowledge() noexcept;
 
@@ -73,14 +74,24 @@ class ArmJoint {
   bool often_invalid() const noexcept {
     return std::ranges::any_of(motors_, &Drive::often_invalid);
   }
+  bool failed() const noexcept { return std::ranges::any_of(motors_, &Drive::failed); }
+  bool ignores_target() const noexcept {
+    return std::ranges::any_of(motors_, &Drive::ignores_target);
+  }
+  /// The first that one of its motors has.
+  Contradiction contradiction() const noexcept;
   /// Cycles since one of its motors last replied.
   std::int64_t silent_cycles() const noexcept;
   /// 0.02 rad beyond a position limit; of two motors each also beyond what it may wind up.
   bool out_of_range() const noexcept;
   /// Above 110 % of the velocity limit in three cycles in a row.
   bool too_fast() const noexcept { return fast_cycles_ >= 3; }
-  /// Fit to be moved: answered, enabled, within its position limits and not too fast.
-  bool healthy() const noexcept { return ready_to_enable() && enabled(); }
+  /// Fit to be moved: answered, enabled and following, within its position limits, not too fast,
+  /// and nothing that it reports contradicts the rest.
+  bool healthy() const noexcept {
+    return ready_to_enable() && enabled() && !ignores_target() &&
+           contradiction() == Contradiction::kNone;
+  }
   /// The same but for being enabled.
   bool ready_to_enable() const noexcept;
 

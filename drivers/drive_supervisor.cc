@@ -78,7 +78,10 @@ void DriveSupervisor::check_motion(ArmDrives* drives) const noexcept {
   const std::vector<ArmJoint>& joints = drives->joints();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const int joint = static_cast<int>(i);
-    if (!joints[i].enabled()) drives->apply(DriveEvent::kDriveError, joint);
+    if (!joints[i].enabled() || joints[i].ignores_target())
+      drives->apply(DriveEvent::kDriveError, joint);
+    if (joints[i].contradiction() != Contradiction::kNone)
+      drives->apply(DriveEvent::kFeedbackWrong, joint);
     if (joints[i].out_of_range()) drives->apply(DriveEvent::kPositionTrip, joint);
     if (joints[i].too_fast()) drives->apply(DriveEvent::kVelocityTrip, joint);
   }

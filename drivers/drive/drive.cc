@@ -1,5 +1,6 @@
 #include "drivers/drive/drive.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace limber {
@@ -8,6 +9,8 @@ Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycl
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
       configure_(&link_.family()),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
+      feedback_(link_),
+      heat_(joint.drive.warning_temperature_degC),
       invalid_window_(bridged_cycles),
       cycles_per_second_(static_cast<int>(std::ceil(rate_hz))) {}
 
@@ -46,7 +49,7 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
     case DriveState::kFallback:
       // A drive that left the enabled state by itself gets no commands.
       if (!link_.enabled()) return link_.state_request();
-      return link_.command(fallback_.command(link_, settling, watch_.trusted()));
+      return hold(settling);
     case DriveState::kDamp:
       if (!link_.enabled()) return link_.state_request();
       return link_.command(damp(link_));
@@ -54,6 +57,13 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
       break;
   }
   return link_.disable();  // also when confirmed: a frame may have been lost before
+}
+
+CanFrame Drive::hold(bool settling) noexcept {
+  JointCommand held = fallback_.command(link_, settling, watch_.trusted());
+  // A drive damps by the velocity that it reports: a wrong one would drive the joint.
+  if (contradiction() == Contradiction::kVelocity) held.kd = 0.0;
+  return link_.command(held);
 }
 
 CanFrame Drive::poll() noexcept {
@@ -69,7 +79,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   if (awaits_answer(state)) {
     if (configure_.receive(frame)) {
       answered_ = true;
-    } else if (!link_.is_unsolicited(frame)) {
+    } else if (!link_.take_unsolicited(frame)) {
       ++invalid_;
     }
     return;
@@ -77,7 +87,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   // Without power an arm may swing at any speed: the next angle is taken as it comes.
   if (state == DriveState::kOff) link_.forget_angle();
   if (!link_.receive(frame)) {
-    if (!link_.is_unsolicited(frame)) count_invalid();
+    if (!link_.take_unsolicited(frame)) count_invalid();
     return;
   }
   if (!link_.fresh()) return;  // a part of a state
@@ -94,7 +104,7 @@ void Drive::count_invalid() noexcept {
 
 void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   const bool startup = awaits_answer(state);
-  if (!startup && link_.is_unsolicited(frame)) return;
+  if (!startup && link_.take_unsolicited(frame)) return;
   ++late_;
   if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) return;
   if (startup) {
@@ -107,8 +117,9 @@ void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   counted_missing_ = false;
 }
 
-void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
+void Drive::close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept {
   cycle_ = cycle;
+  check_feedback(state, time_s);
   if (state == DriveState::kConfiguring) {
     // A dialogue shares the wire with those of all other drives: its answer may take two cycles.
     const bool heard = answered_ || late_answer_ || configure_.may_be_unanswered();
@@ -122,6 +133,30 @@ void Drive::close_cycle(DriveState state, std::int64_t cycle) noexcept {
   if (counted_missing_) ++missing_;
   if (state == DriveState::kEnabling) enable_.close_cycle(link_);
   watch_.close_cycle(link_.fresh(), cycle);
+}
+
+void Drive::check_feedback(DriveState state, double time_s) noexcept {
+  const bool powered =
+      state == DriveState::kOn || state == DriveState::kFallback || state == DriveState::kDamp;
+  if (link_.fresh()) heat_.add(link_.temperature_degC());
+  if (!powered) {
+    feedback_.reset();
+    ignoring_cycles_ = 0;
+  } else if (link_.fresh()) {
+    feedback_.add(link_, time_s);
+    ignoring_cycles_ = link_.ignores_target() ? ignoring_cycles_ + 1 : 0;
+  }
+}
+
+DriveWarning Drive::warning() const noexcept {
+  DriveWarning warning;
+  warning.hot = heat_.hot();
+  warning.flagged = link_.warns();
+  // Of a drive in fault it is the fault's cause, and told with that.
+  if (!link_.drive_error()) warning.emergency = link_.emergency();
+  warning.temperature_degC =
+      static_cast<std::int8_t>(std::clamp(link_.temperature_degC(), -128.0, 127.0));
+  return warning;
 }
 
 }  // namespace limber

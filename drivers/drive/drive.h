@@ -7,8 +7,10 @@
 
 #include "drivers/drive/configure.h"
 #include "drivers/drive/drive_table.h"
+#include "drivers/drive/drive_warning.h"
 #include "drivers/drive/enable.h"
 #include "drivers/drive/fallback.h"
+#include "drivers/drive/feedback_watch.h"
 #include "drivers/drive/joint_link.h"
 #include "drivers/drive/reply_watch.h"
 
@@ -29,7 +31,8 @@ class Drive {
   void receive(DriveState state, const CanFrame& frame) noexcept;
   /// One that answers the command of the cycle before: a state is one cycle old.
   void receive_late(DriveState state, const CanFrame& frame) noexcept;
-  void close_cycle(DriveState state, std::int64_t cycle) noexcept;
+  /// `time_s`: arm time of the cycle.
+  void close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept;
   /// The operator has acknowledged the fault: the watchdogs start afresh.
   void acknowledge() noexcept {
     watch_.reset();
@@ -41,7 +44,12 @@ class Drive {
   bool answered() const noexcept { return answered_; }
   /// By the last reply, the power stage is on.
   bool enabled() const noexcept { return link_.enabled(); }
-  bool failed() const noexcept { return link_.drive_error(); }
+  bool failed() const noexcept { return link_.drive_error() || ignores_target(); }
+  /// Enabled, but in three states in a row it did not execute its target.
+  bool ignores_target() const noexcept { return ignoring_cycles_ >= 3; }
+  /// While it has power: velocity or torque contradict the rest of what it reports.
+  Contradiction contradiction() const noexcept { return feedback_.found(); }
+  DriveWarning warning() const noexcept;
   bool configured() const noexcept { return configure_.done(); }
   bool configuration_wrong() const noexcept { return configure_.failed(); }
   bool enabling_done() const noexcept { return enable_.done(link_); }
@@ -69,7 +77,9 @@ class Drive {
 
  private:
   CanFrame poll() noexcept;
+  CanFrame hold(bool settling) noexcept;
   void count_invalid() noexcept;
+  void check_feedback(DriveState state, double time_s) noexcept;
   /// A start-up step waits for its answer.
   bool awaits_answer(DriveState state) const noexcept {
     return state == DriveState::kConfiguring && !configure_.expects_state();
@@ -80,6 +90,9 @@ class Drive {
   EnableDialogue enable_;
   Fallback fallback_;
   ReplyWatch watch_;
+  FeedbackWatch feedback_;
+  HeatWatch heat_;
+  int ignoring_cycles_ = 0;
   bool answered_ = false;
   std::int32_t late_ = 0;
   std::int32_t missing_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/clock.h"
@@ -16,6 +17,7 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kRepeat_ns = 100'000'000;
+constexpr std::int64_t kTell_ns = 1'500'000'000;
 constexpr std::int64_t kStragglers_ns = 20'000'000;
 constexpr std::int64_t kTwin_ns = 3'000'000;  // a second answer comes within this after the first
 constexpr int kTwinRounds = 2;                // a straggler is no twin
@@ -105,7 +107,24 @@ class Discovery {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (!found_[i]) list(i, &names);
     }
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (found_[i] || !astray_id_[i]) continue;
+      names += fmt::format(
+          "; {} answers with id 0x{:X} instead of 0x{:X} (Damiao: MST_ID, register "
+          "7)",
+          motors_[i].name, *astray_id_[i], motors_[i].drive.reply_id);
+    }
     return names;
+  }
+
+  /// Buses on which frames were destroyed.
+  std::string disturbed() const {
+    std::string text;
+    for (std::size_t b = 0; b < buses_.size(); ++b) {
+      const std::int64_t errors = buses_[b]->statistics().error_frames;
+      if (errors > 0) text += fmt::format("; {} error frames on {}", errors, robot_.buses[b].can);
+    }
+    return text;
   }
 
   /// "joint1 (id 0x1 on vcan0), joint2 (id 0x2 on vcan0)"
@@ -129,7 +148,9 @@ class Discovery {
   }
   void mark(int bus, const CanFrame& frame) {
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (motors_[i].drive.bus == bus && families_[i]->is_mine(frame)) found_[i] = true;
+      if (motors_[i].drive.bus != bus) continue;
+      if (families_[i]->is_mine(frame)) found_[i] = true;
+      if (families_[i]->is_astray(frame)) astray_id_[i] = frame.id;
     }
   }
 
@@ -139,18 +160,28 @@ class Discovery {
   std::vector<JointConfig> motors_;
   std::vector<std::unique_ptr<DriveFamily>> families_;
   std::vector<bool> found_;
+  std::vector<std::optional<std::uint32_t>> astray_id_ =
+      std::vector<std::optional<std::uint32_t>>(found_.size());
   std::vector<std::int64_t> ask_again_ns_ = std::vector<std::int64_t>(found_.size());
 };
 
 }  // namespace
 
 std::string discover_drives(const Robot& robot, std::span<CanBus* const> buses, bool lockstep,
-                            double patience_s, const volatile std::sig_atomic_t& stop) {
+                            double patience_s, const volatile std::sig_atomic_t& stop,
+                            const std::function<void(const std::string&)>& tell) {
   Discovery discovery(robot, buses, lockstep);
   const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+  std::int64_t tell_ns = monotonic_ns() + kTell_ns;
+  std::string told;
   while (!discovery.complete() && stop == 0 && monotonic_ns() < end_ns) {
     discovery.send_requests();
     discovery.receive_until(monotonic_ns() + kRepeat_ns);
+    if (!tell || discovery.complete() || monotonic_ns() < tell_ns) continue;
+    const std::string missing = discovery.missing();
+    if (missing != told) tell(missing + discovery.disturbed());
+    told = missing;
+    tell_ns = monotonic_ns() + kTell_ns;
   }
   discovery.drop_stragglers();
   return discovery.missing();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,9 +16,11 @@ namespace limber {
 /// once) until all have answered; that moves, enables and disturbs nothing. Returns "" then, or
 /// after `patience_s` (or when `stop` is set) the motors that are missing, for a message. Set-up
 /// only.
-/// `lockstep`: nodes behind a simulated wire, where time stands still.
+/// `lockstep`: nodes behind a simulated wire, where time stands still. `tell`: given the motors
+/// missing after 1.5 s, and again when others are; the waiting goes on.
 std::string discover_drives(const Robot& robot, std::span<CanBus* const> buses, bool lockstep,
-                            double patience_s, const volatile std::sig_atomic_t& stop);
+                            double patience_s, const volatile std::sig_atomic_t& stop,
+                            const std::function<void(const std::string&)>& tell = {});
 
 /// From sending a request to the kernel's stamp of the reply, ns.
 struct RoundTrip {

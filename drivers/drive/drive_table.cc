@@ -13,6 +13,7 @@ constexpr DriveTransition kTransitions[] = {
     // Start-up dialogue: nothing is enabled.
     {State::kConfiguring, Event::kConfigured, State::kOff, kNoFault},
     {State::kConfiguring, Event::kConfigurationWrong, State::kFault, Fault::FAULT_CONFIGURATION},
+    {State::kConfiguring, Event::kForeignCommand, State::kFault, Fault::FAULT_FOREIGN_COMMAND},
     {State::kConfiguring, Event::kBusLost, State::kFault, Fault::FAULT_BUS},
 
     // Polled.
@@ -20,6 +21,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kOff, Event::kReplyLost, State::kFault, Fault::FAULT_REPLY_LOST},
     {State::kOff, Event::kAllSilent, State::kFault, Fault::FAULT_REPLY_LOST},
     {State::kOff, Event::kReplyInvalid, State::kFault, Fault::FAULT_REPLY_INVALID},
+    {State::kOff, Event::kForeignCommand, State::kFault, Fault::FAULT_FOREIGN_COMMAND},
     {State::kOff, Event::kBusLost, State::kFault, Fault::FAULT_BUS},
 
     // Not all are enabled yet: whatever goes wrong ends it.
@@ -37,6 +39,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kEnabling, Event::kForeignCommand, State::kFault, Fault::FAULT_FOREIGN_COMMAND},
     {State::kEnabling, Event::kBusLost, State::kFault, Fault::FAULT_BUS},
     {State::kEnabling, Event::kDriveError, State::kFault, Fault::FAULT_DRIVE_ERROR},
+    {State::kEnabling, Event::kFeedbackWrong, State::kFault, Fault::FAULT_FEEDBACK},
     {State::kEnabling, Event::kPositionTrip, State::kFault, Fault::FAULT_POSITION},
     {State::kEnabling, Event::kVelocityTrip, State::kFault, Fault::FAULT_VELOCITY},
 
@@ -53,6 +56,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kOn, Event::kForeignCommand, State::kFallback, Fault::FAULT_FOREIGN_COMMAND},
     {State::kOn, Event::kBusLost, State::kFallback, Fault::FAULT_BUS},
     {State::kOn, Event::kDriveError, State::kFallback, Fault::FAULT_DRIVE_ERROR},
+    {State::kOn, Event::kFeedbackWrong, State::kFallback, Fault::FAULT_FEEDBACK},
     {State::kOn, Event::kPositionTrip, State::kFallback, Fault::FAULT_POSITION},
     {State::kOn, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
 
@@ -70,6 +74,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kFallback, Event::kForeignCommand, State::kFallback, Fault::FAULT_FOREIGN_COMMAND},
     {State::kFallback, Event::kBusLost, State::kFallback, Fault::FAULT_BUS},
     {State::kFallback, Event::kDriveError, State::kFallback, Fault::FAULT_DRIVE_ERROR},
+    {State::kFallback, Event::kFeedbackWrong, State::kFallback, Fault::FAULT_FEEDBACK},
     {State::kFallback, Event::kPositionTrip, State::kFallback, Fault::FAULT_POSITION},
     {State::kFallback, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
 
@@ -87,6 +92,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kDamp, Event::kForeignCommand, State::kDamp, Fault::FAULT_FOREIGN_COMMAND},
     {State::kDamp, Event::kBusLost, State::kDamp, Fault::FAULT_BUS},
     {State::kDamp, Event::kDriveError, State::kDamp, Fault::FAULT_DRIVE_ERROR},
+    {State::kDamp, Event::kFeedbackWrong, State::kDamp, Fault::FAULT_FEEDBACK},
     {State::kDamp, Event::kPositionTrip, State::kDamp, Fault::FAULT_POSITION},
     {State::kDamp, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
 

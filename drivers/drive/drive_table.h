@@ -50,10 +50,11 @@ enum class DriveEvent : std::int8_t {
   kForeignCommand,  ///< somebody else commands a drive of this arm
   kBusLost,
   kDriveError,
+  kFeedbackWrong,  ///< reported velocity or torque contradicts position or command
   kPositionTrip,
   kVelocityTrip,
 };
-inline constexpr int kDriveEvents = 21;
+inline constexpr int kDriveEvents = 22;
 
 struct DriveTransition {
   DriveState from;

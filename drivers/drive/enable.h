@@ -48,7 +48,7 @@ class EnableDialogue {
   }
 
   bool done(const JointLink& link) const noexcept {
-    return step_ == Step::kConfirm && link.fresh() && link.enabled();
+    return step_ == Step::kConfirm && link.fresh() && link.enabled() && !link.ignores_target();
   }
 
  private:

@@ -48,9 +48,14 @@ class JointLink {
 
   bool needs_bus_frame(CanFrame* frame) const noexcept { return family_->needs_bus_frame(frame); }
   bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
-  /// From this drive, but no reply to a command, and nothing that must be understood.
-  bool is_unsolicited(const CanFrame& frame) const noexcept {
-    return family_->is_unsolicited(frame);
+  /// Somebody else's frame that commands this drive or writes its settings.
+  bool is_order(const CanFrame& frame) const noexcept { return family_->is_order(frame); }
+  /// True if the frame is from this drive, but no reply to a command, and nothing that must be
+  /// understood; what it tells is kept.
+  bool take_unsolicited(const CanFrame& frame) noexcept {
+    if (!family_->is_unsolicited(frame)) return false;
+    family_->note_unsolicited(frame);
+    return true;
   }
   /// Stores a state reply; fresh() when all parts of it are there. False, and nothing stored: not
   /// one, another motor's number, a second one
@@ -88,6 +93,13 @@ class JointLink {
   double temperature_degC() const noexcept { return seen_.temperature_degC; }
   bool enabled() const noexcept { return seen_.condition == DriveCondition::kEnabled; }
   bool drive_error() const noexcept { return seen_.condition == DriveCondition::kFailed; }
+  /// Enabled, but it does not execute its target.
+  bool ignores_target() const noexcept { return enabled() && !seen_.follows; }
+  /// The drive's own warning.
+  bool warns() const noexcept { return seen_.warns; }
+  /// Code of an error that the drive has announced; 0: none.
+  std::uint16_t emergency() const noexcept { return family_->emergency(); }
+  double angle_resolution() const noexcept { return 0.5 * jump_resolution_; }
   /// Of the last report, in the drive's own numbers.
   std::uint16_t status() const noexcept { return seen_.status; }
   /// The same in words. Allocates: for messages.

@@ -1,5 +1,7 @@
 #include "drivers/families/cia402_family.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,6 +24,11 @@ DriveCondition condition_of(cia402::State state) noexcept {
       break;
   }
   return DriveCondition::kDisabled;
+}
+
+bool ignores_target(std::uint16_t status) noexcept {
+  return cia402::state_of(status) == cia402::State::kOperationEnabled &&
+         (status & cia402::kFollowing) == 0;
 }
 
 cia402::StateLayout layout_of(const JointConfig& joint, bool fd) noexcept {
@@ -94,6 +101,22 @@ bool Cia402Family::is_unsolicited(const CanFrame& frame) const noexcept {
          has_id(frame, canopen::kHeartbeatCode + node());
 }
 
+void Cia402Family::note_unsolicited(const CanFrame& frame) noexcept {
+  canopen::Emergency emergency;
+  if (canopen::decode_emergency(frame, node(), &emergency))
+    emergency_.store(emergency.code, std::memory_order_relaxed);
+}
+
+bool Cia402Family::is_order(const CanFrame& frame) const noexcept {
+  if (has_id(frame, canopen::kSyncId)) return true;
+  canopen::NmtCommand command;
+  if (canopen::decode_nmt(frame, node(), &command)) return true;
+  for (std::uint32_t k = 0; k < canopen::kPdos; ++k) {
+    if (has_id(frame, canopen::kRpdo1Code + k * canopen::kPdoStep + node())) return true;
+  }
+  return has_id(frame, canopen::kSdoRequestCode + node()) && canopen::is_sdo_write(frame);
+}
+
 bool Cia402Family::is_presence(const CanFrame& frame) const noexcept {
   canopen::SdoMessage answer;
   return canopen::decode_sdo_answer(frame, node(), &answer) &&
@@ -108,6 +131,8 @@ StateReading Cia402Family::read_state(const CanFrame& frame, bool late,
   const cia402::DriveState& state = parts.values();
   report->condition = condition_of(cia402::state_of(state.statusword));
   report->status = state.statusword;
+  report->follows = (state.statusword & cia402::kFollowing) != 0;
+  report->warns = (state.statusword & cia402::kWarning) != 0;
   report->angle_rad = state.position_counts * rad_per_count_;
   report->speed_rad_per_s = state.velocity_counts_per_s * rad_per_count_;
   report->link_angle_rad =
@@ -120,6 +145,16 @@ StateReading Cia402Family::read_state(const CanFrame& frame, bool late,
                           ? cia402::from_permille(state.current_permille, rated_current_A_)
                           : report->torque_Nm / drive_.torque_constant_Nm_per_A;
   return reading;
+}
+
+std::string Cia402Family::status_text(std::uint16_t status) const {
+  std::string text =
+      fmt::format("{} (statusword {:04X}h)", cia402::name_of(cia402::state_of(status)), status);
+  if (ignores_target(status))
+    text += ", but ignores its target (bit 12 is 0): halt, another mode, or a limit";
+  if (const std::uint16_t code = emergency(); code != 0)
+    text += fmt::format(", emergency {:04X}h: {}", code, canopen::emergency_text(code));
+  return text;
 }
 
 /// Only a node that is operational sends PDOs.

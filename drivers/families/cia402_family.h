@@ -2,6 +2,8 @@
 // executes its command (RPDO1) and sends its state (TPDO1, and those that follow it).
 #pragma once
 
+#include <atomic>
+
 #include "drivers/families/cia402_startup.h"
 #include "drivers/families/cia402_state.h"
 #include "drivers/families/drive_family.h"
@@ -19,7 +21,10 @@ class Cia402Family final : public DriveFamily {
   bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
                DriveCommand* sent) noexcept override;
   CanFrame disable() noexcept override { return without_torque(cia402::kDisableVoltage); }
-  CanFrame clear_error() noexcept override { return without_torque(cia402::kFaultReset); }
+  CanFrame clear_error() noexcept override {
+    emergency_.store(0, std::memory_order_relaxed);  // not every drive takes it back
+    return without_torque(cia402::kFaultReset);
+  }
   /// Through ready to switch on and switched on, one state a confirmed step.
   CanFrame enable(const DriveMemory& memory) noexcept override;
   CanFrame state_request() const noexcept override { return canopen::encode_sync(); }
@@ -33,12 +38,20 @@ class Cia402Family final : public DriveFamily {
   bool is_mine(const CanFrame& frame) const noexcept override;
   /// All of them but the TPDOs that make the state.
   bool is_unsolicited(const CanFrame& frame) const noexcept override;
+  /// Keeps the code of an emergency until the drive takes it back.
+  void note_unsolicited(const CanFrame& frame) noexcept override;
+  std::uint16_t emergency() const noexcept override {
+    return emergency_.load(std::memory_order_relaxed);
+  }
+  /// RPDOs, SDO requests that write, network management and SYNC.
+  bool is_order(const CanFrame& frame) const noexcept override;
   bool is_presence(const CanFrame& frame) const noexcept override;
   void begin_cycle() noexcept override {
     last_state_ = state_;
     state_.begin();
   }
   StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
+  std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override { return rad_per_count_; }
 
   bool disable_is_answered() const noexcept override { return false; }
@@ -71,6 +84,7 @@ class Cia402Family final : public DriveFamily {
   Cia402State state_;       ///< of this cycle
   Cia402State last_state_;  ///< of the one before: the rest of it may come late
   Cia402Startup startup_;
+  std::atomic<std::uint16_t> emergency_ = 0;  ///< read by the thread that logs
 };
 
 }  // namespace limber

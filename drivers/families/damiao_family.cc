@@ -13,6 +13,7 @@ constexpr int kPositionBits = 16;
 constexpr int kBits = 12;
 constexpr std::uint8_t kRead = 0x33;
 constexpr std::uint8_t kWrite = 0x55;
+constexpr std::uint8_t kStore = 0xAA;
 constexpr std::uint32_t kModeMit = 1;
 constexpr double kTolerance = 1e-4;  // float32 against what people write: 12.566 for 4 pi
 
@@ -103,6 +104,19 @@ CanFrame DamiaoFamily::presence_request() const noexcept {
   return mit::encode_register_read(id(), mit::Register::kControlMode, fd_);
 }
 
+bool DamiaoFamily::is_order(const CanFrame& frame) const noexcept {
+  if (has_id(frame, drive_.command_id)) return true;
+  mit::RegisterRequest request;
+  return mit::decode_register_request(frame, &request) && request.id == id() &&
+         (request.operation == kWrite || request.operation == kStore);
+}
+
+bool DamiaoFamily::is_astray(const CanFrame& frame) const noexcept {
+  std::uint32_t mode = 0;
+  return !is_mine(frame) && !frame.extended && frame.id != mit::kRegisterId &&
+         mit::decode_register(frame, id(), kRead, mit::Register::kControlMode, &mode);
+}
+
 StateReading DamiaoFamily::read_state(const CanFrame& frame, bool /*late*/,
                                       DriveReport* report) noexcept {
   const CommandRange& range = drive_.range;
@@ -118,7 +132,7 @@ StateReading DamiaoFamily::read_state(const CanFrame& frame, bool /*late*/,
   report->link_speed_rad_per_s = report->speed_rad_per_s;
   report->torque_Nm = reply.torque_Nm + mit::half_count(range.torque_Nm, kBits);
   report->current_A = report->torque_Nm / drive_.torque_constant_Nm_per_A;
-  report->temperature_degC = reply.rotor_temperature_degC;
+  report->temperature_degC = std::max(reply.mos_temperature_degC, reply.rotor_temperature_degC);
   return StateReading::kWhole;
 }
 

@@ -31,6 +31,10 @@ class DamiaoFamily final : public DriveFamily {
   bool is_mine(const CanFrame& frame) const noexcept override {
     return has_id(frame, drive_.reply_id);
   }
+  /// Frames with its identifier, and register writes to it.
+  bool is_order(const CanFrame& frame) const noexcept override;
+  /// As delivered, a drive answers with identifier 0 (MST_ID).
+  bool is_astray(const CanFrame& frame) const noexcept override;
   /// Half a count is added to the fields, because drives truncate.
   StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
   std::string status_text(std::uint16_t status) const override;

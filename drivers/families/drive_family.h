@@ -40,8 +40,10 @@ struct DriveReport {
   double torque_Nm =
       0.0;  ///< on the link if the joint has a torque sensor, else the drive's estimate
   double current_A = 0.0;  ///< q axis
-  double temperature_degC = 0.0;
-  std::uint16_t status = 0;  ///< status or error code in the family's own numbers
+  double temperature_degC = 0.0;  ///< the greatest of several
+  std::uint16_t status = 0;       ///< status or error code in the family's own numbers
+  bool follows = true;            ///< enabled, it executes its target; false: it ignores that
+  bool warns = false;             ///< goes on, but with something to be looked at
 };
 
 /// What a frame has of a drive's state, which may come in several.
@@ -115,9 +117,23 @@ class DriveFamily {
     static_cast<void>(frame);
     return false;
   }
+  /// Keeps what an unsolicited frame tells.
+  virtual void note_unsolicited(const CanFrame& frame) noexcept { static_cast<void>(frame); }
+  /// Code of the error that the drive announced last and has not taken back; 0: none. Of families
+  /// that announce errors. Allowed in every thread.
+  virtual std::uint16_t emergency() const noexcept { return 0; }
+  /// Whether a frame of somebody else commands this drive or writes its settings: sent by anybody
+  /// but this driver, it must not go unnoticed.
+  virtual bool is_order(const CanFrame& frame) const noexcept = 0;
   /// Whether the frame answers presence_request().
   virtual bool is_presence(const CanFrame& frame) const noexcept {
     return is_mine(frame) && !is_unsolicited(frame);
+  }
+  /// Whether the frame answers presence_request() as this drive would, but with an identifier that
+  /// is not its own: a setting of the drive that is easily forgotten.
+  virtual bool is_astray(const CanFrame& frame) const noexcept {
+    static_cast<void>(frame);
+    return false;
   }
   /// Start of a cycle: what comes from here on answers it, or, `late`, the one before.
   virtual void begin_cycle() noexcept {}

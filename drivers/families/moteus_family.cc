@@ -8,6 +8,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "robots/loader/protocols/drive_protocol.h"
+
 namespace limber {
 namespace {
 
@@ -65,6 +67,12 @@ CanFrame MoteusFamily::enable(const DriveMemory& memory) noexcept {
   DriveCommand sent;
   const DriveCommand nothing{memory.seen.angle_rad, 0.0, 0.0, 0.0, 0.0};
   return command(nothing, memory, &frame, &sent) ? frame : state_request();
+}
+
+bool MoteusFamily::is_order(const CanFrame& frame) const noexcept {
+  // Bits 16 to 28 are the prefix, which must be the drive's; a reply is for host 0.
+  const bool prefix = frame.id >> 16U == drive_.command_id >> 16U;
+  return !frame.error && prefix && accepts_id(drive_, frame.id);
 }
 
 StateReading MoteusFamily::read_state(const CanFrame& frame, bool /*late*/,

@@ -33,6 +33,8 @@ class MoteusFamily final : public DriveFamily {
   bool is_mine(const CanFrame& frame) const noexcept override {
     return has_id(frame, drive_.reply_id);
   }
+  /// Frames for its number, or for all, whoever they are from.
+  bool is_order(const CanFrame& frame) const noexcept override;
   StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
   std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;

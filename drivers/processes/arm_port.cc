@@ -27,6 +27,9 @@ ArmPort::ArmPort(const Robot& robot, const ArmDriverOptions& options, LcmPort* u
   reporter_->set_fault_text([this](int fault, int joint, std::uint16_t detail) {
     return driver_->fault_text(fault, joint, detail);
   });
+  reporter_->set_warning_text([this](int motor, const DriveWarning& warning) {
+    return driver_->warning_text(motor, warning);
+  });
 }
 
 bool ArmPort::wait_for_replies(std::int64_t deadline_ns) {
@@ -45,6 +48,8 @@ void ArmPort::publish_state(const joint_state_t& state) {
   arm_plane_.publish(channels::kJointState, state);
   user_plane_->publish(channels::kJointState, state);
   reporter_->note(state, driver_->fault_detail());
+  for (int motor = 0; motor < driver_->motors(); ++motor)
+    reporter_->note_warning(motor, driver_->warning(motor));
   log_configuration(state);
 }
 
@@ -73,15 +78,21 @@ void ArmPort::on_command(const joint_command_t& command) {
 }
 
 void ArmPort::log_configuration(const joint_state_t& state) {
-  const bool wrong = state.fault == joint_state_t::FAULT_CONFIGURATION;
   // Nothing is enabled then: the cycle may take the time for a line.
-  if (wrong && !problem_logged_) spdlog::error("{}", driver_->configuration_problem());
-  problem_logged_ = wrong;
+  const bool wrong = state.fault == joint_state_t::FAULT_CONFIGURATION;
+  if (wrong && !wrong_) log_problem(driver_->configuration_problem());
+  wrong_ = wrong;
   if (configuring_ && state.drive_state == joint_state_t::DRIVE_OFF) {
+    problem_logged_.clear();
     for (const std::string& line : driver_->configuration_warnings())
       spdlog::warn("warning: {}", line);
   }
   configuring_ = state.drive_state == joint_state_t::DRIVE_CONFIGURING;
+}
+
+void ArmPort::log_problem(const std::string& problem) {
+  if (problem != problem_logged_) spdlog::error("error: {}", problem);
+  problem_logged_ = problem;
 }
 
 void ArmPort::publish_status() {

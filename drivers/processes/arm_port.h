@@ -8,6 +8,7 @@
 #include <limber/joint_state_t.hpp>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/lcm_port.h"
@@ -51,6 +52,7 @@ class ArmPort {
  private:
   void on_command(const joint_command_t& command);
   void log_configuration(const joint_state_t& state);
+  void log_problem(const std::string& problem);
 
   bool lockstep_;
   LcmPort* user_plane_;
@@ -62,9 +64,10 @@ class ArmPort {
 
   const joint_state_t* published_ = nullptr;
   std::int64_t published_ns_ = 0;
-  bool answered_ = false;        ///< the state published last
-  bool problem_logged_ = false;  ///< the configuration's
-  bool configuring_ = true;      ///< by the state published last
+  bool answered_ = false;       ///< the state published last
+  bool wrong_ = false;          ///< the configuration, by the state published last
+  bool configuring_ = true;     ///< likewise
+  std::string problem_logged_;  ///< told once, however often it is acknowledged
   CycleTiming timing_;
   driver_status_t status_{};
 };

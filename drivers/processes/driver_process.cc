@@ -74,8 +74,14 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
 
 int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
   log_start();
-  const std::string missing =
-      discover_drives(robot_, port_.buses(), options_.lockstep, options_.patience_s, stop);
+  const std::string missing = discover_drives(
+      robot_, port_.buses(), options_.lockstep, options_.patience_s, stop,
+      [](const std::string& silent) {
+        spdlog::warn(
+            "warning: no answer yet from {}; check power, bit rate, termination and ids; still "
+            "waiting",
+            silent);
+      });
   if (stop != 0) return kExitDone;
   if (!missing.empty()) {
     spdlog::error("no answer for {:g} s from {}", options_.patience_s, missing);

@@ -23,7 +23,8 @@ constexpr std::array kFaultNames = {
     "overruns",
     "requested",
     "replies doubled or unreadable: is another motor on this id, or a log replayed?",
-    "somebody else commands a drive of this arm: stop the other program"};
+    "somebody else commands a drive of this arm, or writes its settings: stop the other program",
+    "feedback contradicts itself"};
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 
 template <typename Names>
@@ -38,12 +39,14 @@ StateReporter::StateReporter(std::vector<std::string> joints)
     : joints_(std::move(joints)), noted_(kNothing) {
   thread_ = std::jthread([this](const std::stop_token& stop) {
     std::uint64_t reported = kNothing;
+    std::array<DriveWarning, kMaxMotors> warned{};
     bool last_round = false;
     while (!last_round) {
       last_round = stop.stop_requested();
       const std::uint64_t noted = noted_.load(std::memory_order_acquire);
       if (noted != reported) report_changes(reported, noted);
       reported = noted;
+      report_warnings(&warned);
       if (!last_round) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   });
@@ -63,6 +66,17 @@ void StateReporter::report_changes(std::uint64_t reported, std::uint64_t noted) 
   const bool lost = (noted & kSensorError) != 0;
   if (lost && !was_lost) spdlog::warn("tip sensor: does not answer, or is beyond its range");
   if (!lost && was_lost) spdlog::info("tip sensor: back");
+}
+
+void StateReporter::report_warnings(std::array<DriveWarning, kMaxMotors>* reported) const {
+  for (std::size_t m = 0; m < warnings_.size(); ++m) {
+    const DriveWarning now = warnings_[m].load(std::memory_order_acquire);
+    if (now.differs((*reported)[m]) && warning_text_) {
+      const std::string text = warning_text_(static_cast<int>(m), now);
+      now.any() ? spdlog::warn("warning: {}", text) : spdlog::info("{}", text);
+    }
+    (*reported)[m] = now;
+  }
 }
 
 void StateReporter::report(std::uint64_t packed) const {

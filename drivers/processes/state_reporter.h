@@ -1,6 +1,7 @@
 // Log lines when the drives change state; the cycle itself never writes one.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -8,6 +9,9 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "common/joints.h"
+#include "drivers/drive/drive_warning.h"
 
 namespace limber {
 
@@ -25,6 +29,14 @@ class StateReporter {
   using FaultText = std::function<std::string(int fault, int joint, std::uint16_t detail)>;
   void set_fault_text(FaultText text) { fault_text_ = std::move(text); }
 
+  /// ArmDriver::warning_text(), likewise.
+  using WarningText = std::function<std::string(int motor, const DriveWarning& warning)>;
+  void set_warning_text(WarningText text) { warning_text_ = std::move(text); }
+
+  /// What motor 0, 1, .. is to be looked at for; a line for each change. Allowed inside the cycle.
+  void note_warning(int motor, const DriveWarning& warning) noexcept {
+    warnings_[static_cast<std::size_t>(motor)].store(warning, std::memory_order_release);
+  }
   /// `detail`: ArmDriver::fault_detail(). Allowed inside the cycle.
   void note(const joint_state_t& state, std::uint16_t detail = 0) noexcept {
     std::uint64_t packed = pack(state.drive_state, state.fault, state.fault_joint);
@@ -46,6 +58,11 @@ class StateReporter {
 
   std::vector<std::string> joints_;
   FaultText fault_text_;
+  void report_warnings(std::array<DriveWarning, kMaxMotors>* reported) const;
+
+  static_assert(std::atomic<DriveWarning>::is_always_lock_free);
+  WarningText warning_text_;
+  std::array<std::atomic<DriveWarning>, kMaxMotors> warnings_{};
   std::int8_t last_fault_ = joint_state_t::FAULT_NONE;
   std::uint16_t fault_detail_ = 0;  ///< when the fault began
   std::atomic<std::uint64_t> noted_;

@@ -78,6 +78,32 @@ CanFrame encode_sync(std::uint8_t counter) noexcept {
   return frame;
 }
 
+const char* emergency_text(std::uint16_t code) noexcept {
+  struct Row {
+    std::uint16_t code;
+    const char* text;
+  };
+  constexpr Row kCodes[] = {
+      {0x0000, "all errors are gone"}, {kOverCurrent, "over-current"},
+      {0x3210, "over-voltage"},        {0x3220, "under-voltage"},
+      {kDriveTooHot, "drive too hot"}, {kHeartbeatLost, "heartbeat lost"},
+      {kPdoTooShort, "PDO too short"}, {kSyncLength, "SYNC of unexpected length"},
+      {kRpdoTimeout, "RPDO time-out"},
+  };
+  constexpr Row kClasses[] = {{0x10, "generic"},       {0x20, "current"},    {0x30, "voltage"},
+                              {0x40, "temperature"},   {0x50, "hardware"},   {0x60, "software"},
+                              {0x70, "added modules"}, {0x80, "monitoring"}, {0x90, "external"},
+                              {0xF0, "manufacturer"}};
+  for (const Row& row : kCodes) {
+    if (row.code == code) return row.text;
+  }
+  if ((code & 0xFF00U) == kCommunicationError) return "communication";
+  for (const Row& row : kClasses) {
+    if (row.code == (code >> 8U & 0xF0U)) return row.text;
+  }
+  return "unknown";
+}
+
 CanFrame encode_emergency(const Emergency& emergency, std::uint8_t node) noexcept {
   CanFrame frame = classic_frame(kEmergencyCode + node, 8);
   frame.data[0] = static_cast<std::uint8_t>(emergency.code);

@@ -126,12 +126,15 @@ inline constexpr std::uint8_t kErrorCurrent = 1U << 1U;
 inline constexpr std::uint8_t kErrorCommunication = 1U << 4U;
 
 inline constexpr std::uint16_t kOverCurrent = 0x2310;
+inline constexpr std::uint16_t kDriveTooHot = 0x4310;
 inline constexpr std::uint16_t kCommunicationError = 0x8100;
 inline constexpr std::uint16_t kHeartbeatLost = 0x8130;
 inline constexpr std::uint16_t kPdoTooShort = 0x8210;
 inline constexpr std::uint16_t kSyncLength = 0x8240;
 inline constexpr std::uint16_t kRpdoTimeout = 0x8250;
 
+/// A code in words: its own, or those of its class. Never nullptr.
+const char* emergency_text(std::uint16_t code) noexcept;
 CanFrame encode_emergency(const Emergency& emergency, std::uint8_t node) noexcept;
 [[nodiscard]] bool decode_emergency(const CanFrame& frame, std::uint8_t node,
                                     Emergency* emergency) noexcept;

@@ -11,6 +11,7 @@ constexpr unsigned kWriteSegmentRequest = 0x00;
 constexpr unsigned kStartWriteRequest = 0x20;
 constexpr unsigned kStartReadRequest = 0x40;
 constexpr unsigned kReadSegmentRequest = 0x60;
+constexpr unsigned kBlockWriteRequest = 0xC0;
 constexpr unsigned kReadSegmentAnswer = 0x00;
 constexpr unsigned kWriteSegmentAnswer = 0x20;
 constexpr unsigned kStartReadAnswer = 0x40;
@@ -123,6 +124,13 @@ CanFrame encode_sdo_request(const SdoMessage& message, std::uint8_t node) noexce
   }
   frame.data[0] = low_byte(command);
   return frame;
+}
+
+bool is_sdo_write(const CanFrame& request) noexcept {
+  const unsigned command = request.data[0] & kCommandMask;
+  return request.length == 8 && !request.remote &&
+         (command == kStartWriteRequest || command == kWriteSegmentRequest ||
+          command == kBlockWriteRequest);
 }
 
 CanFrame encode_sdo_answer(const SdoMessage& message, std::uint8_t node) noexcept {

@@ -60,6 +60,8 @@ CanFrame encode_sdo_read(ObjectId object, std::uint8_t node) noexcept;
 CanFrame encode_sdo_write(const Object& object, std::uint32_t value, std::uint8_t node) noexcept;
 
 CanFrame encode_sdo_request(const SdoMessage& message, std::uint8_t node) noexcept;
+/// Of a request, whatever node it is for: the start of a write, or a part of one.
+bool is_sdo_write(const CanFrame& request) noexcept;
 CanFrame encode_sdo_answer(const SdoMessage& message, std::uint8_t node) noexcept;
 /// False unless the frame is an SDO frame of this node in that direction: identifier, eight bytes.
 [[nodiscard]] bool decode_sdo_request(const CanFrame& frame, std::uint8_t node,

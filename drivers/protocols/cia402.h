@@ -116,10 +116,11 @@ inline constexpr std::uint16_t kFaultReset = 0x0080;
 
 // Bits of a statusword beside the state.
 inline constexpr std::uint16_t kVoltagePresent = 1U << 4U;
+inline constexpr std::uint16_t kWarning = 1U << 7U;
 inline constexpr std::uint16_t kRemote = 1U << 9U;
 inline constexpr std::uint16_t kTargetReached = 1U << 10U;
 inline constexpr std::uint16_t kLimitActive = 1U << 11U;
-inline constexpr std::uint16_t kFollowing = 1U << 12U;
+inline constexpr std::uint16_t kFollowing = 1U << 12U;  ///< cyclic modes: executes its target
 
 /// Every statusword is of one state; those the profile does not list count as not ready.
 State state_of(std::uint16_t statusword) noexcept;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "common/joints.h"
 #include "robots/loader/actuator_yaml.h"
 #include "robots/loader/adapter.h"
@@ -9,6 +11,18 @@
 
 namespace limber {
 namespace {
+
+void read_warning_temperature(const YamlMap& yaml, const DriveProtocolTraits& traits,
+                              DriveConfig* drive) {
+  constexpr const char* kKey = "warning_temperature_degC";
+  if (std::isfinite(traits.warning_temperature_degC)) {
+    drive->warning_temperature_degC =
+        yaml.number_or(kKey, {20.0, 200.0}, traits.warning_temperature_degC);
+  } else if (yaml.has(kKey)) {
+    yaml.refuse(
+        kKey, fmt::format("{} drives report no temperature, but warn by themselves", traits.word));
+  }
+}
 
 DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   DriveConfig drive;
@@ -27,6 +41,7 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   if (yaml.has("actuator")) drive.actuator = read_actuator(yaml.map("actuator"));
   drive.actuator.resistance_ohm = resistance;
   refuse_foreign_keys(yaml, traits);
+  read_warning_temperature(yaml, traits, &drive);
   traits.read_motor(yaml, &drive);
   yaml.finish();
   return drive;

@@ -73,8 +73,10 @@ struct DriveConfig {
   double timeout_torque_Nm = 5.0;    ///< moteus: most that brakes the joint after a time-out
   double rated_torque_Nm = 1.0;      ///< CiA 402: torques count in thousandths of it (6076h)
   double counts_per_turn = 16384.0;  ///< motor encoder, per joint revolution
-  ActuatorConfig actuator;           ///< what makes torque of the command; for the simulator
-  double hold_kp_Nm_per_rad = 0.0;   ///< driver's own holding when the controller is lost
+  /// Above it the driver warns; infinite: never.
+  double warning_temperature_degC = std::numeric_limits<double>::infinity();
+  ActuatorConfig actuator;          ///< what makes torque of the command; for the simulator
+  double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;
 };
 

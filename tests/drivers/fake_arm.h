@@ -75,6 +75,8 @@ class FakeMotor {
   double angle = 0.0;            ///< drive side
   double speed = 0.0;
   double torque = 0.0;
+  int mos_degC = 30;
+  int rotor_degC = 35;
   bool silent = false;    ///< hears and obeys, does not answer
   bool obedient = true;   ///< false: ignores enable
   bool stubborn = false;  ///< ignores disable
@@ -96,8 +98,8 @@ class FakeMotor {
                           v >> 4,
                           (v & 15) << 4 | t >> 8,
                           t & 255,
-                          30,
-                          35};
+                          mos_degC,
+                          rotor_degC};
     for (std::size_t i = 0; i < 8; ++i) reply->data[i] = static_cast<std::uint8_t>(bytes[i]);
   }
 

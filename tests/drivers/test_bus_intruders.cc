@@ -55,6 +55,53 @@ TEST(BusIntruders, AnotherMastersCommandStopsTheArmWithTheReason) {
   EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
 }
 
+/// TMAX (register 23) of motor 2: 8 N m become 10. Written, or stored.
+CanFrame register_frame(std::uint8_t operation) {
+  CanFrame frame;
+  frame.id = 0x7FF;
+  frame.length = 8;
+  const std::uint8_t bytes[8] = {2, 0, operation, 23, 0x00, 0x00, 0x20, 0x41};
+  std::copy_n(bytes, 8, frame.data.begin());
+  return frame;
+}
+
+// Its range would scale every torque from here on.
+TEST(BusIntruders, AWrittenRegisterStopsTheArmWithTheReason) {
+  for (std::uint8_t operation : {0x55, 0xAA}) {
+    IntrudedArm arm(test_robot(3));
+    ASSERT_TRUE(arm.switch_on());
+    arm.intrusion = {register_frame(operation)};
+    EXPECT_EQ(cycles_until_off(&arm, 10), 1);
+    EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
+  }
+}
+
+TEST(BusIntruders, ARegisterThatIsReadOrOfAnotherDriveDoesNothing) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  CanFrame other = register_frame(0x55);
+  other.data[0] = 9;
+  arm.intrusion = {other};
+  EXPECT_EQ(cycles_until_off(&arm, 100), -1);
+  arm.intrusion = {register_frame(0x33)};
+  EXPECT_EQ(cycles_until_off(&arm, 1), -1);
+}
+
+// While nothing has power, too: the settings are compared again after the acknowledgement.
+TEST(BusIntruders, AWrittenRegisterOfADriveWithoutPowerIsAFaultThatIsCheckedAgain) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, joint_command_t::REQUEST_KEEP));
+  arm.intrusion = {register_frame(0x55)};
+  arm.cycle_with(joint_command_t::REQUEST_KEEP);
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_FAULT);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
+  arm.intrusion.clear();
+  arm.motors[1].set_float(23, 10.5);
+  arm.cycle_with(joint_command_t::REQUEST_ACKNOWLEDGE);
+  EXPECT_FALSE(arm.run_until(joint_state_t::DRIVE_OFF, joint_command_t::REQUEST_KEEP));
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_CONFIGURATION);
+}
+
 TEST(BusIntruders, FramesOfOtherDevicesDoNothing) {
   IntrudedArm arm(test_robot(3));
   ASSERT_TRUE(arm.switch_on());

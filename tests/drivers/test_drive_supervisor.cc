@@ -312,6 +312,7 @@ TEST(EncoderTest, AnArmThatIsOffMaySwing) {
 
 TEST(MotionTest, OutsideTheLimitsHolds) {
   FakeArm arm = loaded_arm(1);
+  arm.set_speed(0, 5.0);
   for (double q = 0.0; q < 2.0195; q += 0.005) {
     arm.set_angle(0, q);
     arm.cycle_with(kRequestOn);

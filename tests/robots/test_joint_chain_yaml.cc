@@ -1,4 +1,6 @@
 // The stages of a joint in robot.yaml: what a good file means, one slip each, and reality on top.
+#include <cmath>
+
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
 
@@ -32,6 +34,7 @@ TEST_F(GoodChain, DriveSpeaksCia402) {
   EXPECT_EQ(roll_.antagonist.frames.replies, std::vector<int>{16});
   EXPECT_EQ(turn_.drive.counts_per_turn, 4194304.0);
   EXPECT_EQ(turn_.drive.rated_torque_Nm, 2.0);
+  EXPECT_FALSE(std::isfinite(turn_.drive.warning_temperature_degC));
   EXPECT_NEAR(turn_.drive.range.torque_Nm, 65.534, 1e-9);
 }
 
@@ -153,6 +156,11 @@ const Mutation kSlips[] = {
      "cannot carry the peak torque of 60: 32767 thousandths are 32.77"},
     {"RatedForMit", "    encoder_bits: 14", "    encoder_bits: 14\n    rated_torque_Nm: 1",
      "is for motors with protocol: cia402 only", 1},
+    {"WarmWithoutTemperature", "    encoder_bits: 22",
+     "    encoder_bits: 22\n    warning_temperature_degC: 70",
+     "cia402 drives report no temperature, but warn by themselves", 1},
+    {"WarmBeyondSense", "    encoder_bits: 14",
+     "    encoder_bits: 14\n    warning_temperature_degC: 300", "from 20 to 200", 1},
     {"ActuatorKind", "kind: current_drive", "kind: magic", "expected one of: ideal, current_drive"},
     {"ActuatorKey", "      lag_s: 0.0005", "      lagg_s: 0.0005", "unknown key 'lagg_s'"},
     {"MagnetGrowsStronger", "magnet_per_K: -0.0012", "magnet_per_K: 0.0012", "out of range"},

@@ -12,7 +12,7 @@ from canopen.objectdictionary import ODVariable
 NODE = 1
 SYNC = 0x080
 COUNTS, GEAR = 16384, 160  # of the motor's turn; motor turns per turn of the joint
-SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x0250, 0x0231, 0x0233, 0x0237
+SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x0250, 0x0231, 0x0233, 0x1237
 # What the profile leaves to the maker: this maker has left it out.
 LEFT_OUT = [0x6007, 0x605E, 0x60C2]
 

@@ -66,33 +66,6 @@ Value abort_value(const SdoMessage& message) {
 
 }  // namespace
 
-std::string emergency_word(std::uint16_t code) {
-  struct Row {
-    std::uint16_t code;
-    const char* word;
-  };
-  constexpr Row kCodes[] = {
-      {0x0000, "all errors are gone"},
-      {canopen::kOverCurrent, "over-current"},
-      {canopen::kHeartbeatLost, "heartbeat lost"},
-      {canopen::kPdoTooShort, "PDO too short"},
-      {canopen::kSyncLength, "SYNC of unexpected length"},
-      {canopen::kRpdoTimeout, "RPDO time-out"},
-  };
-  constexpr Row kClasses[] = {{0x10, "generic"},       {0x20, "current"},    {0x30, "voltage"},
-                              {0x40, "temperature"},   {0x50, "hardware"},   {0x60, "software"},
-                              {0x70, "added modules"}, {0x80, "monitoring"}, {0x90, "external"},
-                              {0xF0, "manufacturer"}};
-  for (const Row& row : kCodes) {
-    if (row.code == code) return row.word;
-  }
-  if ((code & 0xFF00U) == 0x8100U) return "communication";
-  for (const Row& row : kClasses) {
-    if (row.code == (code >> 8U & 0xF0U)) return row.word;
-  }
-  return "unknown";
-}
-
 CanopenDrive::CanopenDrive(const Motor& motor, bool fd, double period_s)
     : node(canopen::node_of(motor.joint.drive.command_id)), scale(motor, 0.0) {
   const std::unique_ptr<DriveFamily> family = make_drive_family(motor.joint, fd, period_s);
@@ -115,10 +88,11 @@ std::optional<Reading> CanopenDecoder::read(const CanFrame& frame) {
   if (canopen::decode_sdo_answer(frame, drive_.node, &message)) return read_answer(message);
   canopen::Emergency emergency;
   if (canopen::decode_emergency(frame, drive_.node, &emergency)) {
-    return reading(Direction::kReply, "EMCY",
-                   {{"", hex(emergency.code, 4) + "h " + emergency_word(emergency.code), ""},
-                    {"error register", hex(emergency.error_register, 2) + "h", ""},
-                    {"vendor", fmt::format("{:02X}", fmt::join(emergency.vendor, " ")), ""}});
+    return reading(
+        Direction::kReply, "EMCY",
+        {{"", hex(emergency.code, 4) + "h " + canopen::emergency_text(emergency.code), ""},
+         {"error register", hex(emergency.error_register, 2) + "h", ""},
+         {"vendor", fmt::format("{:02X}", fmt::join(emergency.vendor, " ")), ""}});
   }
   NmtState state{};
   if (canopen::decode_heartbeat(frame, drive_.node, &state))

@@ -54,7 +54,4 @@ class CanopenNetworkDecoder final : public FrameDecoder {
   std::map<std::uint8_t, std::string> names_;
 };
 
-/// "over-current", or the class that the code belongs to.
-std::string emergency_word(std::uint16_t code);
-
 }  // namespace limber::bus_tools

@@ -45,6 +45,7 @@ FrameSizes damiao_mit_frames(const JointConfig& /*joint*/, bool /*fd*/) { return
 const DriveProtocolTraits kDamiaoMitTraits = {
     .protocol = DriveProtocol::kDamiaoMit,
     .word = "damiao_mit",
+    .warning_temperature_degC = 80.0,  // guessed: 20 K below the 100 of its makers' windings
     .keys = kDamiaoKeys,
     .read_motor = read_damiao_mit_motor,
     .read_ids = read_damiao_mit_ids,

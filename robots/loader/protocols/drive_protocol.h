@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,8 @@ struct DriveProtocolTraits {
   bool reports_link = false;  ///< its drives can have a link encoder and a torque sensor
   bool needs_sync = false;    ///< one SYNC a cycle on each of its buses
   bool rotary_only = false;   ///< counts turns
+  /// Default of a motor's `warning_temperature_degC`; infinite: its drives report none.
+  double warning_temperature_degC = std::numeric_limits<double>::infinity();
   /// Keys of a motor, or of a joint, that only this protocol has.
   std::span<const char* const> keys = {};
 

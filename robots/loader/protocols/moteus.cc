@@ -50,6 +50,8 @@ const DriveProtocolTraits kMoteusTraits = {
     .word = "moteus",
     .needs_fd = true,
     .rotary_only = true,
+    .warning_temperature_degC =
+        50.0,  // its firmware reduces the current from there on, and faults at 75
     .keys = kMoteusKeys,
     .read_motor = read_moteus_motor,
     .read_ids = read_moteus_ids,

@@ -71,6 +71,36 @@ TEST(DriveDiscoveryTest, NamesWhoIsMissing) {
   EXPECT_NE(discover_drives(robot, buses, false, 1000.0, stop), "");  // returns at once
 }
 
+// 1.5 s, 3 s: it is told at the first, and not again.
+TEST(DriveDiscoveryTest, WhoIsMissingIsToldWhileTheWaitingGoesOn) {
+  Robot robot = testing::test_robot(3);
+  robot.buses[0].can = "virtual:test";
+  PromptBus bus(robot, 0);
+  bus.motors[1].silent = true;
+  std::vector<CanBus*> buses{&bus};
+  volatile std::sig_atomic_t stop = 0;
+  std::vector<std::string> told;
+  discover_drives(robot, buses, false, 3.5, stop,
+                  [&](const std::string& missing) { told.push_back(missing); });
+  EXPECT_EQ(told, std::vector<std::string>({"joint2 (id 0x2 on virtual:test)"}));
+}
+
+TEST(DriveDiscoveryTest, AMotorThatAnswersWithIdentifier0IsNamed) {
+  Robot robot = testing::test_robot(3);
+  robot.buses[0].can = "virtual:test";
+  PromptBus bus(robot, 0);
+  bus.motors[1] = testing::FakeMotor([&] {
+    DriveConfig drive = robot.joints[1].drive;
+    drive.reply_id = 0;
+    return drive;
+  }());
+  std::vector<CanBus*> buses{&bus};
+  volatile std::sig_atomic_t stop = 0;
+  EXPECT_EQ(discover_drives(robot, buses, false, 0.15, stop),
+            "joint2 (id 0x2 on virtual:test); joint2 answers with id 0x0 instead of 0x12 (Damiao: "
+            "MST_ID, register 7)");
+}
+
 TEST(DriveDiscoveryTest, TwoMotorsWithOneIdAreNamed) {
   Robot robot = testing::test_robot(3);
   robot.buses[0].can = "virtual:test";

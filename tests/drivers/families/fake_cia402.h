@@ -17,9 +17,9 @@
 
 namespace limber::testing {
 
-/// Statuswords with voltage present, remote.
+/// Statuswords with voltage present, remote; enabled it follows its target (bit 12).
 constexpr int kSwitchOnDisabled = 0x0250, kReady = 0x0231, kSwitchedOn = 0x0233,
-              kOperationEnabled = 0x0237, kFault = 0x0218;
+              kOperationEnabled = 0x1237, kFault = 0x0218;
 
 /// Expedited SDO, NMT, one RPDO and the TPDOs at the SYNC: one on an FD bus, else two or three.
 /// They tell what was before the RPDO.
@@ -93,6 +93,7 @@ class FakeCia402 {
   bool silent = false;                     ///< sends nothing
   std::set<int> withheld;                  ///< TPDOs, from 1 on, that it does not send
   bool never_operational = false;
+  int when_enabled = kOperationEnabled;
   bool operational = false;
   std::vector<std::string> heard;
   int position = 0, velocity = 0, torque = 0, current = 0, link_position = 0, link_velocity = 0;
@@ -161,7 +162,7 @@ class FakeCia402 {
     if ((controlword & 0x02) == 0) set_status(kSwitchOnDisabled);
     if (controlword == 0x06) set_status(kReady);
     if (controlword == 0x07 && status() == kReady) set_status(kSwitchedOn);
-    if (controlword == 0x0F && status() == kSwitchedOn) set_status(kOperationEnabled);
+    if (controlword == 0x0F && status() == kSwitchedOn) set_status(when_enabled);
   }
 
   std::vector<CanFrame> answer_sdo(const CanFrame& request) {

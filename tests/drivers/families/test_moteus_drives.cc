@@ -331,6 +331,39 @@ TEST(MoteusFaults, ATimeOutIsADriveErrorAndNeedsAcknowledging) {
   }
 }
 
+// Somebody else's mode: voltage, current, zero velocity, stay within, brake.
+TEST(MoteusFaults, AnyModeButPositionIsADriveError) {
+  for (int mode : {0, 6, 9, 12, 13, 15}) {
+    MoteusArm arm;
+    ASSERT_TRUE(arm.switch_on());
+    arm.motors[0].mode = mode;
+    arm.cycle_with(joint_command_t::REQUEST_ON);
+    EXPECT_EQ(arm.state->fault, int{joint_state_t::FAULT_DRIVE_ERROR}) << mode;
+  }
+}
+
+// Host 0 with its own identifier, host 1, a 11-bit identifier, all drives; not another drive, nor
+// a reply, nor another prefix.
+TEST(MoteusFaults, FramesOfSomebodyElseForADriveAreForeign) {
+  const auto fault_of = [](std::uint32_t id, bool extended) {
+    MoteusArm arm;
+    EXPECT_TRUE(arm.switch_on());
+    CanFrame frame;
+    frame.id = id;
+    frame.extended = extended;
+    frame.fd = true;
+    arm.motor_ends[0]->send(frame);
+    arm.cycle_with(joint_command_t::REQUEST_KEEP);
+    return arm.state->fault;
+  };
+  const std::uint32_t node = MoteusArm().robot.joints[0].drive.command_id & 0x7F;
+  for (std::uint32_t id : {0x8000 | node, 0x8100 | node, 0x0100 | node, std::uint32_t{0x807F}})
+    EXPECT_EQ(fault_of(id, true), int{joint_state_t::FAULT_FOREIGN_COMMAND}) << id;
+  EXPECT_EQ(fault_of(node, false), int{joint_state_t::FAULT_FOREIGN_COMMAND});
+  for (std::uint32_t id : {std::uint32_t{0x8063}, std::uint32_t{0x6300}, 0x18000 | node})
+    EXPECT_EQ(fault_of(id, true), int{joint_state_t::FAULT_NONE}) << id;
+}
+
 TEST(MoteusFaults, ShutDownStopsEveryDrive) {
   MoteusArm arm;
   ASSERT_TRUE(arm.switch_on());

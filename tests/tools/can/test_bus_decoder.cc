@@ -202,8 +202,8 @@ TEST_F(Canopen, Emergencies) {
   EXPECT_EQ(said(decoder, "083#0000000000000000"),
             "elbow reply EMCY: 0000h all errors are gone, error register 00h, vendor 00 00 00 00 "
             "00");
-  EXPECT_EQ(said(decoder, "083#1043080000000000").substr(0, 36),
-            "elbow reply EMCY: 4310h temperature,");
+  EXPECT_EQ(said(decoder, "083#1043080000000000").substr(0, 37),
+            "elbow reply EMCY: 4310h drive too hot");
 }
 
 // --- tip sensors ---------------------------------------------------------------------------------

@@ -3,11 +3,16 @@
 import os
 import signal
 import time
+from contextlib import contextmanager
+from io import StringIO
 
 import pytest
+from rich.console import Console
 
 from limber.errors import InputError, RunError
+from limber.run.options import FinishedRun
 from limber.run.processes import ProcessGroup, process_group
+from limber.run.runner import _follow
 
 FOREVER = ["sleep", "1000"]
 STUBBORN = ["sh", "-c", "trap '' TERM; echo ready; while :; do sleep 0.05; done"]
@@ -86,9 +91,30 @@ def test_run_until_returns_the_code_and_ticks(tmp_path):
     assert len(ticks) > 3
 
 
-def test_warnings_are_told_apart(tmp_path):
-    says = ["sh", "-c", "echo '10:00 x: up'; echo '10:00 x: warning: no watchdog'; sleep 1000"]
+def test_news_are_warnings_and_errors_each_told_once(tmp_path):
+    says = (
+        "echo '10:00 x: up'; echo '10:00 x: warning: no watchdog'; printf '10:01 x: error: regis';"
+        "sleep 0.5; echo 'ter 21 is 12.566'; sleep 1000"
+    )
     with process_group(tmp_path) as group:
-        child = group.start("x", says)
-        group.wait_for_line(child, "watchdog", 5)
-        assert child.warnings() == ["no watchdog"]
+        child = group.start("x", ["sh", "-c", says])
+        group.wait_for_line(child, "regis", 5)
+        assert child.news() == ["no watchdog"]
+        group.wait_for_line(child, "12.566\n", 5)
+        assert child.news() == ["register 21 is 12.566"]
+        assert child.news() == []
+
+
+def test_news_of_the_driver_reach_the_terminal_while_it_runs(tmp_path):
+    shown = StringIO()
+    says = "echo '10:00 x: error: register 21 is 12.566'; sleep 0.5"
+    seen = []
+    with process_group(tmp_path) as group:
+        child = group.start("limber-driver", ["sh", "-c", says])
+
+        @contextmanager
+        def display():
+            yield lambda: seen.append((child.code, shown.getvalue()))
+
+        _follow(group, display(), FinishedRun(tmp_path, "realtime"), Console(file=shown))
+    assert (None, "register 21 is 12.566\n") in seen

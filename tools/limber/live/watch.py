@@ -125,7 +125,7 @@ class View:
         for i in range(int(state["num_joints"])):
             q = float(state["q"][i])
             flags = messages.bit_names("joint_state_t", "JOINT_", int(state["joint_flags"][i]))
-            wrong = [flag for flag in flags if flag in ("DRIVE_ERROR", "OUT_OF_RANGE")]
+            wrong = [flag for flag in flags if flag in ("DRIVE_ERROR", "OUT_OF_RANGE", "WARNING")]
             age = int(state["age_cycles"][i])
             table.add_row(
                 self._joint_name(i),

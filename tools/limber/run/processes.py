@@ -13,7 +13,7 @@ from pathlib import Path
 from limber.errors import WRONG_INPUT, InputError, LimberError, RunError
 
 _PR_SET_PDEATHSIG = 1
-_WARNING = ": warning: "  # as the programs write it
+_MARKS = (": warning: ", ": error: ")  # as the programs write them
 
 
 @dataclass
@@ -21,6 +21,7 @@ class Child:
     name: str
     process: subprocess.Popen
     log: Path
+    read: int = 0  # bytes of the log that news() has seen
     may_end: bool = False  # it was signalled to end, or its end is awaited
 
     @property
@@ -31,10 +32,14 @@ class Child:
         text = self.log.read_text(encoding="utf-8", errors="replace").replace("\r", "\n")
         return [line for line in text.splitlines() if line.strip()][-count:]
 
-    def warnings(self) -> list[str]:
-        """What the child said that nobody may overlook, without time and name."""
-        text = self.log.read_text(encoding="utf-8", errors="replace")
-        return [line.partition(_WARNING)[2] for line in text.splitlines() if _WARNING in line]
+    def news(self) -> list[str]:
+        """What it has said since the last call that nobody may overlook, without time and name."""
+        with open(self.log, "rb") as log:
+            log.seek(self.read)
+            whole, end, _ = log.read().rpartition(b"\n")  # the last line may not be complete yet
+        self.read += len(whole + end)
+        lines = whole.decode("utf-8", errors="replace").splitlines()
+        return [line.partition(mark)[2] for line in lines for mark in _MARKS if mark in line]
 
     def failure(self) -> LimberError:
         """The error to report for a child that ended unexpectedly."""

@@ -34,12 +34,12 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
     with process_group(folder) as group, _sigterm_as_interrupt():
         for name, command in commands.items():
             _start(group, name, command)
-        code = _follow(group, display(scenario, console, options.live_view), result)
+        driver = group.children["limber-driver"]
+        code = _follow(group, display(scenario, console, options.live_view), result, console)
+        _tell(driver, console)
         if code != 0 and not result.stopped_early:
-            raise group.children["limber-driver"].failure()
+            raise driver.failure()
         result.recorder = _stop_others(group)
-        for line in group.children["limber-driver"].warnings():
-            console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
     return result
 
 
@@ -111,14 +111,27 @@ def _follow(
     group: ProcessGroup,
     display: AbstractContextManager[Callable[[], None]],
     result: FinishedRun,
+    console: Console,
 ) -> int:
     """Shows the run until the driver ends, or ends the driver on Ctrl-C; returns its exit code."""
+    driver = group.children["limber-driver"]
     try:
         with display as update:
-            return group.run_until("limber-driver", update)
+
+            def tick() -> None:
+                _tell(driver, console)
+                update()
+
+            return group.run_until("limber-driver", tick)
     except KeyboardInterrupt:
         result.stopped_early = True
         return group.stop("limber-driver", signal.SIGINT, STOP_TIMEOUT_S)
+
+
+def _tell(driver: Child, console: Console) -> None:
+    """What the driver's user has to know now, not when he reads its log."""
+    for line in driver.news():
+        console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
 
 
 def _stop_others(group: ProcessGroup) -> dict:

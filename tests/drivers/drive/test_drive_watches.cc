@@ -1,0 +1,131 @@
+// Heat, velocity and torque of one drive against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/drive/drive_warning.h"
+#include "drivers/drive/torque_watch.h"
+#include "drivers/drive/velocity_watch.h"
+
+namespace limber::test_drive_watches {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr double kTau_s = 0.5;
+
+TEST(HeatWatch, IsToldOnceAboutALimitThatIsSwayedAbout) {
+  HeatWatch heat(80.0);
+  heat.add(80.0);
+  EXPECT_FALSE(heat.hot());
+  for (double temperature : {81.0, 79.0, 81.0, 75.5}) {
+    heat.add(temperature);
+    EXPECT_TRUE(heat.hot()) << temperature;
+  }
+  for (double temperature : {75.0, 79.0, 80.0}) {
+    heat.add(temperature);
+    EXPECT_FALSE(heat.hot()) << temperature;
+  }
+  heat.add(80.5);
+  EXPECT_TRUE(heat.hot());
+}
+
+/// Cycles until a velocity field of `velocity` at a standing joint contradicts, or -1 in 10 s.
+int cycles_standing(double velocity, double limit, double position = 0.0) {
+  VelocityWatch watch(limit, 1e-6);
+  for (int i = 0; i < 10'000; ++i) {
+    watch.add(position, velocity, i * kPeriod_s);
+    if (watch.contradicts()) return i;
+  }
+  return -1;
+}
+
+// e = dv tau (1 - exp(-t / tau)) reaches v_max tau / 4 at t = -tau ln(1 - v_max / (4 dv)).
+TEST(VelocityWatch, AStandingJointWithAVelocityIsFoundWhenTheFormulaHasIt) {
+  for (double share : {1.0, 0.5, 0.3}) {
+    const double t_s = -kTau_s * std::log(1.0 - 1.0 / (4.0 * share));
+    EXPECT_NEAR(cycles_standing(share * 3.0, 3.0) * kPeriod_s, t_s, 2.0 * kPeriod_s) << share;
+    EXPECT_NEAR(cycles_standing(-share * 3.0, 3.0) * kPeriod_s, t_s, 2.0 * kPeriod_s);
+  }
+  EXPECT_EQ(cycles_standing(0.24 * 3.0, 3.0), -1);
+  EXPECT_EQ(cycles_standing(0.0, 3.0, 2.5), -1);
+}
+
+// q = A sin(w t) at the greatest allowed speed, reported by counts and with a filter of 20 ms.
+TEST(VelocityWatch, AFilteredVelocityOfAFastSwingIsNone) {
+  constexpr double kLimit = 5.0, kCount = 25.0 / 65535.0, kLag_s = 0.02;
+  for (double omega : {1.0, 5.0, 20.0, 60.0}) {
+    VelocityWatch watch(kLimit, kCount);
+    double filtered = 0.0;
+    for (int i = 0; i < 5000; ++i) {
+      const double t = i * kPeriod_s;
+      const double q = kLimit / omega * std::sin(omega * t);
+      filtered += kPeriod_s / kLag_s * (kLimit * std::cos(omega * t) - filtered);
+      watch.add(std::floor(q / kCount) * kCount, filtered, t);
+      ASSERT_FALSE(watch.contradicts()) << omega << " at " << t;
+    }
+  }
+}
+
+// At full speed one side sleeps for 50 ms: the position goes on, or the time does.
+TEST(VelocityWatch, APauseIsNone) {
+  for (int sign : {-1, 1}) {
+    VelocityWatch watch(5.0, 1e-4);
+    double q = 0.0;
+    double t = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      t += kPeriod_s + (i == 500 && sign > 0 ? 0.05 : 0.0);
+      q += 5.0 * (kPeriod_s + (i == 500 && sign < 0 ? 0.05 : 0.0));
+      watch.add(q, 5.0, t);
+      ASSERT_FALSE(watch.contradicts());
+    }
+  }
+}
+
+TEST(VelocityWatch, TheWrongSignIsFoundInAMotion) {
+  VelocityWatch watch(5.0, 1e-4);
+  int i = 0;
+  for (; i < 1000 && !watch.contradicts(); ++i) watch.add(-i * 1e-3 * 2.0, 2.0, i * kPeriod_s);
+  // Wrong by 4 rad/s: -0.5 ln(1 - 5 / 16).
+  EXPECT_NEAR(i * kPeriod_s, 0.187, 0.003);
+}
+
+TEST(VelocityWatch, ANumberThatIsNoneIsFound) {
+  VelocityWatch watch(5.0, 1e-4);
+  watch.add(0.0, 0.0, 0.0);
+  watch.add(0.0, std::nan(""), kPeriod_s);
+  EXPECT_TRUE(watch.contradicts());
+  watch.reset();
+  EXPECT_FALSE(watch.contradicts());
+}
+
+int cycles_torque(double reported, double commanded) {
+  TorqueWatch watch(8.0);
+  for (int i = 1; i < 1000; ++i) {
+    watch.add(reported, commanded, kPeriod_s);
+    if (watch.contradicts()) return i;
+  }
+  return -1;
+}
+
+TEST(TorqueWatch, OppositeOrFarBeyondForATenthOfASecond) {
+  EXPECT_NEAR(cycles_torque(-4.1, 0.1), 101, 1);
+  EXPECT_NEAR(cycles_torque(4.1, -8.0), 101, 1);
+  EXPECT_NEAR(cycles_torque(7.0, 2.9), 101, 1);
+  EXPECT_NEAR(cycles_torque(std::nan(""), 0.0), 101, 1);
+}
+
+TEST(TorqueWatch, LessThanCommandedIsNone) {
+  for (double reported : {8.0, 4.0, 0.0, -3.9}) EXPECT_EQ(cycles_torque(reported, 8.0), -1);
+  for (double reported : {3.9, -3.9}) EXPECT_EQ(cycles_torque(reported, 0.0), -1);
+}
+
+TEST(TorqueWatch, AnotherBeginningAfterEachFit) {
+  TorqueWatch watch(8.0);
+  for (int i = 0; i < 1000; ++i) {
+    watch.add(i % 50 == 0 ? 0.0 : 8.0, 0.0, kPeriod_s);
+    ASSERT_FALSE(watch.contradicts());
+  }
+}
+
+}  // namespace
+}  // namespace limber::test_drive_watches

@@ -1,0 +1,123 @@
+// Causes survive: what drives warn of, and what they report of themselves that cannot be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/drivers/fake_arm.h"
+
+namespace limber::test_drive_causes {
+namespace {
+
+using testing::FakeArm;
+using testing::raw_command;
+using testing::test_robot;
+
+constexpr int kKeep = joint_command_t::REQUEST_KEEP;
+
+/// Cycles until the drives are no longer ON, or -1.
+int cycles_until_off(FakeArm* arm, int most) {
+  for (int i = 1; i <= most; ++i) {
+    arm->cycle_with(kKeep);
+    if (arm->state->drive_state != joint_state_t::DRIVE_ON) return i;
+  }
+  return -1;
+}
+
+TEST(DriveWarnings, TheWarmerOfTwoTemperaturesCountsWithHysteresis) {
+  Robot robot = test_robot(2);
+  for (JointConfig& joint : robot.joints) joint.drive.warning_temperature_degC = 80.0;
+  FakeArm arm(robot);
+  ASSERT_TRUE(arm.switch_on());
+  const auto warned_at = [&](int mos, int rotor) {
+    arm.motors[1].mos_degC = mos;
+    arm.motors[1].rotor_degC = rotor;
+    arm.cycle_with(kKeep);
+    EXPECT_EQ(arm.state->temperature_degC[1], std::max(mos, rotor));
+    EXPECT_EQ(arm.state->joint_flags[0] & joint_state_t::JOINT_WARNING, 0);
+    return (arm.state->joint_flags[1] & joint_state_t::JOINT_WARNING) != 0;
+  };
+  EXPECT_FALSE(warned_at(60, 80));
+  EXPECT_TRUE(warned_at(60, 81));
+  EXPECT_EQ(
+      arm.driver->warning_text(1, arm.driver->warning(1)),
+      "joint2 (id 0x2): 81 degC, more than 80 (warning_temperature_degC): let it cool, or the "
+      "drive will stop");
+  EXPECT_TRUE(warned_at(78, 40));
+  EXPECT_FALSE(warned_at(75, 40));
+  EXPECT_EQ(arm.driver->warning_text(1, arm.driver->warning(1)),
+            "joint2 (id 0x2): no warning any more");
+  EXPECT_TRUE(warned_at(99, 40));
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
+}
+
+TEST(DriveWarnings, WithoutALimitThereIsNone) {
+  FakeArm arm(test_robot(1));
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[0].mos_degC = 200;
+  arm.cycle_with(kKeep);
+  EXPECT_FALSE(arm.driver->warning(0).any());
+}
+
+// 4 of 5 rad/s at rest: -0.5 s ln(1 - 5 / 16).
+TEST(Feedback, AVelocityWithoutMotionStopsTheArmWithTheReason) {
+  FakeArm arm(test_robot(2));
+  ASSERT_TRUE(arm.switch_on());
+  arm.set_speed(1, 4.0);
+  EXPECT_NEAR(cycles_until_off(&arm, 1000), 187, 3);
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_HOLD);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FEEDBACK);
+  EXPECT_EQ(arm.state->fault_joint, 1);
+  EXPECT_EQ(arm.driver->fault_text(arm.state->fault, 1, arm.driver->fault_detail()),
+            "the velocity does not fit the positions; check the encoder and the drive's scaling");
+  // The drive would damp by that velocity: 4 N m of drive.
+  arm.cycle_with(kKeep);
+  EXPECT_EQ(raw_command(arm.motors[0].last()).kd, 819);
+  EXPECT_EQ(raw_command(arm.motors[1].last()).kd, 0);
+}
+
+TEST(Feedback, IsAcknowledgedOnceItFitsAgain) {
+  FakeArm arm(test_robot(1));
+  ASSERT_TRUE(arm.switch_on());
+  arm.set_speed(0, 4.0);
+  ASSERT_GT(cycles_until_off(&arm, 1000), 0);
+  EXPECT_FALSE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 500));
+  arm.set_speed(0, 0.0);
+  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 1000));
+}
+
+TEST(Feedback, AMotionThatFitsIsNone) {
+  FakeArm arm(test_robot(2));
+  arm.set_angle(1, 0.0);
+  ASSERT_TRUE(arm.switch_on());
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 1e-3 * i;
+    arm.set_angle(1, 0.9 * std::sin(5.0 * t));
+    arm.set_speed(1, 4.5 * std::cos(5.0 * t));
+    arm.cycle_with(kKeep);
+    ASSERT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON) << i;
+  }
+}
+
+TEST(Feedback, ATorqueThatNobodyCommandedStopsTheArm) {
+  FakeArm arm(test_robot(1));
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[0].torque = 4.5;  // more than half of 8 N m
+  EXPECT_NEAR(cycles_until_off(&arm, 1000), 101, 3);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FEEDBACK);
+  EXPECT_EQ(arm.driver->fault_detail(), 3);
+}
+
+TEST(StartPose, OutsideTheLimitsIsToldWithTheCure) {
+  FakeArm arm(test_robot(2));
+  arm.set_angle(1, 2.5);
+  ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, kKeep));
+  const std::vector<std::string> lines = arm.driver->configuration_warnings();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0],
+            "joint2: at 2.5, outside its limits -2 to 2: the drives cannot be enabled; move it by "
+            "hand, or correct its offset_rad and sign");
+}
+
+}  // namespace
+}  // namespace limber::test_drive_causes
