@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/bus_load.h"
+#include "drivers/can/lockstep_frame.h"
 #include "drivers/driver_setup.h"
 #include "lcmtypes/channels.h"
 
@@ -94,6 +95,16 @@ void ArmDriver::advance_shut_down() noexcept {
 void ArmDriver::repeat_tick() noexcept {
   for (BusEnd& bus : buses_) {
     if (!bus.tocked()) bus.send_tick();
+  }
+}
+
+void ArmDriver::hear_only_this_arm() {
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    std::vector<CanFilter> filters = drives_.heard(b);
+    if (tip_sensor_ && tip_sensor_->bus() == b) tip_sensor_->add_heard(&filters);
+    if (lockstep_)
+      filters.insert(filters.end(), {exactly(lockstep::kTickId), exactly(lockstep::kTockId)});
+    buses_[b].hear_only(filters);
   }
 }
 
@@ -197,7 +208,9 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
     case driver_status_t::BUS_LINK_DOWN:
       return name + ": the interface is down or gone; was the adapter unplugged?";
     default:
-      return name + ": the transmit queue is full (ENOBUFS); does any motor acknowledge frames?";
+      return name +
+             ": commands wait in the transmit queue, or find it full (ENOBUFS); does any motor "
+             "acknowledge frames?";
   }
 }
 

@@ -52,6 +52,9 @@ class ArmDriver {
   /// Lock step, first cycle or a lost datagram: sends the TICK again. The simulator answers without
   /// advancing twice.
   void repeat_tick() noexcept;
+  /// From here on the buses need receive only what drives and tip sensor of this arm send, and what
+  /// anybody else sends to them. Before the first cycle; set-up only.
+  void hear_only_this_arm();
   /// No reply is faster than this: what comes sooner after the start of a cycle answers the command
   /// before. In lock step it is computed; in real time it is 0 until it has been measured.
   void set_least_round_trip(std::int64_t time_ns) noexcept { least_round_trip_ns_ = time_ns; }
@@ -91,7 +94,8 @@ class ArmDriver {
     return drives_.warning_text(motor, warning);
   }
   /// What lies behind the fault of the last state: of a drive's error its drive_status, of
-  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*; else 0. Allowed in the cycle.
+  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*; else 0.
+  /// Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
   /// The same in words; "" for 0. Allocates: for messages.
   std::string fault_text(int fault, int joint, std::uint16_t detail) const;

@@ -19,9 +19,10 @@ std::string line_about(const Drive& motor, const std::string& words) {
 
 std::string out_of_range_line(const ArmJoint& joint) {
   const JointConfig& config = joint.motors().front().link().joint();
-  return fmt::format("{}: at {:.4g}, outside its limits {:g} to {:g}: the drives cannot be enabled; "
-                     "move it by hand, or correct its offset_rad and sign",
-                     config.name, joint.q(), config.position_min, config.position_max);
+  return fmt::format(
+      "{}: at {:.4g}, outside its limits {:g} to {:g}: the drives cannot be enabled; "
+      "move it by hand, or correct its offset_rad and sign",
+      config.name, joint.q(), config.position_min, config.position_max);
 }
 
 }  // namespace
@@ -77,10 +78,10 @@ std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) cons
   std::string words;
   const auto add = [&](const std::string& word) { words += (words.empty() ? "" : "; ") + word; };
   if (warning.hot)
-    add(fmt::format("{} degC, more than {:g} (warning_temperature_degC): let it cool, or the drive "
+    add(
+        fmt::format("{} degC, more than {:g} (warning_temperature_degC): let it cool, or the drive "
                     "will stop",
-                    warning.temperature_degC,
-                    drive.link().joint().drive.warning_temperature_degC));
+                    warning.temperature_degC, drive.link().joint().drive.warning_temperature_degC));
   if (warning.flagged) add("the drive warns (statusword, bit 7)");
   if (warning.emergency != 0)
     add(fmt::format("emergency {:04X}h: {}", warning.emergency,
@@ -126,6 +127,18 @@ void ArmDrives::add_commands(std::vector<BusEnd>* buses) noexcept {
 }
 
 // --- from the drives -----------------------------------------------------------------------------
+
+std::vector<CanFilter> ArmDrives::heard(std::size_t bus) const {
+  std::vector<CanFilter> filters;
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) {
+      if (motor.bus() != bus) continue;
+      const std::vector<CanFilter> more = motor.link().heard();
+      filters.insert(filters.end(), more.begin(), more.end());
+    }
+  }
+  return filters;
+}
 
 Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   for (ArmJoint& joint : joints_) {

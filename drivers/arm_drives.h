@@ -63,6 +63,9 @@ class ArmDrives {
 
   // --- from the drives ------------------------------------------------------------------------
 
+  /// What receive() and is_order() take of one bus. Allocates: set-up only.
+  std::vector<CanFilter> heard(std::size_t bus) const;
+
   /// The frame, of somebody else, commands a drive of this arm or writes its settings.
   bool is_order(std::size_t bus, const CanFrame& frame) const noexcept;
   /// False if the frame is of no drive of this arm. `late`: it came after its cycle.

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "drivers/can/can_filter.h"
 #include "drivers/can/can_frame.h"
 
 namespace limber {
@@ -27,6 +28,7 @@ struct CanStatistics {
       0;  ///< frames lost in the receive queue, as far as the carrier counts them
   bool bus_off = false;
   bool link_down = false;
+  bool unsent = false;  ///< at the last send(), frames of an earlier one waited in the queue
   int last_errno = 0;
 };
 
@@ -49,6 +51,10 @@ class CanBus {
   virtual int descriptor() const noexcept = 0;
 
   virtual const CanStatistics& statistics() const noexcept = 0;
+
+  /// From here on only error frames and what one of the filters passes need be received; a carrier
+  /// that cannot leave the rest out receives it as before. Set-up only.
+  virtual void hear_only(std::span<const CanFilter> filters) { static_cast<void>(filters); }
 };
 
 /// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the

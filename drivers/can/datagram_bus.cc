@@ -6,6 +6,7 @@ namespace limber {
 
 int DatagramBus::send(std::span<const CanFrame> frames) noexcept {
   int accepted = 0;
+  note_sending();
   for (const CanFrame& frame : frames) {
     if (!is_possible(frame) || (frame.fd && !fd_)) continue;
     outgoing_.add(encode(frame, outgoing_.next()));

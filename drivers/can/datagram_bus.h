@@ -33,6 +33,8 @@ class DatagramBus : public CanBus {
   virtual bool decode(std::span<const std::uint8_t> datagram, CanFrame* frame) const noexcept = 0;
   /// A frame was decoded; false: it is not for this end.
   virtual bool note_received(const CanFrame& frame) noexcept = 0;
+  /// A batch is about to be sent.
+  virtual void note_sending() noexcept {}
   /// `sent` of `wanted` frames left; if not all, errno is the reason.
   virtual void note_sent(int sent, int wanted) noexcept = 0;
   /// Receiving failed, errno is the reason. True: frames may wait behind the error, read on.

@@ -2,13 +2,21 @@
 
 #include <linux/can.h>
 #include <linux/can/raw.h>
+#include <linux/sock_diag.h>
 #include <net/if.h>
 #include <net/if_arp.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 #include "common/config_error.h"
 #include "drivers/can/datagram_bus.h"
@@ -121,16 +129,74 @@ bool from_kernel(std::span<const std::uint8_t> bytes, CanFrame* frame) noexcept 
   return true;
 }
 
-bool is_link_error(int error) noexcept { return error == ENETDOWN || error == ENODEV; }
+/// The interface is gone; a socket that was bound to it is bound to none (ENXIO).
+bool is_gone_error(int error) noexcept { return error == ENODEV || error == ENXIO; }
+bool is_link_error(int error) noexcept { return error == ENETDOWN || is_gone_error(error); }
+
+can_filter to_kernel(const CanFilter& filter) noexcept {
+  return {filter.id | (filter.extended ? CAN_EFF_FLAG : 0U), filter.mask | CAN_EFF_FLAG};
+}
+
+/// Bytes that this socket has sent and that no adapter has taken yet.
+std::uint32_t queued_bytes(int socket) noexcept {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+  socklen_t size = sizeof(memory);
+  if (getsockopt(socket, SOL_SOCKET, SO_MEMINFO, memory.data(), &size) != 0) return 0;
+  return memory[SK_MEMINFO_WMEM_ALLOC];
+}
 
 class SocketCanBus final : public DatagramBus {
  public:
   SocketCanBus(const std::string& interface, bool fd)
-      : DatagramBus(fd, Stamps::kOnArrival, CANFD_MTU, CANFD_MTU) {
+      : DatagramBus(fd, Stamps::kOnArrival, CANFD_MTU, CANFD_MTU), interface_(interface) {
     receiver_ = open_bound(interface, fd);
+    watch_ = std::jthread([this](const std::stop_token& stop) { await_return(stop); });
+  }
+
+  void hear_only(std::span<const CanFilter> filters) override {
+    const std::lock_guard lock(filters_mutex_);
+    filters_.clear();
+    for (const CanFilter& filter : filters) filters_.push_back(to_kernel(filter));
+    if (!set_filters())
+      refuse(interface_, std::string("cannot set the receive filters: ") + std::strerror(errno));
   }
 
  private:
+  bool set_filters() noexcept {
+    const std::size_t bytes = filters_.size() * sizeof(can_filter);
+    return setsockopt(receiver_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
+                      static_cast<socklen_t>(bytes)) == 0;
+  }
+
+  /// Not in the cycle: to ask for an interface by its name may load a module. The socket stays,
+  /// with its descriptor and options; when an interface goes the kernel unbinds it and drops its
+  /// filters.
+  void await_return(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+      wake.wait_for(lock, stop, kLookAgain, [] { return false; });
+      if (gone_.load(std::memory_order_acquire) && !stop.stop_requested() && bind_again())
+        gone_.store(false, std::memory_order_release);
+    }
+  }
+
+  bool bind_again() noexcept {
+    try {
+      sockaddr_can address{};
+      address.can_family = AF_CAN;
+      address.can_ifindex = checked_interface(receiver_.get(), interface_, fd_);
+      const std::lock_guard lock(filters_mutex_);
+      return set_filters() && bind(receiver_.get(), reinterpret_cast<const sockaddr*>(&address),
+                                   sizeof(address)) == 0;
+    } catch (const ConfigError&) {
+      return false;  // not there yet, or still down
+    }
+  }
+
+  void note_sending() noexcept override { statistics_.unsent = queued_bytes(receiver_.get()) > 0; }
+
   std::size_t encode(const CanFrame& frame, std::span<std::uint8_t> out) const noexcept override {
     return to_kernel(frame, out);
   }
@@ -150,6 +216,7 @@ class SocketCanBus final : public DatagramBus {
   /// Keeps errno; true if it is the link's.
   bool note_error() noexcept {
     statistics_.last_errno = errno;
+    if (is_gone_error(errno)) gone_.store(true, std::memory_order_release);
     if (!is_link_error(errno)) return false;
     statistics_.link_down = true;
     statistics_.bus_off = false;  // a controller that was stopped starts afresh
@@ -160,6 +227,14 @@ class SocketCanBus final : public DatagramBus {
     statistics_.link_down = false;
     return true;
   }
+
+  static constexpr std::chrono::milliseconds kLookAgain{100};
+
+  std::string interface_;
+  std::mutex filters_mutex_;
+  std::vector<can_filter> filters_ = {can_filter{0, 0}};  ///< all
+  std::atomic<bool> gone_ = false;
+  std::jthread watch_;  ///< last: it ends before what it uses
 };
 
 }  // namespace

@@ -9,15 +9,23 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kOtherClock_ns = 1'000'000'000;
+constexpr int kStuckCycles = 3;
 
 }  // namespace
 
 void BusEnd::send() noexcept {
+  const std::size_t commands = batched_;
+  if (first_ > 0 && first_ < commands)
+    std::rotate(batch_.begin(), batch_.begin() + static_cast<std::ptrdiff_t>(first_),
+                batch_.begin() + static_cast<std::ptrdiff_t>(commands));
   if (last_) put(*last_);
   const std::span<const CanFrame> batch(batch_.data(), batched_);
   const int accepted = batched_ == 0 ? 0 : bus_->send(batch);
   for (int i = 0; i < accepted; ++i) count_load(batch_[static_cast<std::size_t>(i)]);
-  refused_cycles_ = accepted < static_cast<int>(batched_) ? refused_cycles_ + 1 : 0;
+  const auto taken = static_cast<std::size_t>(std::max(accepted, 0));
+  first_ = taken < commands ? (first_ + taken) % commands : 0;
+  refused_cycles_ = taken < batched_ ? refused_cycles_ + 1 : 0;
+  unsent_cycles_ = bus_->statistics().unsent ? unsent_cycles_ + 1 : 0;
 }
 
 std::span<const CanFrame> BusEnd::receive(std::int64_t until_ns) noexcept {
@@ -73,7 +81,8 @@ std::int8_t BusEnd::state() const noexcept {
   const CanStatistics& statistics = bus_->statistics();
   if (statistics.link_down) return driver_status_t::BUS_LINK_DOWN;
   if (statistics.bus_off) return driver_status_t::BUS_OFF;
-  return refused_cycles_ >= 3 ? driver_status_t::BUS_QUEUE_FULL : driver_status_t::BUS_GOOD;
+  const bool stuck = std::max(refused_cycles_, unsent_cycles_) >= kStuckCycles;
+  return stuck ? driver_status_t::BUS_QUEUE_FULL : driver_status_t::BUS_GOOD;
 }
 
 void BusEnd::close_interval(double seconds) noexcept {

@@ -29,13 +29,17 @@ class BusEnd {
     if (last_ && has_id(frame, last_->id)) return;
     put(frame);
   }
-  /// Sends the batch. Frames that are not accepted are gone: the next cycle has newer ones.
+  /// Sends the batch. Frames that are not accepted are gone: the next cycle has newer ones, and
+  /// begins with the first of them, so that a queue too short for all does not starve always the
+  /// same motors. Without a refusal the order is that of add(). The last frame stays the last.
   void send() noexcept;
 
   /// A batch of what has arrived; empty when nothing is waiting. Valid until the next call. Frames
   /// stamped later than `until_ns` wait for a later call (lock step: a simulated wire delivers a
   /// whole period at once); a stamp more than a second later is another clock's and does not count.
   std::span<const CanFrame> receive(std::int64_t until_ns) noexcept;
+  /// See CanBus. Set-up only.
+  void hear_only(std::span<const CanFilter> filters) { bus_->hear_only(filters); }
   /// Counts a frame of no drive or sensor of this arm.
   void count_foreign() noexcept { ++foreign_; }
 
@@ -46,7 +50,8 @@ class BusEnd {
   bool take_lockstep(const CanFrame& frame) noexcept;
   bool tocked() const noexcept { return tocked_; }
 
-  /// BUS_* of driver_status_t. QUEUE_FULL: frames refused in three cycles in a row.
+  /// BUS_* of driver_status_t. QUEUE_FULL: in three cycles in a row frames were refused, or those
+  /// of the cycle before still waited in the queue.
   std::int8_t state() const noexcept;
   bool lost() const noexcept { return state() != driver_status_t::BUS_GOOD; }
 
@@ -73,7 +78,9 @@ class BusEnd {
   std::array<CanFrame, 128> held_;  ///< in order of arrival
   std::size_t num_held_ = 0;
   std::int64_t foreign_ = 0;
+  std::size_t first_ = 0;  ///< of the batch, in the order of add(), that is sent first
   int refused_cycles_ = 0;
+  int unsent_cycles_ = 0;
   std::int64_t tick_ = -1;
   bool tocked_ = false;
   double busy_s_ = 0.0;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/families/drive_family.h"
@@ -50,6 +51,8 @@ class JointLink {
   bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
   /// Somebody else's frame that commands this drive or writes its settings.
   bool is_order(const CanFrame& frame) const noexcept { return family_->is_order(frame); }
+  /// See DriveFamily. Allocates: set-up only.
+  std::vector<CanFilter> heard() const { return family_->heard(); }
   /// True if the frame is from this drive, but no reply to a command, and nothing that must be
   /// understood; what it tells is kept.
   bool take_unsolicited(const CanFrame& frame) noexcept {

@@ -24,6 +24,11 @@ bool TipSensorLink::is_mine(std::size_t on_bus, const CanFrame& frame) const noe
          (sensor_.replies() == 2 && frame.id == sensor_.reply_ids[1]);
 }
 
+void TipSensorLink::add_heard(std::vector<CanFilter>* filters) const {
+  for (int i = 0; i < sensor_.replies(); ++i)
+    filters->push_back(exactly(sensor_.reply_ids[static_cast<std::size_t>(i)]));
+}
+
 void TipSensorLink::receive(const CanFrame& frame, bool late) noexcept {
   if (sensor_.replies() == 2 && frame.id == sensor_.reply_ids[0]) {
     first_ = frame;

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <limber/driver_status_t.hpp>
 #include <limber/joint_state_t.hpp>
+#include <vector>
 
+#include "drivers/can/can_filter.h"
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/wrench_reading.h"
 #include "robots/loader/robot.h"
@@ -25,6 +27,8 @@ class TipSensorLink {
   void begin_cycle() noexcept;
   /// The frame is on one of the sensor's reply identifiers.
   bool is_mine(std::size_t bus, const CanFrame& frame) const noexcept;
+  /// The identifiers of is_mine(). Allocates: set-up only.
+  void add_heard(std::vector<CanFilter>* filters) const;
   /// A reading that comes too late for its cycle (`late`) is taken as well, and is a cycle old.
   void receive(const CanFrame& frame, bool late) noexcept;
   void close_cycle() noexcept {

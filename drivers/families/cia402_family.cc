@@ -117,6 +117,12 @@ bool Cia402Family::is_order(const CanFrame& frame) const noexcept {
   return has_id(frame, canopen::kSdoRequestCode + node()) && canopen::is_sdo_write(frame);
 }
 
+// Every identifier of a node ends in its number.
+std::vector<CanFilter> Cia402Family::heard() const {
+  constexpr std::uint32_t kNumber = 0x7F;
+  return {{node(), kNumber, false}, exactly(canopen::kSyncId), exactly(canopen::kNmtId)};
+}
+
 bool Cia402Family::is_presence(const CanFrame& frame) const noexcept {
   canopen::SdoMessage answer;
   return canopen::decode_sdo_answer(frame, node(), &answer) &&

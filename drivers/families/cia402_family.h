@@ -45,6 +45,7 @@ class Cia402Family final : public DriveFamily {
   }
   /// RPDOs, SDO requests that write, network management and SYNC.
   bool is_order(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> heard() const override;
   bool is_presence(const CanFrame& frame) const noexcept override;
   void begin_cycle() noexcept override {
     last_state_ = state_;

@@ -111,6 +111,10 @@ bool DamiaoFamily::is_order(const CanFrame& frame) const noexcept {
          (request.operation == kWrite || request.operation == kStore);
 }
 
+std::vector<CanFilter> DamiaoFamily::heard() const {
+  return {exactly(drive_.reply_id), exactly(drive_.command_id), exactly(mit::kRegisterId)};
+}
+
 bool DamiaoFamily::is_astray(const CanFrame& frame) const noexcept {
   std::uint32_t mode = 0;
   return !is_mine(frame) && !frame.extended && frame.id != mit::kRegisterId &&

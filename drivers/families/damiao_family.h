@@ -33,6 +33,7 @@ class DamiaoFamily final : public DriveFamily {
   }
   /// Frames with its identifier, and register writes to it.
   bool is_order(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> heard() const override;
   /// As delivered, a drive answers with identifier 0 (MST_ID).
   bool is_astray(const CanFrame& frame) const noexcept override;
   /// Half a count is added to the fields, because drives truncate.

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "drivers/can/can_filter.h"
 #include "drivers/can/can_frame.h"
 #include "robots/loader/robot.h"
 
@@ -39,7 +41,7 @@ struct DriveReport {
   double link_speed_rad_per_s = 0.0;
   double torque_Nm =
       0.0;  ///< on the link if the joint has a torque sensor, else the drive's estimate
-  double current_A = 0.0;  ///< q axis
+  double current_A = 0.0;         ///< q axis
   double temperature_degC = 0.0;  ///< the greatest of several
   std::uint16_t status = 0;       ///< status or error code in the family's own numbers
   bool follows = true;            ///< enabled, it executes its target; false: it ignores that
@@ -125,6 +127,8 @@ class DriveFamily {
   /// Whether a frame of somebody else commands this drive or writes its settings: sent by anybody
   /// but this driver, it must not go unnoticed.
   virtual bool is_order(const CanFrame& frame) const noexcept = 0;
+  /// All identifiers of is_mine() and is_order(). Allocates: set-up only.
+  virtual std::vector<CanFilter> heard() const = 0;
   /// Whether the frame answers presence_request().
   virtual bool is_presence(const CanFrame& frame) const noexcept {
     return is_mine(frame) && !is_unsolicited(frame);

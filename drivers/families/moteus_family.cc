@@ -75,6 +75,18 @@ bool MoteusFamily::is_order(const CanFrame& frame) const noexcept {
   return !frame.error && prefix && accepts_id(drive_, frame.id);
 }
 
+// The last seven bits are the number of whom a frame is for, 7Fh all; its prefix is the drive's.
+std::vector<CanFilter> MoteusFamily::heard() const {
+  constexpr std::uint32_t kNumber = 0x7F;
+  constexpr std::uint32_t kPrefix = 0x1FFF0000;
+  std::vector<CanFilter> filters = {exactly(drive_.reply_id)};
+  for (std::uint32_t number : {drive_.command_id & kNumber, kNumber}) {
+    filters.push_back({number, kNumber, false});
+    filters.push_back({(drive_.command_id & kPrefix) | number, kPrefix | kNumber, true});
+  }
+  return filters;
+}
+
 StateReading MoteusFamily::read_state(const CanFrame& frame, bool /*late*/,
                                       DriveReport* report) noexcept {
   moteus::State state;

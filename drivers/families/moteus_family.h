@@ -35,6 +35,7 @@ class MoteusFamily final : public DriveFamily {
   }
   /// Frames for its number, or for all, whoever they are from.
   bool is_order(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> heard() const override;
   StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
   std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;

@@ -8,7 +8,9 @@
 #include "common/config_error.h"
 #include "common/program.h"
 #include "drivers/bus_load.h"
+#include "drivers/can/link_details.h"
 #include "drivers/drive/drive_discovery.h"
+#include "drivers/interface_check.h"
 #include "drivers/processes/lockstep_runner.h"
 #include "drivers/processes/realtime_runner.h"
 #include "robots/loader/choose_buses.h"
@@ -74,6 +76,7 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
 
 int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
   log_start();
+  check_interfaces();
   const std::string missing = discover_drives(
       robot_, port_.buses(), options_.lockstep, options_.patience_s, stop,
       [](const std::string& silent) {
@@ -95,6 +98,7 @@ int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
     }
     measure_delay();
   }
+  port_.driver().hear_only_this_arm();
   const bool done = run_cycles(stop);
   port_.publish_status();
   reporter_.stop();
@@ -108,6 +112,23 @@ bool DriverProcess::run_cycles(const volatile std::sig_atomic_t& stop) {
     return LockstepRunner(&port_, robot_.rate_hz, options_.patience_s, length).run(stop);
   RealtimeRunner(&port_, robot_.rate_hz, bridged_cycles_, length).run(stop);
   return true;
+}
+
+void DriverProcess::check_interfaces() const {
+  constexpr std::string_view kSocketCan = "socketcan:";
+  for (const BusConfig& bus : robot_.buses) {
+    if (bus.can.rfind(kSocketCan, 0) != 0) continue;
+    const std::optional<LinkDetails> link = read_link_details(bus.can.substr(kSocketCan.size()));
+    if (!link || !link->has_bit_timing())
+      spdlog::debug("{}: no bit timing to compare with robot.yaml ({})", bus.can,
+                    link ? link->kind : "the kernel does not tell");
+    if (!link) continue;
+    const InterfaceFindings found = compare(bus, *link);
+    for (const std::string& line : found.doubtful) spdlog::warn("warning: {}: {}", bus.can, line);
+    if (found.wrong.empty()) continue;
+    throw ConfigError(fmt::format("{}: {}. `limber doctor {}` prints the commands that set it",
+                                  bus.can, fmt::join(found.wrong, "; "), robot_.name));
+  }
 }
 
 void DriverProcess::measure_delay() {

@@ -40,6 +40,8 @@ class DriverProcess {
  private:
   bool run_cycles(const volatile std::sig_atomic_t& stop);
   /// Round trips of the roll call. Throws ConfigError if a reply cannot come in its cycle.
+  /// Adapters against robot.yaml: warns in the log, throws ConfigError for what is wrong.
+  void check_interfaces() const;
   void measure_delay();
   void log_start() const;
   void log_end() const;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/config_error.h"
+#include "drivers/can/link_details.h"
 #include "drivers/can/socketcan.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/vcan/lab.h"
@@ -207,18 +208,106 @@ TEST(SocketCanFaults, ALinkThatGoesDownAndComesBack) {
   EXPECT_FALSE(b->statistics().link_down);
 }
 
-TEST(SocketCanFaults, AnInterfaceThatIsRemoved) {
+/// Sends until the bus takes a frame; false after ten seconds.
+bool sends_again(CanBus* bus) {
+  for (int i = 0; i < 500; ++i) {
+    if (bus->send(numbered(1)) == 1) return true;
+    usleep(20'000);
+  }
+  return false;
+}
+
+TEST(SocketCanFaults, AnInterfaceThatIsRemovedAndComesBack) {
   run("ip link add dev vcan7 type vcan && ip link set vcan7 mtu 72 up");
   const auto bus = open_can_bus("socketcan:vcan7", true);
+  bus->hear_only(std::array{exactly(0x11)});
+  const int descriptor = bus->descriptor();
   run("ip link del vcan7");
   EXPECT_TRUE(is_silent(bus.get()));
   EXPECT_TRUE(bus->statistics().link_down);
-  run("ip link add dev vcan7 type vcan && ip link set vcan7 mtu 72 up");
-  EXPECT_EQ(bus->send(numbered(1)), 0) << "another interface, though of the same name";
+  EXPECT_EQ(bus->statistics().last_errno, ENODEV);
+  EXPECT_EQ(bus->send(numbered(1)), 0);
+  EXPECT_EQ(bus->statistics().last_errno, ENXIO);
+
+  run("ip link add dev vcan7 type vcan");  // there, but down
+  usleep(300'000);
+  EXPECT_EQ(bus->send(numbered(1)), 0);
+  run("ip link set vcan7 mtu 16 up");  // up, but without FD
+  usleep(300'000);
+  EXPECT_EQ(bus->send(numbered(1)), 0);
   EXPECT_TRUE(bus->statistics().link_down);
-  const auto again = open_can_bus("socketcan:vcan7", true);
-  EXPECT_EQ(again->send(numbered(1)), 1);
+  run("ip link set vcan7 down && ip link set vcan7 mtu 72 up");
+  EXPECT_TRUE(sends_again(bus.get()));
+  EXPECT_FALSE(bus->statistics().link_down);
+  EXPECT_EQ(bus->descriptor(), descriptor);
+
+  // With its filters, FD and error frames, as before.
+  const auto other = open_can_bus("socketcan:vcan7", true);
+  CanFrame fd = numbered(0x11);
+  fd.fd = true;
+  CanFrame error;
+  error.error = true;
+  error.id = CAN_ERR_BUSOFF;
+  error.length = 8;
+  ASSERT_EQ(other->send(std::array{numbered(0x12), fd, error}), 3);
+  const auto got = receive(bus.get(), 2);
+  ASSERT_EQ(got.size(), 2U);
+  EXPECT_TRUE(got[0].fd);
+  EXPECT_TRUE(bus->statistics().bus_off);
+  EXPECT_TRUE(is_silent(bus.get()));
   run("ip link del vcan7");
+}
+
+// tbf holds back what exceeds 8 kbit/s; 80 bytes at once. What waits there has not left.
+TEST(SocketCanFaults, FramesThatWaitInTheQueueAreKnown) {
+  const auto a = open_can_bus("socketcan:vxcan0", true);
+  const auto b = open_can_bus("socketcan:vxcan1", true);
+  for (int i = 0; i < 3; ++i) a->send(numbered(1));
+  EXPECT_FALSE(a->statistics().unsent);
+  run("tc qdisc add dev vxcan0 root tbf rate 8kbit burst 80 limit 4000");
+  for (std::uint32_t i = 0; i < 20; ++i) a->send(numbered(i));
+  EXPECT_TRUE(a->statistics().unsent);
+  EXPECT_EQ(receive(b.get(), 23).size(), 23U);
+  EXPECT_EQ(a->send(numbered(1)), 1);
+  EXPECT_FALSE(a->statistics().unsent);
+  run("tc qdisc del dev vxcan0 root");
+}
+
+// --- filters and details ---
+
+TEST(SocketCan, HearsOnlyWhatItsFiltersPass) {
+  const auto a = open_can_bus("socketcan:vcan0", true);
+  const auto b = open_can_bus("socketcan:vcan0", true);
+  b->hear_only(std::array{exactly(0x11), exactly(0x8005), CanFilter{0x03, 0x7F, false}});
+  std::vector<CanFrame> sent;
+  for (std::uint32_t id : {0x10U, 0x11U, 0x111U, 0x183U, 0x7FFU}) sent.push_back(numbered(id));
+  for (std::uint32_t id : {0x11U, 0x8005U, 0x8006U}) {
+    sent.push_back(numbered(id));
+    sent.back().extended = true;
+  }
+  CanFrame error;
+  error.error = true;
+  error.id = CAN_ERR_ACK;
+  error.length = 8;
+  sent.push_back(error);
+  ASSERT_EQ(a->send(sent), static_cast<int>(sent.size()));
+  const auto got = receive(b.get(), 4);
+  ASSERT_EQ(got.size(), 4U);
+  EXPECT_EQ(got[0].id, 0x11U);
+  EXPECT_EQ(got[1].id, 0x183U);
+  EXPECT_EQ(got[2].id, 0x8005U);
+  EXPECT_TRUE(got[3].error);
+  EXPECT_TRUE(is_silent(b.get()));
+}
+
+TEST(SocketCan, VirtualInterfacesHaveNoBitTiming) {
+  for (const char* name : {"vcan0", "vxcan0"}) {
+    const auto link = read_link_details(name);
+    ASSERT_TRUE(link) << name;
+    EXPECT_FALSE(link->has_bit_timing());
+  }
+  EXPECT_EQ(read_link_details("vcan0")->kind, "vcan");
+  EXPECT_FALSE(read_link_details("vcan7"));
 }
 
 TEST(SocketCanFaults, AFullTransmitQueueDropsAtOnce) {
