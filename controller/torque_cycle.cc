@@ -20,7 +20,6 @@ void TorqueCycle::measure(const joint_state_t& message) noexcept {
   ++cycles_;
   read_arm_state(message, &state_);
   observers_.estimate_velocity(&state_);
-  message_ = &message;
   const bool standby = last_activity_ == Activity::kStandby;
   if (!point_depends_on_goal()) {
     evaluate_and_observe(standby ? Potential::kGravity : laws_.running().potential);
@@ -34,7 +33,7 @@ bool TorqueCycle::point_depends_on_goal() const noexcept {
 
 void TorqueCycle::evaluate_and_observe(Potential potential) noexcept {
   evaluate_model(potential, trace_.tau_null);
-  observers_.observe(*message_, state_, arm_.terms(), last_rows(), &arm_.model());
+  observers_.observe(state_, arm_.terms(), last_rows(), &arm_.model());
 }
 
 bool TorqueCycle::step(Activity activity, double dt_s) noexcept {

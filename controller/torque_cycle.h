@@ -79,7 +79,6 @@ class TorqueCycle {
   void trace_result() noexcept;
   VectorJ friction_torque(GoalType type) const noexcept;
 
-  const joint_state_t* message_ = nullptr;  // of this cycle, until the step is over
   ArmState state_;
   ArmView arm_;
   LawBank laws_;

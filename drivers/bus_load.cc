@@ -70,6 +70,12 @@ const AdapterTiming& adapter_of(const Robot& robot, int bus) noexcept {
   return timing_of(robot.buses[static_cast<std::size_t>(bus)].adapter);
 }
 
+/// The longest classic frame, of another device on the bus.
+double foreign_frame_s(const Robot& robot, int bus) {
+  const BusConfig& config = robot.buses[static_cast<std::size_t>(bus)];
+  return worst_frame_time_s(8, true, false, config.bitrate_bps, config.data_bitrate_bps);
+}
+
 }  // namespace
 
 double predicted_bus_load(const Robot& robot, int bus) {
@@ -102,10 +108,12 @@ double least_round_trip_s(const Robot& robot, int bus) {
 
 double reply_window_s(const Robot& robot) {
   const double period_s = 1.0 / robot.rate_hz;
-  double end_s = 0.0;
-  for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus)
-    end_s = std::max(end_s, predicted_end_s(robot, bus));
-  return std::clamp(end_s + 0.05 * period_s, 0.6 * period_s, kLatestReply * period_s);
+  double latest_s = 0.0;
+  for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus) {
+    const double margin_s = std::max(0.05 * period_s, foreign_frame_s(robot, bus));
+    latest_s = std::max(latest_s, predicted_end_s(robot, bus) + margin_s);
+  }
+  return std::clamp(latest_s, 0.6 * period_s, kLatestReply * period_s);
 }
 
 double highest_rate_hz(const Robot& robot, int bus) {

@@ -25,7 +25,8 @@ double least_round_trip_s(const Robot& robot, int bus);
 inline constexpr double kLatestReply = 0.9;
 
 /// How long the driver waits for replies, s after the start of a cycle: the predicted end on the
-/// slowest bus and a twentieth of the period, within 0.6 and 0.9 of it.
+/// slowest bus and a twentieth of the period, or one frame of another device if that is longer;
+/// within 0.6 and 0.9 of the period.
 double reply_window_s(const Robot& robot);
 /// Rate at which the predicted end is the latest that the driver waits for, Hz; infinite if no
 /// motor is on the bus.

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-Lab::Lab(const LoadedRobot& robot, const Scenario& scenario)
+Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& options)
     : period_ns_(std::llround(1e9 / robot.robot.rate_hz)) {
   std::vector<CanBus*> driver_ends;
   std::vector<CanBus*> arm_ends;
@@ -17,16 +17,22 @@ Lab::Lab(const LoadedRobot& robot, const Scenario& scenario)
       ends_.push_back(buses_.back()->attach());
       side->push_back(ends_.back().get());
     }
+    if (options.before_driver) {
+      ends_.push_back(options.before_driver(driver_ends.back()));
+      driver_ends.back() = ends_.back().get();
+    }
   }
-  simulator_ = std::make_unique<Simulator>(robot, arm_ends, simulator_options(scenario));
+  simulator_ =
+      std::make_unique<Simulator>(options.simulated != nullptr ? *options.simulated : robot,
+                                  arm_ends, simulator_options(scenario));
   simulator_->set_timeline(&scenario.timeline);
   driver_ =
       std::make_unique<ArmDriver>(robot.robot, driver_ends, ArmDriverOptions{kLockstepRunId, true});
-  ArmControllerOptions options;
-  options.controller = kLockstepRunId;
-  options.measure_time = false;
-  options.simulated = true;
-  controller_ = std::make_unique<ArmController>(robot, options);
+  ArmControllerOptions controller;
+  controller.controller = kLockstepRunId;
+  controller.measure_time = false;
+  controller.simulated = true;
+  controller_ = std::make_unique<ArmController>(robot, controller);
   controller_->set_timeline(&scenario.timeline);
 }
 

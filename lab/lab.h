@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,10 +16,19 @@
 
 namespace limber {
 
+/// For those who inject faults.
+struct LabOptions {
+  /// What the simulated drives have stored, where that differs from robot.yaml; null: the same.
+  const LoadedRobot* simulated = nullptr;
+  /// Stands between the driver and its end of a bus, which outlives it. Called once a bus, in the
+  /// order of robot.yaml. Empty: nothing does.
+  std::function<std::unique_ptr<CanBus>(CanBus* end)> before_driver;
+};
+
 class Lab {
  public:
-  /// The scenario and robot outlive the lab. Throws ConfigError.
-  Lab(const LoadedRobot& robot, const Scenario& scenario);
+  /// The scenario and robots outlive the lab. Throws ConfigError.
+  Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& options = {});
 
   /// One more end on each bus, in the order of robot.yaml, to listen; they live no longer than the
   /// lab. Set-up only.

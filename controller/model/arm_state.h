@@ -8,6 +8,14 @@
 
 namespace limber::controller {
 
+/// Of the force/torque sensor at the tip: the wrench in the sensor's axes and at its origin, N and
+/// N m, and its age.
+struct TipReading {
+  Vector6 F = Vector6::Zero();
+  std::int32_t age_cycles = 0;
+  bool usable = false;  ///< false: no sensor, an error, or too old to rely on
+};
+
 /// Positions, torques and preload as the joints report them; velocities likewise, or estimated from
 /// position where LawSettings::velocity names an estimator (of the joints of rigid arms, of the
 /// motors of arms with springs). Joint order of robot.yaml; rad, rad/s, N m (m, m/s, N for
@@ -31,6 +39,7 @@ struct ArmState {
   VectorJ preload_dot;   ///< likewise
   VectorJ tau_measured;  ///< torque on the link by a torque sensor, else the drive's estimate
   VectorJ tau_applied;   ///< what the drive was sent in this cycle
+  TipReading tip;
   std::int64_t time_ns = 0;
   double period_s = 0.0;
 };
@@ -45,6 +54,13 @@ struct ControlPoint {
   VectorJ v;
 };
 
+/// May be called in the cycle.
+inline TipReading read_tip(const joint_state_t& message) noexcept {
+  return {Eigen::Map<const Vector6>(message.F_sensor), message.sensor_age_cycles,
+          message.sensor_state == joint_state_t::SENSOR_FRESH ||
+              message.sensor_state == joint_state_t::SENSOR_STALE};
+}
+
 /// Copies a message that has been judged usable. May be called in the cycle.
 inline void read_arm_state(const joint_state_t& message, ArmState* state) noexcept {
   const auto n = state->q.size();
@@ -56,6 +72,7 @@ inline void read_arm_state(const joint_state_t& message, ArmState* state) noexce
   state->preload_dot = Eigen::Map<const Eigen::VectorXf>(message.preload_dot, n).cast<double>();
   state->tau_measured = Eigen::Map<const Eigen::VectorXd>(message.tau, n);
   state->tau_applied = Eigen::Map<const Eigen::VectorXd>(message.tau_applied, n);
+  state->tip = read_tip(message);
   state->time_ns = message.time_ns;
   state->period_s = static_cast<double>(message.period_ns) * 1e-9;
 }

@@ -147,14 +147,14 @@ void Observers::estimate_velocity(ArmState* state) noexcept {
   started_ = true;
 }
 
-void Observers::observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,
-                        const TaskRows& rows, ArmModel* model) noexcept {
+void Observers::observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
+                        ArmModel* model) noexcept {
   estimates_.A_BT = tip_acceleration_.update(terms.V_BT);
   if (settings_.friction_compensation == FrictionCompensation::kObserver) observe_friction(state);
   if (settings_.contact == ContactSource::kJointTorque) {
     observe_joint_torque(state, terms, rows, model);
   } else if (settings_.contact == ContactSource::kTipSensor && tip_force_) {
-    tip_force_->update(message, terms, estimates_.A_BT);
+    tip_force_->update(state.tip, terms, estimates_.A_BT);
     estimates_.F_ext = tip_force_->F_ext();
     estimates_.tau_ext = terms.J.transpose() * estimates_.F_ext;
   }

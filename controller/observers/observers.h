@@ -33,8 +33,8 @@ class Observers {
   /// those of the motors, where damping acts. In the cycle, before the terms are evaluated.
   void estimate_velocity(ArmState* state) noexcept;
   /// Contact and tip acceleration, from the terms at this state. In the cycle.
-  void observe(const joint_state_t& message, const ArmState& state, const ArmTerms& terms,
-               const TaskRows& rows, ArmModel* model) noexcept;
+  void observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
+               ArmModel* model) noexcept;
   /// Torque that compensates the gear's friction, N m; zero unless chosen. v_d, v: wanted and
   /// present joint velocity, n. In the cycle.
   VectorJ friction(const VectorJ& v_d, const VectorJ& v) const noexcept;

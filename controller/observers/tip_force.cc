@@ -3,14 +3,6 @@
 #include <Eigen/Geometry>
 
 namespace limber::controller {
-namespace {
-
-bool has_reading(const joint_state_t& message) noexcept {
-  return message.sensor_state == joint_state_t::SENSOR_FRESH ||
-         message.sensor_state == joint_state_t::SENSOR_STALE;
-}
-
-}  // namespace
 
 TipForce::TipForce(const Robot& robot)
     : gravity_(robot.gravity),
@@ -33,19 +25,19 @@ Vector6 TipForce::tool_wrench(const ArmTerms& terms, const Vector6& A_BT) const 
   return at_sensor;
 }
 
-void TipForce::update(const joint_state_t& message, const ArmTerms& terms,
+void TipForce::update(const TipReading& reading, const ArmTerms& terms,
                       const Vector6& A_BT) noexcept {
   const Eigen::Matrix3d R_BT = terms.X_BT.Q.toRotationMatrix();
   R_BS_ = R_BT * Q_TS_;
   r_TS_ = R_BT * p_TS_;
-  const Vector6 reading = Eigen::Map<const Vector6>(message.F_sensor) - bias_;
+  const Vector6 F_S = reading.F - bias_;
   Vector6 at_sensor;
-  at_sensor << R_BS_ * reading.head<3>(), R_BS_ * reading.tail<3>();
+  at_sensor << R_BS_ * F_S.head<3>(), R_BS_ * F_S.tail<3>();
   at_sensor -= tool_wrench(terms, A_BT);
   const Eigen::Vector3d f = at_sensor.head<3>();
   F_ext_ << f, at_sensor.tail<3>() + r_TS_.cross(f);
-  age_cycles_ = message.sensor_age_cycles;
-  valid_ = has_reading(message) && F_ext_.allFinite();
+  age_cycles_ = reading.age_cycles;
+  valid_ = reading.usable && F_ext_.allFinite();
   if (!valid_) F_ext_.setZero();
 }
 

@@ -10,9 +10,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limber/joint_state_t.hpp>
 
 #include "common/types.h"
+#include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 #include "robots/loader/robot.h"
 
@@ -25,11 +25,11 @@ class TipForce {
   /// For an arm with a tip sensor.
   explicit TipForce(const Robot& robot);
 
-  /// A state and the terms at it. `A_BT` is the tip's acceleration, dV_BT/dt, in base axes, m/s^2
-  /// and rad/s^2: J qdd + Jdot_v, or zero where the tool's inertia does not matter. Without a
-  /// reading to rely on (none, an error, a number that is not finite) the result is invalid and
-  /// zero; within the bridged cycles it is made of the last reading.
-  void update(const joint_state_t& message, const ArmTerms& terms, const Vector6& A_BT) noexcept;
+  /// A reading and the terms at its state. `A_BT` is the tip's acceleration, dV_BT/dt, in base
+  /// axes, m/s^2 and rad/s^2: J qdd + Jdot_v, or zero where the tool's inertia does not matter.
+  /// Without a usable reading, or with a number that is not finite, the result is invalid and zero;
+  /// within the bridged cycles it is made of the last reading.
+  void update(const TipReading& reading, const ArmTerms& terms, const Vector6& A_BT) noexcept;
 
   /// The present contact wrench is taken for an error of the sensor's bias and no longer shown.
   /// Nothing may touch the tool. False, and nothing done, without a valid result.

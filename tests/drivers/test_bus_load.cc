@@ -100,6 +100,16 @@ TEST(BusLoad, AReplyComesAfterTheDrivesDelay) {
   EXPECT_LT(least_round_trip_s(robot, 0), 175e-6 + 2 * 111e-6 + 50e-6) << "without any stuff bit";
 }
 
+// The longest classic frame, 29-bit identifier and eight bytes, has 67 + 64 + 29 = 160 bits.
+TEST(BusLoad, TheWindowLeavesRoomForAFrameOfAnotherDevice) {
+  Robot robot = seven_joints(false);
+  robot.joints.resize(2);
+  EXPECT_NEAR(reply_window_s(robot), predicted_end_s(robot, 0) + 160e-6, 1e-9);
+  robot.rate_hz = 200.0;  // a twentieth of the period is longer, and 0.6 of it the least
+  EXPECT_NEAR(reply_window_s(robot), 0.6 / 200.0, 1e-9);
+  EXPECT_NEAR(reply_window_s(seven_joints(true)), kLatestReply / 1000.0, 1e-9);
+}
+
 TEST(BusLoad, BothMotorsOfAPairCountWhereTheyAre) {
   Robot robot = seven_joints(false);
   robot.joints.resize(2);

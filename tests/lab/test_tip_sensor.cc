@@ -100,7 +100,7 @@ struct Stage {
     const VectorJ q = Eigen::Map<const Eigen::VectorXd>(state.q, robot.robot.size());
     const VectorJ v = Eigen::Map<const Eigen::VectorXd>(state.v, robot.robot.size());
     model.evaluate(q, v, &terms);
-    force.update(state, terms, A_BT);
+    force.update(controller::read_tip(state), terms, A_BT);
     return force.F_ext();
   }
   /// Mean of the cycles up to a time.

@@ -39,7 +39,7 @@ struct TipForceTest : ::testing::Test {
   void read(const Vector6& F) { std::copy_n(F.data(), 6, message.F_sensor); }
   TipForce updated(const Vector6& A_BT = Vector6::Zero()) {
     TipForce force(robot);
-    force.update(message, terms, A_BT);
+    force.update(read_tip(message), terms, A_BT);
     return force;
   }
   void expect(const Vector6& F, const TipForce& force) {
@@ -129,7 +129,7 @@ TEST_F(TipForceTest, TareHoldsInEveryPose) {
 
   turn_tip(kHalfTurn, kY);  // the weight along sensor +z, the bias as before
   read(unknown_bias + six(0, 0, 10, 0, 0, 0));
-  force.update(message, terms, Vector6::Zero());
+  force.update(read_tip(message), terms, Vector6::Zero());
   expect(Vector6::Zero(), force);
 }
 
@@ -142,7 +142,7 @@ TEST_F(TipForceTest, OldReadingsHoldAndErrorsDoNot) {
   EXPECT_EQ(force.age_cycles(), 2);
   for (const std::int8_t state : {joint_state_t::SENSOR_ERROR, joint_state_t::SENSOR_NONE}) {
     message.sensor_state = state;
-    force.update(message, terms, Vector6::Zero());
+    force.update(read_tip(message), terms, Vector6::Zero());
     EXPECT_FALSE(force.valid());
     EXPECT_EQ(force.F_ext(), Vector6::Zero());
     EXPECT_FALSE(force.tare());
@@ -171,7 +171,7 @@ TEST_F(TipForceTest, TheRegistryKnowsIt) {
 TEST_F(TipForceTest, NeverAllocates) {
   TipForce force(robot);
   const std::int64_t before = testing::allocations();
-  force.update(message, terms, Vector6::Zero());
+  force.update(read_tip(message), terms, Vector6::Zero());
   force.tare();
   EXPECT_EQ(testing::allocations(), before);
 }

@@ -30,7 +30,7 @@ def test_damiao_command_and_state(load):
     assert command["torque"] == pytest.approx(2559 * 108 / 4095 - 54)
     # Drives truncate: half a count more. Count 2047 of 4095 is exactly 0.
     state = database.decode_message(0x011, bytes.fromhex("D17FFF7FF7FF2926"))
-    assert state["status"] == "communication lost"
+    assert state["status"] == "no command within the drive's time-out"
     assert state["id"] == 1
     assert abs(state["position"]) < 1e-9 and abs(state["torque"]) < 1e-9
     assert (state["T_mos"], state["T_rotor"]) == (41, 38)

@@ -45,11 +45,31 @@ def test(
 
 @app.command()
 def docs() -> None:
-    """Write the tables of gains in scenarios/README.md from what the controller lists."""
-    from limber.dev import gains_doc
+    """Write the tables in the docs that come from programs: gains, and faults on the bus."""
+    from limber.dev import faults_doc, gains_doc
 
-    changed = gains_doc.write()
-    console.print(f"{gains_doc.README}: {'written' if changed else 'up to date'}")
+    for table in (gains_doc.TABLE, faults_doc.TABLE):
+        console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
+
+
+@app.command()
+def faults(
+    fault: Annotated[
+        str | None, typer.Argument(help="One fault by its name; all if there is none.")
+    ] = None,
+    phases: Annotated[
+        int, typer.Option(min=1, max=100, help="Phases of the motion at which it begins.")
+    ] = 3,
+) -> None:
+    """Inject faults into a simulated arm of each family of drives; show what the driver does."""
+    from rich.table import Table
+
+    from limber.dev import faults_doc
+
+    table = Table(*faults_doc.HEAD, show_lines=True)
+    for row in faults_doc.reactions(fault, phases):
+        table.add_row(*faults_doc.cells(row))
+    console.print(table)
 
 
 @app.command()

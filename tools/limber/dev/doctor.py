@@ -21,7 +21,10 @@ ARPHRD_CAN = "280"  # linux/if_arp.h
 SMALL_DISK_BYTES = 1 << 30
 PROGRAMS = tuple(
     f"limber-{name}"
-    for name in ("driver", "controller", "sim", "lab", "check", "eval", "record", "send", "can")
+    for name in (
+        *("driver", "controller", "sim", "lab", "check"),
+        *("eval", "record", "send", "can", "faults"),
+    )
 )
 
 

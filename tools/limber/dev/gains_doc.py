@@ -2,14 +2,10 @@
 
 import json
 import subprocess
-from pathlib import Path
 from typing import Any
 
+from limber.dev.written_table import WrittenTable
 from limber.paths import ROOT, program
-
-README = ROOT / "scenarios" / "README.md"
-BEGIN = "<!-- gains: written by `limber docs` from limber-controller --list-laws --json -->"
-END = "<!-- end of gains -->"
 
 
 def listing(robot: str | None = None) -> dict[str, Any]:
@@ -60,30 +56,19 @@ def _row(row: dict[str, Any], law: str | None = None) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def tables() -> str:
+def _lines() -> list[str]:
     found = listing()
     numbers = [row for row in found["gains"] if row["kind"] not in ("choice", "switch")]
     choices = [row for row in found["gains"] if row["kind"] in ("choice", "switch")]
-    lines = [BEGIN, "", "| number | what | range, unit | default |", "|---|---|---|---|"]
+    lines = ["| number | what | range, unit | default |", "|---|---|---|---|"]
     lines += [_row(row) for row in numbers]
     lines += ["", "| choice | what | words | default |", "|---|---|---|---|"]
     lines += [_row(row) for row in choices]
     lines += ["", "Of single laws:", "", "| key | law | what | range or words | default |"]
     lines += ["|---|---|---|---|---|"]
     lines += [_row(row, law["name"]) for law in found["laws"] for row in law["parameters"]]
-    lines += ["", "*: demonstrates a mistake; refused unless every bus is simulated.", "", END]
-    return "\n".join(lines)
+    lines += ["", "*: demonstrates a mistake; refused unless every bus is simulated."]
+    return lines
 
 
-def updated(text: str) -> str:
-    """The README's text with its tables as they should be."""
-    start, end = text.index(BEGIN), text.index(END) + len(END)
-    return text[:start] + tables() + text[end:]
-
-
-def write(path: Path = README) -> bool:
-    """Writes the tables into the README; False if they stood there already."""
-    before = path.read_text(encoding="utf-8")
-    after = updated(before)
-    path.write_text(after, encoding="utf-8")
-    return after != before
+TABLE = WrittenTable(ROOT / "scenarios" / "README.md", "gains", _lines)

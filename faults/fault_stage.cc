@@ -1,0 +1,134 @@
+#include "faults/fault_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace limber::faults {
+namespace {
+
+constexpr std::int64_t kHoldAt_ns = 300'000'000;
+constexpr std::int64_t kActiveAt_ns = 500'000'000;
+constexpr std::int64_t kCircleAt_ns = 600'000'000;
+
+Scenario moving_arm(int joints) {
+  Scenario scenario;
+  scenario.name = "faults";
+  scenario.wire.on = true;
+  mode_request_t mode{};
+  mode.client = kScenarioClient;
+  mode.request = mode_request_t::REQUEST_HOLD;
+  scenario.timeline.push_back({kHoldAt_ns, mode});
+  mode.request = mode_request_t::REQUEST_ACTIVE;
+  scenario.timeline.push_back({kActiveAt_ns, mode});
+  compliance_goal_t circle{};
+  circle.client = kScenarioClient;
+  circle.kind = compliance_goal_t::GOAL_CIRCLE;
+  circle.num_joints = static_cast<std::int8_t>(joints);
+  circle.duration_s = 1.0;
+  circle.offset[0] = 0.02;
+  circle.offset[5] = 1.0;
+  scenario.timeline.push_back({kCircleAt_ns, circle});
+  return scenario;
+}
+
+template <typename Count>
+std::int64_t sum(const Count* counts, int n) {
+  return std::accumulate(counts, counts + n, std::int64_t{0});
+}
+
+Reaction counters(const driver_status_t& status) {
+  Reaction out;
+  out.lost = sum(status.replies_lost, status.num_joints);
+  out.late = sum(status.replies_late, status.num_joints);
+  out.invalid = sum(status.replies_invalid, status.num_joints);
+  out.foreign = sum(status.frames_foreign, status.num_buses);
+  return out;
+}
+
+}  // namespace
+
+FaultStage::FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated)
+    : robot_(robot), scenario_(moving_arm(robot.robot.size())) {
+  const auto tamper = [this](CanBus* end) {
+    auto bus = std::make_unique<TamperedBus>(end);
+    tampered_.push_back(bus.get());
+    return bus;
+  };
+  lab_ = std::make_unique<Lab>(robot, scenario_, LabOptions{simulated, tamper});
+  outside_ = lab_->attach();
+  family_ = make_drive_family(joint(), bus_config().fd, 1.0 / robot.robot.rate_hz);
+}
+
+const BusConfig& FaultStage::bus_config() const {
+  return robot_.robot.buses[static_cast<std::size_t>(joint().drive.bus)];
+}
+
+bool FaultStage::is_mine(const CanFrame& frame) const {
+  const DriveConfig& drive = joint().drive;
+  std::uint32_t id = drive.reply_id;
+  for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
+    if (has_id(frame, id)) return true;
+  }
+  return false;
+}
+
+void FaultStage::change_replies(TamperedBus::Change change) {
+  bus().set_change([this, change = std::move(change)](const CanFrame& frame, auto* instead) {
+    if (is_mine(frame)) {
+      change(frame, instead);
+    } else {
+      instead->push_back(frame);
+    }
+  });
+}
+
+void FaultStage::send_from_outside(const CanFrame& frame) {
+  outside_[static_cast<std::size_t>(joint().drive.bus)]->send(frame);
+}
+
+void FaultStage::step() {
+  for (TamperedBus* bus : tampered_) bus->release();
+  if (each_cycle_) each_cycle_();
+  lab_->step();
+}
+
+void FaultStage::run(int cycles) {
+  while (lab_->cycles() < cycles) step();
+}
+
+bool FaultStage::on() const { return lab_->state().drive_state == joint_state_t::DRIVE_ON; }
+
+bool FaultStage::moves() const { return on() && lab_->controller_status().requests_refused == 0; }
+
+Reaction FaultStage::watch(int cycles) {
+  const Reaction before = counters(lab_->driver_status());
+  const bool was_on = on();
+  Reaction out;
+  for (int i = 1; i <= cycles; ++i) {
+    step();
+    const joint_state_t& state = lab_->state();
+    const bool left = was_on ? state.drive_state != joint_state_t::DRIVE_ON
+                             : state.drive_state == joint_state_t::DRIVE_FAULT;
+    if (out.cycles < 0 && left) {
+      out.cycles = i;
+      out.state = state.drive_state;
+      out.cause = state.fault;
+      out.joint = state.fault_joint;
+      const ArmDriver& driver = lab_->driver();
+      out.text = state.fault == joint_state_t::FAULT_CONFIGURATION
+                     ? driver.configuration_problem()
+                     : driver.fault_text(state.fault, state.fault_joint, driver.fault_detail());
+    }
+    if (out.fault_cycles < 0 && state.drive_state == joint_state_t::DRIVE_FAULT)
+      out.fault_cycles = i;
+  }
+  const Reaction after = counters(lab_->driver_status());
+  out.lost = after.lost - before.lost;
+  out.late = after.late - before.late;
+  out.invalid = after.invalid - before.invalid;
+  out.foreign = after.foreign - before.foreign;
+  return out;
+}
+
+}  // namespace limber::faults
