@@ -123,7 +123,13 @@ TEST_F(Moteus, Replies) {
 }
 
 TEST_F(Moteus, OtherTrafficIsShownRaw) {
-  EXPECT_EQ(said(decoder, "00008004##1 42013D"), "elbow command no registers: 42 01 3D");
+  EXPECT_EQ(said(decoder, "00008004##1 42013D"), "elbow command text poll: ");
+  EXPECT_EQ(said(decoder,
+                 "004##1400109"
+                 "74656C2073746F700A"),
+            "elbow command text: \"tel stop\\n\"");
+  EXPECT_EQ(said(decoder, "400##14101054F4B0D0A00"), "elbow reply text: \"OK\\n\\x00\"");
+  EXPECT_EQ(said(decoder, "00008004##144010001"), "elbow command no registers: 44 01 00 01");
   EXPECT_EQ(said(decoder, "500##1 210001"), "- foreign frame: 21 00 01");  // from servo 5
 }
 
