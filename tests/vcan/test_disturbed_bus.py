@@ -105,7 +105,7 @@ def test_lost_replies_are_a_fault(arm):
 
 
 def test_late_replies_are_counted(arm):
-    """5 ms are within the window of a period of 20 ms; after 25 ms a reply answers the next cycle."""
+    """5 ms are within the window of a period of 20 ms; 25 ms are beyond the period."""
     sh("tc qdisc add dev vxcan1 root netem delay 5ms limit 1000")
     time.sleep(3.0)
     assert arm.state.drive_state == State.DRIVE_ON, arm.describe()

@@ -339,7 +339,7 @@ class MoteusTextTest : public MoteusNodeTest {
 TEST_F(MoteusTextTest, BytesOfAPoll) {
   EXPECT_EQ(send("42013D"), "410100");
   EXPECT_EQ(send(frame(0x0004, "400107642073746F700A5050")), "none");  // "d stop"
-  EXPECT_EQ(send("42013D"), "4101044F4B0D0A");                       // "OK"
+  EXPECT_EQ(send("42013D"), "4101044F4B0D0A");                         // "OK"
   EXPECT_EQ(send("42013D"), "410100");
   // A line that wants an answer gets what was said before it.
   EXPECT_EQ(send("4001096465720A3132330A78"), "410100");
@@ -434,13 +434,14 @@ TEST_F(MoteusTextTest, Telemetry) {
 }
 
 TEST_F(MoteusTextTest, NoLineIsTooLong) {
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 101; ++i) {
     moteus::FrameWriter request(kToServo4);
     request.text_to_drive(std::string(61, 'x'));
     send(request.frame());
   }
-  tell("");
   hear();
+  tell("conf get id.id");  // lost with the rest of that line
+  EXPECT_EQ(ask("conf get id.id"), "4\r\n");
   for (int i = 0; i < 100; ++i) tell("conf enumerate");  // more than there is room for
   EXPECT_LE(hear().size(), 4096U);
   EXPECT_EQ(ask("conf get id.id"), "4\r\n");
