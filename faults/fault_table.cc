@@ -219,13 +219,13 @@ std::vector<Fault> make_table() {
       {.name = "transmit queue full",
        .begin = [](FaultStage* stage) { stage->bus().refuse_sends(); },
        .most_cycles = 3},
-      {.name = "the drive has other ranges or another rated torque stored",
+      {.name = "the drive has other ranges, gains or rated torque stored",
        .stored =
            [](DriveConfig* drive) {
              drive->range.position_rad *= 1.005;
+             drive->range.kp_Nm_per_rad *= 1.05;
              drive->rated_torque_Nm *= 1.005;
-           },
-       .protocols = {DriveProtocol::kDamiaoMit, DriveProtocol::kCia402}},
+           }},
   };
 }
 

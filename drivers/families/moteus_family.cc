@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,6 +20,22 @@ using moteus::Register;
 constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 constexpr double kHomedRotor = 1.0;
 constexpr double kHomedOutput = 2.0;
+/// Numbers of the questions, beyond those of registers.
+constexpr std::uint32_t kFirstQuestion = 0x10000;
+constexpr std::string_view kGet = "conf get ";
+/// Numbers come with six decimals.
+constexpr double kLastDecimal = 1e-6;
+
+bool equal(double found, double expected) {
+  return std::abs(found - expected) <= 1e-4 * std::abs(expected) + kLastDecimal;
+}
+/// A limit in the drive; NaN is none, on either side.
+bool not_above(double found, double expected) {
+  return std::isnan(found) || found <= expected + kLastDecimal;
+}
+bool not_below(double found, double expected) {
+  return std::isnan(found) || found >= expected - kLastDecimal;
+}
 
 DriveCondition condition_of(Mode mode) noexcept {
   switch (mode) {
@@ -38,14 +55,28 @@ DriveCondition condition_of(Mode mode) noexcept {
 
 MoteusFamily::MoteusFamily(const JointConfig& joint)
     : drive_(joint.drive),
-      torque_limit_(std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm)) {}
+      torque_limit_(std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm)) {
+  const auto turns = [this](double angle_rad) {
+    return (drive_.sign * angle_rad + drive_.offset_rad) / kTurn;
+  };
+  const double a = turns(joint.position_min);
+  const double b = turns(joint.position_max);
+  questions_ = {{
+      {"tel stop", nullptr, 0.0},
+      {"conf get servo.pid_position.kp", equal, drive_.range.kp_Nm_per_rad * kTurn},
+      {"conf get servo.pid_position.ki", equal, 0.0},  // would act on torque commands, too
+      {"conf get servo.pid_position.kd", equal, drive_.range.kd_Nms_per_rad * kTurn},
+      {"conf get servopos.position_min", not_above, std::min(a, b)},
+      {"conf get servopos.position_max", not_below, std::max(a, b)},
+  }};
+}
 
 bool MoteusFamily::command(const DriveCommand& command, const DriveMemory& /*memory*/,
                            CanFrame* frame, DriveCommand* sent) noexcept {
   if (!all_finite(command)) return false;
   const CommandRange& range = drive_.range;
   const double kd_scale = std::clamp(command.kd_Nms_per_rad / range.kd_Nms_per_rad, 0.0, 1.0);
-  const double kp_scale = std::clamp(command.kp_Nm_per_rad / range.kp_Nm_per_rad, kd_scale, 1.0);
+  const double kp_scale = std::clamp(command.kp_Nm_per_rad / range.kp_Nm_per_rad, 0.0, 1.0);
   *sent = {command.angle_rad, command.speed_rad_per_s, kp_scale * range.kp_Nm_per_rad,
            kd_scale * range.kd_Nms_per_rad,
            std::clamp(command.torque_Nm, -torque_limit_, torque_limit_)};
@@ -119,6 +150,11 @@ double MoteusFamily::angle_resolution() const noexcept {
 }
 
 StartupStep MoteusFamily::startup_step(int index) const noexcept {
+  if (index >= kRegisters) {
+    const int question = question_of(index);
+    return {kFirstQuestion + static_cast<std::uint32_t>(question),
+            questions_[static_cast<std::size_t>(question)].expected};
+  }
   if (index == 0)
     return {static_cast<std::uint32_t>(Register::kRegisterMap), moteus::kRegisterMapVersion};
   // Behind a gear, a drive that has only its rotor's angle may be off by a rotor turn.
@@ -127,15 +163,82 @@ StartupStep MoteusFamily::startup_step(int index) const noexcept {
 }
 
 CanFrame MoteusFamily::startup_request(int index) const noexcept {
-  return moteus::encode_read(static_cast<Register>(startup_step(index).reg), drive_.command_id);
+  if (index < kRegisters)
+    return moteus::encode_read(static_cast<Register>(startup_step(index).reg), drive_.command_id);
+  const auto question = static_cast<std::size_t>(question_of(index));
+  const bool answers = (index - kRegisters) % 2 == 1;
+  return answers ? moteus::encode_text_poll(drive_.command_id)
+                 : moteus::encode_line(questions_[question].line, drive_.command_id);
 }
 
 Answer MoteusFamily::check_answer(int index, const CanFrame& frame, double* found) noexcept {
+  if (index < kRegisters) return check_register(index, frame, found);
+  std::string_view text;
+  const bool speaks = moteus::decode_text(frame, &text);
+  moteus::State state;
+  if (!speaks && moteus::decode_state(frame, &state)) return Answer::kNone;
+  *found = 0.0;
+  if (!speaks) {
+    const Answer answer = speaks_ ? Answer::kMissing : Answer::kRight;  // one warning is enough
+    speaks_ = false;
+    return answer;
+  }
+  speaks_ = true;
+  const bool sent = (index - kRegisters) % 2 == 0;
+  if (sent) {  // the text is what the drive had to say before
+    line_size_ = 0;
+    return Answer::kRight;
+  }
+  return check_line(questions_[static_cast<std::size_t>(question_of(index))], text, found);
+}
+
+Answer MoteusFamily::check_register(int index, const CanFrame& frame,
+                                    double* found) const noexcept {
   const StartupStep step = startup_step(index);
   if (!moteus::decode_register(frame, static_cast<Register>(step.reg), found)) return Answer::kNone;
   const bool right =
       index == 0 ? *found == step.expected : *found >= step.expected && *found <= kHomedOutput;
   return right ? Answer::kRight : Answer::kWrong;
+}
+
+/// The answer's line may come in pieces, and other lines before it.
+Answer MoteusFamily::check_line(const Question& question, std::string_view text,
+                                double* found) noexcept {
+  for (const char letter : text) {
+    if (letter != '\r' && letter != '\n') {
+      if (line_size_ == line_.size()) line_size_ = 0;
+      line_[line_size_++] = letter;
+      continue;
+    }
+    const std::string_view line(line_.data(), line_size_);
+    line_size_ = 0;
+    if (question.right == nullptr) {
+      if (line.ends_with("OK")) return Answer::kRight;
+      continue;
+    }
+    if (line.starts_with("ERR")) return Answer::kMissing;
+    const char* end = line.data() + line.size();
+    if (line.empty() || std::from_chars(line.data(), end, *found).ptr != end) continue;
+    return question.right(*found, question.expected) ? Answer::kRight : Answer::kWrong;
+  }
+  return Answer::kNotYet;
+}
+
+std::string MoteusFamily::describe(const StartupFailure& failure) const {
+  if (failure.reg < kFirstQuestion) return DriveFamily::describe(failure);
+  std::string_view name = questions_[failure.reg - kFirstQuestion].line;
+  if (name.starts_with(kGet)) name.remove_prefix(kGet.size());
+  if (failure.answer == Answer::kMissing && failure.reg == kFirstQuestion)
+    return "no diagnostic channel: servo.pid_position and servopos are not compared with "
+           "robot.yaml";
+  if (failure.answer == Answer::kMissing)
+    return fmt::format("{} cannot be read, and is not compared with robot.yaml", name);
+  if (failure.answer != Answer::kWrong)
+    return fmt::format("{} not answered over the diagnostic channel", name);
+  if (std::isinf(failure.expected))
+    return fmt::format("{} is {:g}, expected nan: the joint has no end", name, failure.found);
+  return fmt::format("{} is {:g}, expected {:g}{}", name, failure.found, failure.expected,
+                     name.starts_with("servopos") ? " or beyond" : "");
 }
 
 }  // namespace limber

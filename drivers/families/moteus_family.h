@@ -1,10 +1,12 @@
 // moteus drives: registers over CAN-FD, everything in each cycle's frame.
 //
-// Start-up: register map version compared -> home state compared.
+// Start-up: register map version compared -> home state compared -> telemetry stopped
+//            -> settings read over the diagnostic channel and compared: kp, kd, ki, position range
 // The watchdog needs no step: every command carries it.
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "drivers/families/drive_family.h"
 #include "drivers/protocols/moteus.h"
@@ -15,10 +17,9 @@ class MoteusFamily final : public DriveFamily {
  public:
   explicit MoteusFamily(const JointConfig& joint);
 
-  /// Position mode with scaled gains. Torque alone goes with position NaN and both scales zero.
-  /// Drives hold the kd scale at the kp scale or below: where damping asks for more, kp is raised
-  /// with it. Commands that only damp carry the angle measured last, so that spring lags the joint
-  /// by a cycle and acts like a little more damping.
+  /// Position mode with scaled gains; without stiffness the position goes as NaN, and torque alone
+  /// with both scales zero. The scales are independent of each other: the manual's limit of the one
+  /// by the other is not in the firmware.
   bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
                DriveCommand* sent) noexcept override;
   CanFrame disable() noexcept override { return moteus::encode_stop(drive_.command_id); }
@@ -40,16 +41,35 @@ class MoteusFamily final : public DriveFamily {
   std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;
 
+  /// Text is answered from the drive's main loop, not at once.
+  int patience_cycles() const noexcept override { return 5; }
   int startup_steps() const noexcept override { return kSteps; }
   StartupStep startup_step(int index) const noexcept override;
   CanFrame startup_request(int index) const noexcept override;
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
+  std::string describe(const StartupFailure& failure) const override;
 
  private:
-  static constexpr int kSteps = 2;
+  /// A line for the diagnostic channel, and what is wanted of the answer.
+  struct Question {
+    std::string_view line;
+    bool (*right)(double found, double expected);  ///< none: any answer
+    double expected;
+  };
+  static constexpr int kRegisters = 2;
+  static constexpr int kQuestions = 6;
+  static constexpr int kSteps = kRegisters + 2 * kQuestions;  // a line takes two: sent, answered
+
+  static int question_of(int index) noexcept { return (index - kRegisters) / 2; }
+  Answer check_register(int index, const CanFrame& frame, double* found) const noexcept;
+  Answer check_line(const Question& question, std::string_view text, double* found) noexcept;
 
   DriveConfig drive_;
   double torque_limit_;  ///< N m
+  std::array<Question, kQuestions> questions_;
+  bool speaks_ = true;  ///< has a diagnostic channel
+  std::array<char, 32> line_{};
+  std::size_t line_size_ = 0;
 };
 
 }  // namespace limber

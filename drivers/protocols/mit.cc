@@ -230,6 +230,35 @@ bool decode_command(const CanFrame& frame, const CommandRange& range, Command* c
   return true;
 }
 
+bool decode_servo_command(const CanFrame& frame, ControlMode mode, ServoCommand* command) noexcept {
+  constexpr double kVelocityCount = 0.01;
+  constexpr double kTorqueCount = 1e-4;
+  const bool velocity_only = mode == ControlMode::kVelocity;
+  if (!is_plain(frame) || mode == ControlMode::kMit || frame.length < (velocity_only ? 4 : 8))
+    return false;
+  const auto& d = frame.data;
+  const auto word = [&d](std::size_t at) {
+    return static_cast<std::uint32_t>(d[at] | d[at + 1] << 8U);
+  };
+  const auto number = [&word](std::size_t at) {
+    return static_cast<double>(bits_float(word(at) | word(at + 2) << 16U));
+  };
+  ServoCommand out;
+  if (velocity_only) {
+    out.velocity_rad_per_s = number(0);
+  } else {
+    out.position_rad = number(0);
+    out.velocity_rad_per_s =
+        mode == ControlMode::kForcePosition ? kVelocityCount * word(4) : number(4);
+    if (mode == ControlMode::kForcePosition)
+      out.torque_share = std::min(1.0, kTorqueCount * word(6));
+    if (!(out.velocity_rad_per_s >= 0.0)) return false;
+  }
+  if (!std::isfinite(out.position_rad) || !std::isfinite(out.velocity_rad_per_s)) return false;
+  *command = out;
+  return true;
+}
+
 bool decode_register_request(const CanFrame& frame, RegisterRequest* request) noexcept {
   if (!is_plain(frame) || frame.extended || frame.id != kRegisterId || frame.length < 4)
     return false;

@@ -61,6 +61,27 @@ enum class Register : std::uint8_t {
   kTorqueRange = 23,  ///< float32
 };
 inline constexpr std::uint32_t kRegisterId = 0x7FF;
+
+/// Register kControlMode. Commands of the others than MIT have identifiers of their own.
+enum class ControlMode : std::uint8_t {
+  kMit = 1,
+  kPositionVelocity = 2,
+  kVelocity = 3,
+  kForcePosition = 4,
+};
+inline constexpr std::uint32_t kModeStep = 0x100;
+/// Added to the drive's id: 0, 0x100, 0x200, 0x300.
+constexpr std::uint32_t id_offset(ControlMode mode) noexcept {
+  return kModeStep * (static_cast<std::uint32_t>(mode) - 1U);
+}
+
+/// A command of one of the other modes.
+struct ServoCommand {
+  double position_rad = 0.0;  ///< not in velocity mode
+  /// In velocity mode the velocity, else the most that it may be.
+  double velocity_rad_per_s = 0.0;
+  double torque_share = 1.0;  ///< of the most that the drive can, 0 to 1; force-position mode
+};
 inline constexpr double kTimeoutCount_s = 50e-6;
 
 /// The half count that a truncating sender's values lie below the truth on average: add it to a
@@ -93,6 +114,9 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 [[nodiscard]] bool decode_special(const CanFrame& frame, Special* special) noexcept;
 [[nodiscard]] bool decode_command(const CanFrame& frame, const CommandRange& range,
                                   Command* command) noexcept;
+/// False for kMit, what is too short, not finite, or a negative limit.
+[[nodiscard]] bool decode_servo_command(const CanFrame& frame, ControlMode mode,
+                                        ServoCommand* command) noexcept;
 struct RegisterRequest {
   std::uint16_t id = 0;
   std::uint8_t operation = 0;  ///< 0x33 read, 0x55 write, 0xAA store, 0xCC state request

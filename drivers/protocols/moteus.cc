@@ -1,5 +1,6 @@
 #include "drivers/protocols/moteus.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -80,6 +81,24 @@ CanFrame encode_read(Register reg, std::uint32_t id) noexcept {
   return frame.frame();
 }
 
+CanFrame encode_line(std::string_view line, std::uint32_t id) noexcept {
+  constexpr std::size_t kMost = 60;
+  std::array<char, kMost + 1> text{};
+  const std::size_t length = std::min(line.size(), kMost);
+  std::copy_n(line.begin(), length, text.begin());
+  text[length] = '\n';
+  FrameWriter frame(id);
+  frame.text_to_drive({text.data(), length + 1});
+  return frame.frame();
+}
+
+CanFrame encode_text_poll(std::uint32_t id) noexcept {
+  constexpr unsigned kMost = 29;  // and three bytes before it: 32, as the answer to a command
+  FrameWriter frame(id);
+  frame.text_poll(kMost);
+  return frame.frame();
+}
+
 bool decode_state(const CanFrame& frame, State* state) noexcept {
   if (!may_be_a_reply(frame)) return false;
   StateValues values;
@@ -105,6 +124,18 @@ bool decode_register(const CanFrame& frame, Register reg, double* value) noexcep
     const unsigned index = static_cast<unsigned>(number(reg)) - subframe.first;
     if (subframe.kind != Subframe::Kind::kReply || index >= subframe.count) continue;
     *value = subframe.value(index);
+    return true;
+  }
+  return false;
+}
+
+bool decode_text(const CanFrame& frame, std::string_view* text) noexcept {
+  if (!may_be_a_reply(frame)) return false;
+  FrameReader reader(frame);
+  Subframe subframe;
+  while (reader.next(&subframe)) {
+    if (subframe.kind != Subframe::Kind::kTextFromDrive || subframe.first != kTextChannel) continue;
+    *text = subframe.text();
     return true;
   }
   return false;

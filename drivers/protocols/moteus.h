@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/moteus_registers.h"
@@ -46,10 +47,18 @@ CanFrame encode_stop(std::uint32_t id) noexcept;
 CanFrame encode_state_request(std::uint32_t id) noexcept;
 /// Asks for one register, as int32.
 CanFrame encode_read(Register reg, std::uint32_t id) noexcept;
+/// A line for the drive's diagnostic channel, 60 characters at most. The answer has the text that
+/// the drive had to say before.
+CanFrame encode_line(std::string_view line, std::uint32_t id) noexcept;
+/// Asks for text of the diagnostic channel: as much as a reply has room for in a command's answer.
+CanFrame encode_text_poll(std::uint32_t id) noexcept;
 
 /// False unless all of the state is there, in whatever formats, finite, with a mode that exists.
 [[nodiscard]] bool decode_state(const CanFrame& frame, State* state) noexcept;
 /// The register's value; false if the frame has none (an error subframe, another register).
 [[nodiscard]] bool decode_register(const CanFrame& frame, Register reg, double* value) noexcept;
+/// Text of the diagnostic channel, which may be empty; it lives as long as the frame. False if the
+/// frame has none.
+[[nodiscard]] bool decode_text(const CanFrame& frame, std::string_view* text) noexcept;
 
 }  // namespace limber::moteus

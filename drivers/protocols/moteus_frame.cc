@@ -11,6 +11,9 @@ constexpr std::uint8_t kRead = 0x10;
 constexpr std::uint8_t kReply = 0x20;
 constexpr std::uint8_t kWriteError = 0x30;
 constexpr std::uint8_t kReadError = 0x31;
+constexpr std::uint8_t kTextToDrive = 0x40;
+constexpr std::uint8_t kTextFromDrive = 0x41;
+constexpr std::uint8_t kTextPoll = 0x42;
 constexpr std::uint8_t kNop = 0x50;
 
 constexpr std::size_t kLongestFrame = 64;
@@ -112,6 +115,34 @@ bool FrameWriter::read_error(std::uint16_t reg, std::uint8_t error) noexcept {
   return kept_if(put(kReadError) && put_varuint(reg) && put_varuint(error), start);
 }
 
+bool FrameWriter::text(std::uint8_t opcode, std::string_view text) noexcept {
+  const std::uint8_t start = frame_.length;
+  bool fits =
+      put(opcode) && put(kTextChannel) && put_varuint(static_cast<std::uint32_t>(text.size()));
+  for (std::size_t i = 0; i < text.size() && fits; ++i)
+    fits = put(static_cast<std::uint8_t>(text[i]));
+  return kept_if(fits, start);
+}
+
+bool FrameWriter::text_to_drive(std::string_view text) noexcept {
+  return this->text(kTextToDrive, text);
+}
+
+bool FrameWriter::text_from_drive(std::string_view text) noexcept {
+  return this->text(kTextFromDrive, text);
+}
+
+bool FrameWriter::text_poll(unsigned most) noexcept {
+  const std::uint8_t start = frame_.length;
+  return kept_if(put(kTextPoll) && put(kTextChannel) && put_varuint(most), start);
+}
+
+std::size_t FrameWriter::room_for_text() const noexcept {
+  constexpr std::size_t kHead = 3;  // opcode, channel, count
+  const std::size_t used = frame_.length + kHead;
+  return used < kLongestFrame ? kLongestFrame - used : 0;
+}
+
 CanFrame FrameWriter::frame() const noexcept {
   CanFrame padded = frame_;
   padded.length = static_cast<std::uint8_t>(fd_length(frame_.length));
@@ -129,6 +160,10 @@ double Subframe::value(unsigned i) const noexcept {
   if (type == Type::kFloat) return static_cast<double>(std::bit_cast<float>(raw));
   return from_integer(sign_extended(raw, bytes), lsb(static_cast<std::uint16_t>(first + i), type),
                       type);
+}
+
+std::string_view Subframe::text() const noexcept {
+  return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : count};
 }
 
 bool FrameReader::next(Subframe* subframe) noexcept {
@@ -153,6 +188,7 @@ bool FrameReader::parse(std::uint8_t opcode, Subframe* subframe) noexcept {
     subframe->error = static_cast<std::uint8_t>(error);
     return true;
   }
+  if (opcode >= kTextToDrive && opcode <= kTextPoll) return parse_text(opcode, subframe);
   if (opcode >= kReply + 0x10) return false;
   if (count == 0 && !take_varuint(&count)) return false;
   if (!take_varuint(&first) || first > kLastRegister || count > kLastRegister - first) return false;
@@ -167,6 +203,22 @@ bool FrameReader::parse(std::uint8_t opcode, Subframe* subframe) noexcept {
   if (bytes > static_cast<std::uint32_t>(frame_.length - at_)) return false;
   subframe->data = frame_.data.data() + at_;
   at_ = static_cast<std::uint8_t>(at_ + bytes);
+  return true;
+}
+
+bool FrameReader::parse_text(std::uint8_t opcode, Subframe* subframe) noexcept {
+  std::uint32_t channel = 0;
+  std::uint32_t count = 0;
+  if (!take_varuint(&channel) || !take_varuint(&count) || channel > kLastRegister) return false;
+  subframe->kind = opcode == kTextToDrive ? Subframe::Kind::kTextToDrive
+                   : opcode == kTextPoll  ? Subframe::Kind::kTextPoll
+                                          : Subframe::Kind::kTextFromDrive;
+  subframe->first = static_cast<std::uint16_t>(channel);
+  subframe->count = count;
+  if (subframe->kind == Subframe::Kind::kTextPoll) return true;
+  if (count > static_cast<std::uint32_t>(frame_.length - at_)) return false;
+  subframe->data = frame_.data.data() + at_;
+  at_ = static_cast<std::uint8_t>(at_ + count);
   return true;
 }
 

@@ -2,11 +2,16 @@
 // Bytes only: no I/O, no state beyond the frame, no heap. Everything is allowed inside the cycle.
 //
 //   subframe = opcode, [count], first register, values     count and register: 7 bits a byte, low
-//                                                          ones first, bit 7 = more follows
+//            | opcode, channel, count, [text]              ones first, bit 7 = more follows
+//
+// The second kind is the tunnel of the diagnostic channel, a stream of text both ways: the client
+// hands text over, and polls for what the drive has to say.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/moteus_registers.h"
@@ -28,6 +33,10 @@ Address address_of(std::uint32_t can_id) noexcept;
 
 inline constexpr std::uint8_t kUnknownRegister = 1;
 inline constexpr std::uint8_t kNotWritable = 2;
+/// Channel of the text; drives have no other.
+inline constexpr std::uint8_t kTextChannel = 1;
+/// Bytes of text in a frame that has nothing else.
+inline constexpr std::size_t kMostText = 61;
 
 /// Fills a frame subframe by subframe. One that does not fit is left out whole and gives false.
 class FrameWriter {
@@ -39,7 +48,12 @@ class FrameWriter {
   bool reply(Type type, std::uint16_t first, std::span<const double> values) noexcept;
   bool write_error(std::uint16_t reg, std::uint8_t error) noexcept;
   bool read_error(std::uint16_t reg, std::uint8_t error) noexcept;
+  bool text_to_drive(std::string_view text) noexcept;
+  bool text_poll(unsigned most) noexcept;
+  bool text_from_drive(std::string_view text) noexcept;
 
+  /// Bytes of text that still fit into one subframe.
+  std::size_t room_for_text() const noexcept;
   /// The frame, filled up with NOPs to a length that CAN-FD has; with bit-rate switch.
   CanFrame frame() const noexcept;
 
@@ -49,22 +63,33 @@ class FrameWriter {
   bool put(std::uint32_t byte) noexcept;
   bool put_varuint(std::uint32_t value) noexcept;
   bool put_value(Type type, double lsb, double value) noexcept;
+  bool text(std::uint8_t opcode, std::string_view text) noexcept;
   bool kept_if(bool fits, std::uint8_t start) noexcept;
 
   CanFrame frame_;
 };
 
 struct Subframe {
-  enum class Kind : std::uint8_t { kWrite, kRead, kReply, kWriteError, kReadError };
+  enum class Kind : std::uint8_t {
+    kWrite,
+    kRead,
+    kReply,
+    kWriteError,
+    kReadError,
+    kTextToDrive,
+    kTextFromDrive,
+    kTextPoll
+  };
   Kind kind = Kind::kRead;
   Type type = Type::kInt8;
-  std::uint16_t first = 0;  ///< register
-  unsigned count = 0;       ///< registers; 1 for errors
+  std::uint16_t first = 0;  ///< register; of text: channel
+  unsigned count = 0;       ///< registers; 1 for errors; of text: bytes, of a poll the most
   std::uint8_t error = 0;
-  const std::uint8_t* data = nullptr;  ///< of writes and replies; lives as long as the frame
+  const std::uint8_t* data = nullptr;  ///< of writes, replies, text; lives as long as the frame
 
   /// Value of register first + i, in the register's unit; NaN where the format has it.
   double value(unsigned i) const noexcept;
+  std::string_view text() const noexcept;
 };
 
 /// Takes a frame apart; the frame outlives the reader.
@@ -79,6 +104,7 @@ class FrameReader {
 
  private:
   bool parse(std::uint8_t opcode, Subframe* subframe) noexcept;
+  bool parse_text(std::uint8_t opcode, Subframe* subframe) noexcept;
   bool take_varuint(std::uint32_t* value) noexcept;
 
   const CanFrame& frame_;

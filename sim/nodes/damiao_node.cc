@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::uint8_t kRead = 0x33;
 constexpr std::uint8_t kWrite = 0x55;
+constexpr std::uint8_t kStore = 0xAA;
 constexpr std::uint8_t kStateRequest = 0xCC;
 constexpr std::uint8_t kMotorPosition = 80;
 constexpr std::uint8_t kOutputPosition = 81;
 constexpr int kTemperature_degC = 30;
-/// Some clients send special frames to the id of another mode: id + 0x100, 0x200, 0x300.
-constexpr std::uint32_t kModeStep = 0x100;
-constexpr std::uint32_t kLastModeOffset = 0x300;
+/// Some clients send special frames to the id of another mode.
+constexpr std::uint32_t kLastModeOffset = mit::id_offset(mit::ControlMode::kForcePosition);
 
 }  // namespace
 
@@ -35,14 +35,14 @@ CanFrame DamiaoNode::state_frame(const CanFrame& request,
                                  const JointReading& joint) const noexcept {
   const Sensed sensed = sense(joint);
   mit::Reply reply;
-  reply.id_nibble = static_cast<std::uint8_t>(drive_.command_id & 0xF);
+  reply.id_nibble = static_cast<std::uint8_t>(registers_.id() & 0xF);
   reply.error = state_;
   reply.position_rad = sensed.position;
   reply.velocity_rad_per_s = sensed.velocity;
   reply.torque_Nm = sensed.torque;
   reply.mos_temperature_degC = kTemperature_degC;
   reply.rotor_temperature_degC = kTemperature_degC;
-  CanFrame frame = mit::encode_reply(reply, registers_.range(), drive_.reply_id, request.fd,
+  CanFrame frame = mit::encode_reply(reply, registers_.range(), registers_.reply_id(), request.fd,
                                      mit::Quantiser::kTruncate);
   frame.bitrate_switch = request.bitrate_switch;
   return frame;
@@ -50,29 +50,34 @@ CanFrame DamiaoNode::state_frame(const CanFrame& request,
 
 bool DamiaoNode::receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                          CanFrame* reply) noexcept {
-  now_ns_ = now_ns;
+  pass_time(joint, now_ns);
   if (frame.extended || frame.remote || frame.error) return false;
   const bool deaf = has(scenario_event_t::FAULT_DROP_COMMANDS);
 
   mit::RegisterRequest request;
   if (frame.id == mit::kRegisterId) {
-    if (!mit::decode_register_request(frame, &request) || request.id != drive_.command_id) {
+    if (!mit::decode_register_request(frame, &request) || request.id != registers_.id()) {
       return false;
     }
     if (!deaf) last_frame_ns_ = now_ns;
     return on_register(frame, request, joint, reply) && !has(scenario_event_t::FAULT_SILENT);
   }
 
-  const std::uint32_t offset = frame.id - drive_.command_id;
+  const std::uint32_t offset = frame.id - registers_.id();
   mit::Special special{};
   const bool is_special = mit::decode_special(frame, &special);
-  const bool other_mode = offset % kModeStep == 0 && offset <= kLastModeOffset && is_special;
-  if ((offset != 0 && !other_mode) || frame.length != 8) return false;
+  const bool other_mode = is_special && offset % mit::kModeStep == 0 && offset <= kLastModeOffset;
+  const bool servo = offset != 0 && offset == mit::id_offset(registers_.mode());
+  const std::uint8_t shortest = registers_.mode() == mit::ControlMode::kVelocity ? 4 : 8;
+  const bool whole = servo ? frame.length >= shortest && frame.length <= 8 : frame.length == 8;
+  if ((offset != 0 && !other_mode && !servo) || !whole) return false;
   *reply = state_frame(frame, joint);
   if (!deaf) {
     last_frame_ns_ = now_ns;
     if (is_special) {
       on_special(special, joint);
+    } else if (servo) {
+      on_servo_command(frame, joint);
     } else {
       on_command(frame);
     }
@@ -87,9 +92,11 @@ bool DamiaoNode::on_register(const CanFrame& frame, const mit::RegisterRequest& 
     return true;
   }
   std::uint32_t value = request.raw_value;
+  // The answer to a new identifier still has the old one.
+  const std::uint32_t reply_id = registers_.reply_id();
   if (request.operation == kWrite && !has(scenario_event_t::FAULT_DROP_COMMANDS)) {
     registers_.write(request.reg, request.raw_value);
-    if (!registers_.mit_mode()) command_ = {};
+    if (request.reg == static_cast<std::uint8_t>(mit::Register::kControlMode)) forget_command();
   }
   if (request.operation == kRead || request.operation == kWrite) {
     const auto position = static_cast<float>(sense(joint).position);
@@ -98,7 +105,10 @@ bool DamiaoNode::on_register(const CanFrame& frame, const mit::RegisterRequest& 
                 ? mit::float_bits(position * static_cast<float>(drive_.gear_ratio))
                 : registers_.read(request.reg);
   }
-  *reply = mit::encode_register_answer(request, value, drive_.reply_id, frame.fd);
+  mit::RegisterRequest answered = request;
+  // Flash is written at rest only.
+  if (request.operation == kStore) answered.reg = state_ == mit::DriveError::kEnabled ? 0 : 1;
+  *reply = mit::encode_register_answer(answered, value, reply_id, frame.fd);
   reply->bitrate_switch = frame.bitrate_switch;
   return true;
 }
@@ -109,6 +119,7 @@ void DamiaoNode::on_special(mit::Special special, const JointReading& joint) noe
   switch (special) {
     case mit::Special::kEnable:
       if (!failed) state_ = mit::DriveError::kEnabled;
+      if (!enabled) forget_command();
       break;
     case mit::Special::kDisable:
       if (enabled) leave(mit::DriveError::kDisabled);
@@ -125,35 +136,80 @@ void DamiaoNode::on_special(mit::Special special, const JointReading& joint) noe
 
 void DamiaoNode::on_command(const CanFrame& frame) noexcept {
   mit::Command command;
-  if (state_ != mit::DriveError::kEnabled || !registers_.mit_mode() ||
+  if (state_ != mit::DriveError::kEnabled || registers_.mode() != mit::ControlMode::kMit ||
       !mit::decode_command(frame, registers_.range(), &command)) {
     return;
   }
   command_ = command;
 }
 
+void DamiaoNode::on_servo_command(const CanFrame& frame, const JointReading& joint) noexcept {
+  mit::ServoCommand command;
+  if (state_ != mit::DriveError::kEnabled ||
+      !mit::decode_servo_command(frame, registers_.mode(), &command)) {
+    return;
+  }
+  if (!has_setpoint_) setpoint_.start(sense(joint).position, 0.0);
+  has_setpoint_ = true;
+  torque_share_ = command.torque_share;
+  const double most = registers_.most_speed_rad_per_s();
+  ProfileGoal goal;
+  goal.acceleration_limit = registers_.acceleration_rad_per_s2();
+  if (registers_.mode() == mit::ControlMode::kVelocity) {
+    goal.velocity = std::clamp(command.velocity_rad_per_s, -most, most);
+  } else {
+    goal.position = command.position_rad;
+    goal.velocity_limit = std::min(command.velocity_rad_per_s, most);
+  }
+  setpoint_.aim(goal);
+}
+
+/// Moves the setpoint on, but no further from the joint than the torque can pull: one that stands
+/// in front of an obstacle does not wind up.
+void DamiaoNode::pass_time(const JointReading& joint, std::int64_t now_ns) noexcept {
+  const double passed_s = static_cast<double>(now_ns - now_ns_) * 1e-9;
+  now_ns_ = now_ns;
+  if (!has_setpoint_) return;
+  const CommandRange range = registers_.range();
+  const double here = sense(joint).position;
+  const double reach = most_torque() / range.kp_Nm_per_rad;
+  setpoint_.advance(passed_s);
+  setpoint_.keep_within(here - reach, here + reach);
+  command_ = {setpoint_.position(), setpoint_.velocity(), range.kp_Nm_per_rad, range.kd_Nms_per_rad,
+              0.0};
+}
+
+void DamiaoNode::forget_command() noexcept {
+  command_ = {};
+  has_setpoint_ = false;
+  torque_share_ = 1.0;
+}
+
 void DamiaoNode::leave(mit::DriveError state) noexcept {
   state_ = state;
-  command_ = {};
+  forget_command();
   shorted_ = state == mit::DriveError::kCommunicationLost &&
              drive_.watchdog_reaction == NodeWatchdogReaction::kDamp;
 }
 
-void DamiaoNode::update(const JointReading&, std::int64_t now_ns) noexcept {
-  now_ns_ = now_ns;
+void DamiaoNode::update(const JointReading& joint, std::int64_t now_ns) noexcept {
+  pass_time(joint, now_ns);
   const std::int64_t timeout = registers_.timeout_ns();
   if (state_ == mit::DriveError::kEnabled && timeout > 0 && now_ns - last_frame_ns_ > timeout) {
     leave(mit::DriveError::kCommunicationLost);
   }
 }
 
+double DamiaoNode::most_torque() const noexcept {
+  const double range = registers_.range().torque_Nm;
+  return drive_.peak_torque_Nm > 0.0 ? std::min(drive_.peak_torque_Nm, range) : range;
+}
+
 DriveLaw DamiaoNode::law() const noexcept {
   DriveLaw law;
   law.passive_damping = shorted_ ? drive_.short_circuit_damping_Nms : 0.0;
   if (state_ != mit::DriveError::kEnabled) return law;
-  const double peak = drive_.peak_torque_Nm;
-  law.limit =
-      peak > 0.0 ? std::min(peak, registers_.range().torque_Nm) : registers_.range().torque_Nm;
+  law.limit = torque_share_ * most_torque();
   law.tau_ff = drive_.sign * command_.torque_Nm;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
     // The loop runs on the frozen reading, which no longer depends on the joint.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "drivers/protocols/mit.h"
 #include "robots/loader/robot.h"
 
 namespace limber::sim {
@@ -17,19 +18,23 @@ class DamiaoRegisters {
 
   /// Raw 32-bit content; 0 for numbers the drive does not have.
   std::uint32_t read(std::uint8_t reg) const noexcept;
-  /// Takes the value if the register is writable and the value makes sense, else keeps the old one.
-  /// Identifiers and bit rate stay as in the robot's description: the emulated node does not move
-  /// on the bus.
+  /// Takes the value if the register is writable and the value within the maker's range, else keeps
+  /// the old one. The bit rate stays as in the robot's description: the emulated bus has one.
   void write(std::uint8_t reg, std::uint32_t raw) noexcept;
 
+  std::uint32_t id() const noexcept;        ///< ESC_ID
+  std::uint32_t reply_id() const noexcept;  ///< MST_ID
   /// 0: no watchdog.
   std::int64_t timeout_ns() const noexcept;
-  bool mit_mode() const noexcept;
+  mit::ControlMode mode() const noexcept;
+  double most_speed_rad_per_s() const noexcept;
+  /// Of setpoints, rad/s^2; NaN: no limit.
+  double acceleration_rad_per_s2() const noexcept;
   /// The ranges in which this drive packs and unpacks MIT frames.
   CommandRange range() const noexcept;
 
  private:
-  static constexpr int kCount = 82;
+  static constexpr std::size_t kCount = 82;
   std::array<std::uint32_t, kCount> raw_{};
   CommandRange range_;
 };

@@ -12,9 +12,12 @@ using moteus::Mode;
 using moteus::Register;
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;  // rad
-constexpr double kConfiguredWatchdog_s = 0.1;
 constexpr std::int64_t kEnablingMode_ns = 1'000'000;  // in each of modes 2, 3, 4
+// Fault codes.
 constexpr int kDriverFault = 33;
+constexpr int kNotConfigured = 36;
+constexpr int kOutsideLimits = 39;
+constexpr int kStopPosition = 45;
 constexpr double kBoardTemperature_degC = 30.0;
 constexpr double kVoltage_V = 48.0;
 constexpr double kModel = 0x0200;
@@ -25,7 +28,8 @@ constexpr unsigned kMostValues = 60;
 }  // namespace
 
 MoteusNode::MoteusNode(const JointConfig& joint)
-    : drive_(joint.drive), id_(moteus::address_of(joint.drive.command_id).destination) {}
+    : drive_(joint.drive),
+      settings_(joint.drive, moteus::address_of(joint.drive.command_id).destination) {}
 
 MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
@@ -40,58 +44,76 @@ MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
 
 bool MoteusNode::receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                          CanFrame* reply) noexcept {
-  now_ns_ = now_ns;
+  pass_time(now_ns);
   if (frame.remote || frame.error) return false;
   const moteus::Address to = moteus::address_of(frame.id);
-  if (to.prefix != 0 || (to.destination != id_ && to.destination != moteus::kBroadcast))
+  if (to.prefix != 0 || (to.destination != id() && to.destination != moteus::kBroadcast))
     return false;
-  moteus::FrameWriter answer(moteus::can_id({id_, to.source, false, 0}));
+  moteus::FrameWriter answer(moteus::can_id({id(), to.source, false, 0}));
   moteus::FrameReader reader(frame);
   moteus::Subframe subframe;
   Request request;
+  request.answered = to.reply_wanted;
   while (reader.next(&subframe)) work(subframe, joint, &request, &answer);
-  if (request.wanted) change_mode(request.mode, joint);
+  for (std::size_t i = 0; i < request.refused_count; ++i)
+    answer.write_error(request.refused[i].reg, request.refused[i].error);
   *reply = answer.frame();
   reply->fd = frame.fd || reply->length > 8;
   reply->bitrate_switch = frame.bitrate_switch;
+  if (request.wanted) change_mode(request.mode, joint);
+  std::string_view line;
+  while (text_.line(&line)) execute(line, joint);
   return to.reply_wanted && !has(scenario_event_t::FAULT_SILENT);
 }
 
 void MoteusNode::work(const moteus::Subframe& subframe, const JointReading& joint, Request* request,
                       moteus::FrameWriter* answer) noexcept {
-  if (subframe.kind == moteus::Subframe::Kind::kRead) answer_read(subframe, joint, answer);
-  if (subframe.kind != moteus::Subframe::Kind::kWrite) return;
-  if (has(scenario_event_t::FAULT_DROP_COMMANDS)) return;
-  for (unsigned i = 0; i < subframe.count; ++i) {
-    write(static_cast<std::uint16_t>(subframe.first + i), subframe.value(i), joint, request,
-          answer);
+  using Kind = moteus::Subframe::Kind;
+  const bool deaf = has(scenario_event_t::FAULT_DROP_COMMANDS);
+  if (subframe.kind == Kind::kRead) answer_read(subframe, joint, answer);
+  if (subframe.kind == Kind::kWrite && !deaf) {
+    for (unsigned i = 0; i < subframe.count; ++i)
+      write(static_cast<std::uint16_t>(subframe.first + i), subframe.value(i), joint, request);
   }
+  const bool text = subframe.kind == Kind::kTextToDrive || subframe.kind == Kind::kTextPoll;
+  if (!text || subframe.first != moteus::kTextChannel) return;
+  const std::size_t most = subframe.kind == Kind::kTextPoll ? subframe.count : moteus::kMostText;
+  if (request->answered)
+    answer->text_from_drive(text_.hear(std::min(most, answer->room_for_text())));
+  if (subframe.kind == Kind::kTextToDrive && !deaf) text_.take(subframe.text());
 }
 
-void MoteusNode::write(std::uint16_t reg, double value, const JointReading& joint, Request* request,
-                       moteus::FrameWriter* answer) noexcept {
+void MoteusNode::write(std::uint16_t reg, double value, const JointReading& joint,
+                       Request* request) noexcept {
   if (MoteusCommand::has(reg)) {
     written_.set(reg, value);
     return;
   }
   double present = 0.0;
-  const double here = sense(joint).turns;
   switch (static_cast<Register>(reg)) {
     case Register::kMode:
+      if (!(value >= 0.0 && value <= moteus::kLastMode)) {
+        request->refuse(reg, moteus::kUnknownRegister);
+        break;
+      }
       written_.reset();
-      request->wanted = value >= 0.0 && value <= moteus::kLastMode;
-      if (request->wanted) request->mode = static_cast<Mode>(value);
+      request->wanted = true;
+      request->mode = static_cast<Mode>(value);
       break;
     case Register::kSetOutputNearest:
-      if (std::isfinite(value)) zero_turns_ += std::round(value - here);
+      if (std::isfinite(value)) zero_turns_ += std::round(value - sense(joint).turns);
       break;
     case Register::kSetOutputExact:
-      if (std::isfinite(value)) zero_turns_ += value - here;
+      if (std::isfinite(value)) set_output(value, joint);
       break;
     default:
-      answer->write_error(
-          reg, read(reg, joint, &present) ? moteus::kNotWritable : moteus::kUnknownRegister);
+      request->refuse(reg,
+                      read(reg, joint, &present) ? moteus::kNotWritable : moteus::kUnknownRegister);
   }
+}
+
+void MoteusNode::set_output(double turns, const JointReading& joint) noexcept {
+  zero_turns_ += turns - sense(joint).turns;
 }
 
 void MoteusNode::answer_read(const moteus::Subframe& subframe, const JointReading& joint,
@@ -136,8 +158,9 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
       return is(drive_.sign * now.tau_ff);
     case Register::kCurrentD:
     case Register::kTorqueI:
-    case Register::kTrajectoryComplete:
       return is(0.0);
+    case Register::kTrajectoryComplete:
+      return is(mode_ == Mode::kPosition && setpoint_.complete() ? 1.0 : 0.0);
     case Register::kHomeState:
       return is(kHomedOutput);
     case Register::kMotorTemperature:
@@ -156,7 +179,7 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
     case Register::kRegisterMap:
       return is(moteus::kRegisterMapVersion);
     case Register::kId:
-      return is(id_);
+      return is(id());
     default:
       return false;
   }
@@ -165,19 +188,48 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
 // --- modes ---------------------------------------------------------------------------------------
 
 void MoteusNode::change_mode(Mode wanted, const JointReading& joint) noexcept {
-  const bool latched = mode_ == Mode::kFault || mode_ == Mode::kTimeout;
   if (wanted == Mode::kStopped) {
     if (!has(scenario_event_t::FAULT_DRIVE_ERROR)) leave(Mode::kStopped, 0);
-  } else if (wanted == Mode::kPosition && !latched) {
-    if (mode_ == Mode::kStopped) {
-      mode_ = Mode::kEnabling;
-      enabling_ns_ = now_ns_;
-    }
-    command_ = written_;
-    command_ns_ = now_ns_;
-    const double position = command_.get(Register::kCommandPosition);
-    start_turns_ = std::isnan(position) ? sense(joint).turns : position;
+    return;
   }
+  if (mode_ == Mode::kFault || mode_ == Mode::kTimeout) return;
+  if (wanted != Mode::kPosition && wanted != Mode::kZeroVelocity && wanted != Mode::kBrake)
+    return leave(Mode::kFault, kNotConfigured);
+  if (std::isfinite(written_.get(Register::kCommandStopPosition)))
+    return leave(Mode::kFault, kStopPosition);
+  command_ = written_;
+  command_ns_ = now_ns_;
+  next_mode_ = wanted;
+  if (mode_ == Mode::kStopped) {
+    mode_ = Mode::kEnabling;
+    enabling_ns_ = now_ns_;
+  } else if (mode_ == Mode::kPosition && wanted == Mode::kPosition) {
+    aim();
+  } else if (mode_ >= Mode::kPosition) {
+    enter(wanted, joint);
+  }
+}
+
+void MoteusNode::enter(Mode mode, const JointReading& joint) noexcept {
+  mode_ = mode;
+  if (mode != Mode::kPosition) return;
+  const double here = sense(joint).turns;
+  if (here < settings_[Setting::kPositionMin] || here > settings_[Setting::kPositionMax])
+    return leave(Mode::kFault, kOutsideLimits);
+  setpoint_.start(here, 0.0);
+  aim();
+}
+
+/// Limits that a command leaves out are the configured ones.
+void MoteusNode::aim() noexcept {
+  const auto limit = [this](Register reg, Setting setting) {
+    const double commanded = command_.get(reg);
+    return std::isnan(commanded) ? settings_[setting] : commanded;
+  };
+  setpoint_.aim({command_.get(Register::kCommandPosition), command_.get(Register::kCommandVelocity),
+                 limit(Register::kCommandVelocityLimit, Setting::kVelocityLimit),
+                 limit(Register::kCommandAccelerationLimit, Setting::kAccelerationLimit)});
+  setpoint_.keep_within(settings_[Setting::kPositionMin], settings_[Setting::kPositionMax]);
 }
 
 void MoteusNode::leave(Mode mode, int fault) noexcept {
@@ -186,51 +238,63 @@ void MoteusNode::leave(Mode mode, int fault) noexcept {
   command_.reset();
 }
 
-double MoteusNode::watchdog_s() const noexcept {
-  const double asked = command_.get(Register::kCommandWatchdog);
-  return asked == 0.0 ? kConfiguredWatchdog_s : asked;
+bool MoteusNode::is_watched() const noexcept {
+  return (mode_ >= Mode::kEnabling && mode_ <= Mode::kPosition) || mode_ == Mode::kZeroVelocity;
 }
 
-void MoteusNode::update(const JointReading&, std::int64_t now_ns) noexcept {
+double MoteusNode::watchdog_s() const noexcept {
+  const double asked = command_.get(Register::kCommandWatchdog);
+  return asked == 0.0 ? settings_[Setting::kDefaultTimeout] : asked;
+}
+
+void MoteusNode::pass_time(std::int64_t now_ns) noexcept {
+  const double passed_s = static_cast<double>(now_ns - now_ns_) * 1e-9;
   now_ns_ = now_ns;
-  if (mode_ < Mode::kEnabling || mode_ > Mode::kPosition) return;
+  if (mode_ != Mode::kPosition) return;
+  setpoint_.advance(passed_s);
+  setpoint_.keep_within(settings_[Setting::kPositionMin], settings_[Setting::kPositionMax]);
+}
+
+void MoteusNode::update(const JointReading& joint, std::int64_t now_ns) noexcept {
+  pass_time(now_ns);
   // NaN never expires.
-  if (static_cast<double>(now_ns - command_ns_) * 1e-9 > watchdog_s()) {
-    leave(Mode::kTimeout, 0);
-  } else if (mode_ != Mode::kPosition) {
-    const std::int64_t passed = (now_ns - enabling_ns_) / kEnablingMode_ns;
-    mode_ = passed >= 3 ? Mode::kPosition : static_cast<Mode>(2 + passed);
+  if (is_watched() && static_cast<double>(now_ns - command_ns_) * 1e-9 > watchdog_s())
+    return leave(Mode::kTimeout, 0);
+  if (mode_ >= Mode::kEnabling && mode_ < Mode::kPosition) {
+    const std::int64_t steps = (now_ns - enabling_ns_) / kEnablingMode_ns;
+    mode_ = static_cast<Mode>(2 + std::min<std::int64_t>(steps, 2));
+    if (steps >= 3) enter(next_mode_, joint);
   }
 }
 
-double MoteusNode::wanted_turns() const noexcept {
-  const double since_s = static_cast<double>(now_ns_ - command_ns_) * 1e-9;
-  return start_turns_ + since_s * command_.get(Register::kCommandVelocity);
-}
+double MoteusNode::kp() const noexcept { return settings_[Setting::kKp] / kTurn_rad; }
+double MoteusNode::kd() const noexcept { return settings_[Setting::kKd] / kTurn_rad; }
 
 DriveLaw MoteusNode::law() const noexcept {
   DriveLaw law;
-  if (mode_ == Mode::kTimeout && drive_.watchdog_reaction == NodeWatchdogReaction::kDamp) {
-    law.kd = drive_.range.kd_Nms_per_rad;
-    law.limit = std::min(drive_.peak_torque_Nm, drive_.timeout_torque_Nm);
+  if (mode_ == Mode::kBrake) law.passive_damping = drive_.short_circuit_damping_Nms;
+  const bool braked = settings_[Setting::kTimeoutMode] != static_cast<double>(Mode::kStopped);
+  if (mode_ == Mode::kZeroVelocity || (mode_ == Mode::kTimeout && braked)) {
+    const bool commanded = mode_ == Mode::kZeroVelocity;
+    law.kd = kd() * (commanded ? command_.get(Register::kCommandKdScale) : 1.0);
+    law.limit = std::min(drive_.peak_torque_Nm, settings_[Setting::kTimeoutTorque]);
   }
   if (mode_ != Mode::kPosition) return law;
   const double most = command_.get(Register::kCommandMaxTorque);
-  const double kp_scale = command_.get(Register::kCommandKpScale);
-  const double kd_scale = std::min(kp_scale, command_.get(Register::kCommandKdScale));
-  const double speed = kTurn_rad * command_.get(Register::kCommandVelocity);
-  const double kp = kp_scale * drive_.range.kp_Nm_per_rad;
-  const double kd = kd_scale * drive_.range.kd_Nms_per_rad;
+  const double kp = this->kp() * command_.get(Register::kCommandKpScale);
+  const double kd = this->kd() * command_.get(Register::kCommandKdScale);
+  const double speed = kTurn_rad * setpoint_.velocity();
   law.limit = most >= 0.0 ? std::min(drive_.peak_torque_Nm, most) : drive_.peak_torque_Nm;
   law.tau_ff = drive_.sign * command_.get(Register::kCommandTorque);
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
     // The loop runs on the frozen reading, which no longer depends on the joint.
-    law.tau_ff += drive_.sign * (kp * kTurn_rad * (wanted_turns() - frozen_turns_) + kd * speed);
+    law.tau_ff +=
+        drive_.sign * (kp * kTurn_rad * (setpoint_.position() - frozen_turns_) + kd * speed);
     return law;
   }
   law.kp = kp;
   law.kd = kd;
-  law.q_des = drive_.sign * (kTurn_rad * (wanted_turns() - zero_turns_) - drive_.offset_rad);
+  law.q_des = drive_.sign * (kTurn_rad * (setpoint_.position() - zero_turns_) - drive_.offset_rad);
   law.v_des = drive_.sign * speed;
   return law;
 }

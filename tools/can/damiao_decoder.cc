@@ -90,7 +90,32 @@ std::optional<Reading> DamiaoDecoder::read(const CanFrame& frame) {
   mit::RegisterRequest request;
   if (mit::decode_register_request(frame, &request) && request.id == drive_.command_id)
     return read_request(request);
+  for (const mit::ControlMode mode :
+       {mit::ControlMode::kPositionVelocity, mit::ControlMode::kVelocity,
+        mit::ControlMode::kForcePosition}) {
+    if (has_id(frame, drive_.command_id + mit::id_offset(mode))) return read_servo(frame, mode);
+  }
   return std::nullopt;
+}
+
+Reading DamiaoDecoder::read_servo(const CanFrame& frame, mit::ControlMode mode) const {
+  mit::Special special{};
+  if (mit::decode_special(frame, &special)) return read_command(frame);
+  mit::ServoCommand command;
+  if (!mit::decode_servo_command(frame, mode, &command))
+    return {name_, Direction::kCommand, "unreadable", {{"", bytes(frame), ""}}};
+  const Value velocity{"velocity", number(command.velocity_rad_per_s), "rad/s"};
+  if (mode == mit::ControlMode::kVelocity)
+    return {name_, Direction::kCommand, "velocity command", {velocity}};
+  Reading out{name_,
+              Direction::kCommand,
+              "position-velocity command",
+              {{"position", number(command.position_rad), "rad"}, velocity}};
+  if (mode == mit::ControlMode::kForcePosition) {
+    out.what = "force-position command";
+    out.values.push_back({"torque share", number(command.torque_share), ""});
+  }
+  return out;
 }
 
 Reading DamiaoDecoder::read_command(const CanFrame& frame) const {

@@ -15,6 +15,7 @@ class DamiaoDecoder final : public FrameDecoder {
 
  private:
   Reading read_command(const CanFrame& frame) const;
+  Reading read_servo(const CanFrame& frame, mit::ControlMode mode) const;
   Reading read_request(const mit::RegisterRequest& request);
   Reading read_reply(const CanFrame& frame);
   std::optional<Reading> read_register(const CanFrame& frame);

@@ -115,12 +115,29 @@ std::string error_word(std::uint8_t error) {
   return "error " + std::to_string(error);
 }
 
+/// Text of the diagnostic channel as it can be printed.
+std::string printable(std::string_view text) {
+  std::string out = "\"";
+  for (const char letter : text) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (letter == '\r') continue;
+    if (letter == '\n')
+      out += "\\n";
+    else if (code >= 0x20 && code < 0x7F)
+      out += letter;
+    else
+      out += "\\x" + hex(code, 2);
+  }
+  return out + "\"";
+}
+
 /// What a frame's subframes are, all in one.
 struct Rows {
   std::vector<Value> values;
   std::string asked;
   bool writes = false;
   bool errors = false;
+  bool text = false;
   bool malformed = false;
 };
 
@@ -145,6 +162,14 @@ Rows rows_of(const CanFrame& frame) {
         rows.errors = true;
         rows.values.push_back(
             {moteus_register(subframe.first).name, error_word(subframe.error), ""});
+        break;
+      case Subframe::Kind::kTextToDrive:
+      case Subframe::Kind::kTextFromDrive:
+        rows.text = true;
+        rows.values.push_back({"", printable(subframe.text()), ""});
+        break;
+      case Subframe::Kind::kTextPoll:
+        rows.text = true;
         break;
     }
   }
@@ -171,11 +196,16 @@ std::optional<Reading> MoteusDecoder::read(const CanFrame& frame) {
   if (!reply && address.destination != id_) return std::nullopt;
   const Direction direction = reply ? Direction::kReply : Direction::kCommand;
   Rows rows = rows_of(frame);
-  // Streams of the diagnostic channel, for one: no registers.
+  // The diagnostic channel's flow control, for one, which only some of the drives know.
   if (rows.malformed || frame.remote)
     return Reading{name_, direction, "no registers", {{"", bytes(frame), ""}}};
   if (!rows.asked.empty()) rows.values.push_back({"asks for", rows.asked, ""});
-  const char* what = rows.errors ? "refused" : reply ? "registers" : rows.writes ? "write" : "read";
+  const char* text = rows.values.empty() ? "text poll" : "text";
+  const char* what = rows.text     ? text
+                     : rows.errors ? "refused"
+                     : reply       ? "registers"
+                     : rows.writes ? "write"
+                                   : "read";
   return Reading{name_, direction, what, std::move(rows.values)};
 }
 

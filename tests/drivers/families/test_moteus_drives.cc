@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "drivers/drive/joint_link.h"
@@ -61,6 +62,8 @@ struct FakeMoteus {
     reply->fd = reply->bitrate_switch = true;
     if (frame.data[0] == 0x19) {
       answer_register(frame, reply);
+    } else if (frame.data[0] == 0x40 || frame.data[0] == 0x42) {
+      if (speaks) answer_text(frame, reply);
     } else {
       write_state(reply);
       obey(frame);
@@ -75,6 +78,26 @@ struct FakeMoteus {
             : std::array<std::uint8_t, 7>{0x29, 0x0C, home_state, 0, 0, 0, 0x50};
     std::copy(bytes.begin(), bytes.end(), reply->data.begin());
     reply->length = 7;
+  }
+  /// Text said before goes out; a question is answered from the next frame but `delay` on.
+  void answer_text(const CanFrame& frame, CanFrame* reply) {
+    const bool ready = waited++ >= delay;
+    const std::size_t most =
+        frame.data[0] == 0x42 ? std::min<std::size_t>(frame.data[2], piece) : 48;
+    const std::string said = ready ? text.substr(0, most) : "";
+    text.erase(0, said.size());
+    reply->data = {0x41, 0x01, static_cast<std::uint8_t>(said.size())};
+    std::copy(said.begin(), said.end(), reply->data.begin() + 3);
+    reply->length = static_cast<std::uint8_t>(fd_length(3 + static_cast<int>(said.size())));
+    if (frame.data[0] == 0x42) return;
+    const std::string line(frame.data.begin() + 3, frame.data.begin() + 3 + frame.data[2]);
+    lines.push_back(line);
+    waited = 0;
+    if (line == "tel stop\n") text += "OK\r\n";
+    if (line.starts_with("conf get ")) {
+      const auto found = settings.find(line.substr(9, line.size() - 10));
+      text += found == settings.end() ? "ERR error reading\r\n" : found->second + "\r\n";
+    }
   }
   void write_state(CanFrame* reply) const {
     reply->length = 32;
@@ -109,6 +132,16 @@ struct FakeMoteus {
   std::uint8_t register_map = 5, home_state = 2;
   bool silent = false;
   bool obedient = true;
+  bool speaks = true;  // has a diagnostic channel
+  std::map<std::string, std::string> settings = {{"servo.pid_position.kp", "200.000000"},
+                                                 {"servo.pid_position.ki", "0.000000"},
+                                                 {"servo.pid_position.kd", "20.000000"},
+                                                 {"servopos.position_min", "nan"},
+                                                 {"servopos.position_max", "nan"}};
+  std::string text;  // not heard yet
+  std::vector<std::string> lines;
+  std::size_t piece = 64;  // of text in an answer, at most
+  int delay = 0, waited = 0;
 };
 
 /// Joint i has servo id first_id + i; the second counts the other way round, with its zero
@@ -161,22 +194,115 @@ class MoteusArm : public testing::DrivenArm {
   std::vector<FakeMoteus> motors;
 };
 
-TEST(MoteusStartUp, StopThenTwoQuestionsThenPolling) {
+TEST(MoteusStartUp, StopThenQuestionsThenPolling) {
   MoteusArm arm;
-  for (int i = 0; i < 4; ++i) arm.half_cycle();
+  for (int i = 0; i < 16; ++i) arm.half_cycle();
   EXPECT_EQ(arm.state->drive_state, int{joint_state_t::DRIVE_OFF});
   const std::vector<CanFrame>& f = arm.motors[1].frames;
-  ASSERT_EQ(f.size(), 4U);
+  ASSERT_EQ(f.size(), 16U);
   EXPECT_TRUE(is_stop(f[0]));
   EXPECT_EQ(f[1].length, 3);
   EXPECT_EQ(f[1].data[1], 0x82);  // 0x102, register map
   EXPECT_EQ(f[2].length, 2);
   EXPECT_EQ(f[2].data[1], 0x0C);  // home state
-  EXPECT_TRUE(is_request(f[3]));
+  const std::array<std::uint8_t, 12> stop = {0x40, 0x01, 0x09, 't', 'e', 'l',
+                                             ' ',  's',  't',  'o', 'p', '\n'};
+  EXPECT_EQ(f[3].length, 12);
+  EXPECT_TRUE(std::equal(stop.begin(), stop.end(), f[3].data.begin()));
+  EXPECT_EQ(f[4].length, 3);
+  EXPECT_EQ(f[4].data[0], 0x42);
+  EXPECT_EQ(f[4].data[1], 0x01);
+  EXPECT_EQ(f[4].data[2], 29);
+  EXPECT_EQ(f[5].length, 48);
+  EXPECT_EQ(f[5].data[2], 31);
+  EXPECT_EQ(f[5].data[3 + 31], 0x50);
+  EXPECT_TRUE(is_request(f[15]));
   for (const CanFrame& frame : f) {
     EXPECT_EQ(frame.id, 0x8002U);
     EXPECT_TRUE(frame.fd && frame.bitrate_switch && frame.extended);
   }
+  EXPECT_EQ(arm.motors[1].lines,
+            (std::vector<std::string>{
+                "tel stop\n", "conf get servo.pid_position.kp\n",
+                "conf get servo.pid_position.ki\n", "conf get servo.pid_position.kd\n",
+                "conf get servopos.position_min\n", "conf get servopos.position_max\n"}));
+}
+
+std::string problem_with(const std::string& name, const std::string& value) {
+  MoteusArm arm;
+  arm.motors[1].settings[name] = value;
+  for (int i = 0; i < 40; ++i) arm.half_cycle();
+  if (arm.state->drive_state == joint_state_t::DRIVE_OFF) return "";
+  EXPECT_EQ(arm.state->fault, int{joint_state_t::FAULT_CONFIGURATION});
+  return arm.driver->configuration_problem();
+}
+
+TEST(MoteusSettings, OtherGainsThanRobotYamlsAreRefused) {
+  EXPECT_EQ(problem_with("servo.pid_position.kp", "200.010000"), "");  // 0.1 thousandths are near
+  EXPECT_NE(problem_with("servo.pid_position.kp", "4.000000")
+                .find("servo.pid_position.kp is 4, expected 200"),
+            std::string::npos);
+  EXPECT_NE(problem_with("servo.pid_position.kd", "20.010000")
+                .find("servo.pid_position.kd is 20.01, expected 20"),
+            std::string::npos);
+  EXPECT_NE(problem_with("servo.pid_position.ki", "0.100000").find("ki is 0.1, expected 0"),
+            std::string::npos);
+  EXPECT_NE(problem_with("servo.pid_position.kp", "nan").find("kp is nan"), std::string::npos);
+}
+
+// Joint 2 counts the other way round: -2 to 2 rad are (0.3 -+ 2) rad of the drive, -0.270563 to
+// 0.366056 turns.
+TEST(MoteusSettings, TheDrivesRangeHoldsTheJoints) {
+  EXPECT_EQ(problem_with("servopos.position_min", "-0.270564"), "");
+  EXPECT_NE(problem_with("servopos.position_min", "-0.270000")
+                .find("servopos.position_min is -0.27, expected -0.270563 or beyond"),
+            std::string::npos);
+  EXPECT_EQ(problem_with("servopos.position_max", "0.366057"), "");
+  EXPECT_NE(problem_with("servopos.position_max", "0.010000").find("position_max is 0.01"),
+            std::string::npos);
+}
+
+TEST(MoteusSettings, AJointWithoutEndsNeedsADriveWithout) {
+  Robot robot = moteus_robot();
+  robot.joints[1].position_min = -HUGE_VAL;
+  robot.joints[1].position_max = HUGE_VAL;
+  for (const char* end : {"nan", "5000.000000"}) {
+    MoteusArm arm(robot);
+    arm.motors[1].settings["servopos.position_max"] = end;
+    for (int i = 0; i < 40; ++i) arm.half_cycle();
+    EXPECT_EQ(arm.state->drive_state == joint_state_t::DRIVE_OFF, std::string(end) == "nan");
+  }
+}
+
+TEST(MoteusSettings, TextComesInPiecesLateAndBehindOtherText) {
+  MoteusArm arm;
+  arm.motors[0].text = std::string("emit servo_stats\r\n\x07\x00\n\x00binary", 27);
+  arm.motors[0].piece = 7;
+  arm.motors[1].delay = 9;
+  for (int i = 0; i < 120; ++i) arm.half_cycle();
+  EXPECT_EQ(arm.state->drive_state, int{joint_state_t::DRIVE_OFF})
+      << arm.driver->configuration_problem();
+}
+
+TEST(MoteusSettings, WhatCannotBeReadIsAWarning) {
+  MoteusArm arm;
+  arm.motors[0].settings.erase("servopos.position_max");
+  arm.motors[1].speaks = false;
+  for (int i = 0; i < 40; ++i) arm.half_cycle();
+  EXPECT_EQ(arm.state->drive_state, int{joint_state_t::DRIVE_OFF});
+  std::string warnings;
+  for (const std::string& warning : arm.driver->configuration_warnings()) warnings += warning;
+  EXPECT_NE(warnings.find("servopos.position_max cannot be read"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("no diagnostic channel"), std::string::npos) << warnings;
+}
+
+TEST(MoteusSettings, ADriveThatNeverAnswersALineIsRefused) {
+  MoteusArm arm;
+  arm.motors[1].delay = 1000;
+  for (int i = 0; i < 60; ++i) arm.half_cycle();
+  EXPECT_EQ(arm.state->fault, int{joint_state_t::FAULT_CONFIGURATION});
+  EXPECT_NE(arm.driver->configuration_problem().find("tel stop not answered"), std::string::npos)
+      << arm.driver->configuration_problem();
 }
 
 TEST(MoteusStartUp, UnknownRegisterMapIsRefused) {
@@ -200,7 +326,7 @@ TEST(MoteusStartUp, ADriveThatDoesNotKnowWhereItIsIsRefused) {
       robot.joints[0].drive.gear_ratio = gear;
       MoteusArm arm(robot);
       arm.motors[0].home_state = static_cast<std::uint8_t>(home);
-      for (int i = 0; i < 10; ++i) arm.half_cycle();
+      for (int i = 0; i < 20; ++i) arm.half_cycle();
       const bool known = home == 2 || (home == 1 && gear == 1.0);
       EXPECT_EQ(arm.state->drive_state == joint_state_t::DRIVE_OFF, known) << gear << " " << home;
     }
@@ -300,10 +426,10 @@ TEST(MoteusHold, DampsFirstAndThenHoldsWhereTheJointIs) {
   arm.cycle_with(joint_command_t::REQUEST_HOLD);
   arm.half_cycle();
   ASSERT_EQ(arm.state->drive_state, int{joint_state_t::DRIVE_HOLD});
-  // 5 of 20 N m per turn/s; no drive damps with a greater scale than it springs.
+  // 5 of 20 N m per turn/s, and no spring.
   EXPECT_NEAR(arm.motors[1].last().kd_scale, 0.25, kFloat);
-  EXPECT_NEAR(arm.motors[1].last().kp_scale, 0.25, kFloat);
-  EXPECT_NEAR(arm.motors[1].last().position, 0.0005, 1e-9);
+  EXPECT_EQ(arm.motors[1].last().kp_scale, 0.0F);
+  EXPECT_TRUE(std::isnan(arm.motors[1].last().position));
   for (int i = 0; i < 110; ++i) arm.cycle_with(joint_command_t::REQUEST_HOLD);
   EXPECT_NEAR(arm.motors[1].last().kd_scale, 0.25, kFloat);
   EXPECT_NEAR(arm.motors[1].last().kp_scale, 0.5, kFloat);  // 100 of 200

@@ -349,6 +349,44 @@ TEST(MitRegisters, RequestsOfOtherShapes) {
   EXPECT_EQ(request.raw_value, 0U);
 }
 
+// Layouts of the maker's manual. 0.5: 0000003F, -2: 000000C0, 3: 00004040.
+TEST(MitServo, CommandsOfTheOtherModes) {
+  ServoCommand command;
+  ASSERT_TRUE(decode_servo_command(parse("103#0000003F00004040"), ControlMode::kPositionVelocity,
+                                   &command));
+  EXPECT_EQ(command.position_rad, 0.5);
+  EXPECT_EQ(command.velocity_rad_per_s, 3.0);
+  EXPECT_EQ(command.torque_share, 1.0);
+  ASSERT_TRUE(decode_servo_command(parse("203#000000C0"), ControlMode::kVelocity, &command));
+  EXPECT_EQ(command.velocity_rad_per_s, -2.0);
+  // 250 hundredths of rad/s, 2500 of 10000
+  ASSERT_TRUE(
+      decode_servo_command(parse("303#0000003FFA00C409"), ControlMode::kForcePosition, &command));
+  EXPECT_NEAR(command.velocity_rad_per_s, 2.5, 1e-12);
+  EXPECT_NEAR(command.torque_share, 0.25, 1e-12);
+  ASSERT_TRUE(
+      decode_servo_command(parse("303#0000003FFA00FFFF"), ControlMode::kForcePosition, &command));
+  EXPECT_EQ(command.torque_share, 1.0);
+  EXPECT_EQ(id_offset(ControlMode::kMit), 0U);
+  EXPECT_EQ(id_offset(ControlMode::kForcePosition), 0x300U);
+}
+
+TEST(MitServo, WhatIsNoCommand) {
+  ServoCommand command;
+  command.position_rad = 9.0;
+  const auto refused = [&command](const char* frame, ControlMode mode) {
+    return !decode_servo_command(parse(frame), mode, &command) && command.position_rad == 9.0;
+  };
+  EXPECT_TRUE(refused("003#0000003F00004040", ControlMode::kMit));
+  EXPECT_TRUE(refused("103#0000003F000040", ControlMode::kPositionVelocity));
+  EXPECT_TRUE(refused("103#0000003F000000C0", ControlMode::kPositionVelocity));  // negative limit
+  EXPECT_TRUE(refused("103#0000C07F00004040", ControlMode::kPositionVelocity));  // NaN
+  EXPECT_TRUE(refused("103#0000003F0000807F", ControlMode::kPositionVelocity));  // infinite
+  EXPECT_TRUE(refused("203#000000", ControlMode::kVelocity));
+  EXPECT_TRUE(refused("203#0000C0FF", ControlMode::kVelocity));
+  EXPECT_TRUE(refused("303#0000003FFA00", ControlMode::kForcePosition));
+}
+
 TEST(MitIds, NibbleHoldsTheLowFourBitsOfTheId) {
   Reply reply;
   reply.id_nibble = 0x1F;

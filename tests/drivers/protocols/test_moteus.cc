@@ -227,6 +227,45 @@ TEST(MoteusMessages, OneRegister) {
 
 // --- numbers ---
 
+// --- the diagnostic channel ---
+
+TEST(MoteusText, LinesAndPolls) {
+  EXPECT_EQ(text(encode_line("tel stop", command_id(1))), "8001#40010974656C2073746F700A");
+  EXPECT_EQ(text(encode_text_poll(command_id(1))), "8001#42011D");
+  EXPECT_EQ(encode_line(std::string(100, 'x'), command_id(1)).length, 64);
+}
+
+TEST(MoteusText, AnswersMayBeEmpty) {
+  std::string_view said = "nothing";
+  EXPECT_TRUE(decode_text(parse("100#4101044F4B0D0A"), &said));
+  EXPECT_EQ(said, "OK\r\n");
+  EXPECT_TRUE(decode_text(parse("100#410100"), &said));
+  EXPECT_EQ(said, "");
+  for (const char* none : {"100#", "100#210000", "100#4102024F4B", "100#4101054F4B", "100#41"})
+    EXPECT_FALSE(decode_text(parse(none), &said)) << none;
+}
+
+TEST(MoteusText, BesideRegistersInOneFrame) {
+  std::string_view said;
+  const CanFrame frame = parse("100#21000A4101024F4B");
+  EXPECT_TRUE(decode_text(frame, &said));
+  EXPECT_EQ(said, "OK");
+  double mode = 0.0;
+  EXPECT_TRUE(decode_register(frame, Register::kMode, &mode));
+  EXPECT_EQ(mode, 10.0);
+}
+
+TEST(MoteusText, WhatDoesNotFitIsLeftOutWhole) {
+  FrameWriter frame(reply_id(1));
+  EXPECT_EQ(frame.room_for_text(), 61U);
+  EXPECT_TRUE(frame.text_from_drive(std::string(50, 'x')));
+  EXPECT_EQ(frame.room_for_text(), 8U);
+  EXPECT_FALSE(frame.text_from_drive(std::string(9, 'y')));
+  EXPECT_TRUE(frame.text_from_drive(std::string(8, 'y')));
+  EXPECT_EQ(frame.room_for_text(), 0U);
+  EXPECT_FALSE(frame.text_poll(1));
+}
+
 TEST(MoteusNumbers, IntegersTruncateSaturateAndKnowNan) {
   for (Type type : {Type::kInt8, Type::kInt16, Type::kInt32}) {
     const double most = std::ldexp(1.0, 8 * size_of(type) - 1) - 1.0;

@@ -60,6 +60,17 @@ TEST_F(Damiao, RegisterWrites) {
   EXPECT_EQ(said(decoder, "7FF#0300AA0100000000"), "elbow command store registers: ");
 }
 
+TEST_F(Damiao, TheOtherControlModes) {
+  EXPECT_EQ(said(decoder, "103#0000003F00004040"),
+            "elbow command position-velocity command: position 0.5 rad, velocity 3 rad/s");
+  EXPECT_EQ(said(decoder, "203#000000C0"), "elbow command velocity command: velocity -2 rad/s");
+  EXPECT_EQ(said(decoder, "303#0000003FFA00C409"),
+            "elbow command force-position command: position 0.5 rad, velocity 2.5 rad/s, torque "
+            "share 0.25");
+  EXPECT_EQ(said(decoder, "303#FFFFFFFFFFFFFFFC"), "elbow command enable: ");
+  EXPECT_EQ(said(decoder, "203#0000"), "elbow command unreadable: 00 00");
+}
+
 TEST_F(Damiao, WhatNobodyKnowsIsForeign) {
   EXPECT_EQ(said(decoder, "7FF#0400331700000000"),
             "- foreign frame: 04 00 33 17 00 00 00 00");  // to motor 4
@@ -123,7 +134,13 @@ TEST_F(Moteus, Replies) {
 }
 
 TEST_F(Moteus, OtherTrafficIsShownRaw) {
-  EXPECT_EQ(said(decoder, "00008004##1 42013D"), "elbow command no registers: 42 01 3D");
+  EXPECT_EQ(said(decoder, "00008004##1 42013D"), "elbow command text poll: ");
+  EXPECT_EQ(said(decoder,
+                 "004##1400109"
+                 "74656C2073746F700A"),
+            "elbow command text: \"tel stop\\n\"");
+  EXPECT_EQ(said(decoder, "400##14101054F4B0D0A00"), "elbow reply text: \"OK\\n\\x00\"");
+  EXPECT_EQ(said(decoder, "00008004##144010001"), "elbow command no registers: 44 01 00 01");
   EXPECT_EQ(said(decoder, "500##1 210001"), "- foreign frame: 21 00 01");  // from servo 5
 }
 

@@ -1,0 +1,115 @@
+"""The way to a real arm as the README has it: one word changed, and --no-sim.
+
+The arm is the simulator in a network of its own, behind a cable from can0 to can0: nothing but CAN
+frames connects the two.
+"""
+
+import subprocess
+import time
+
+import pytest
+import yaml
+
+from stack import BIN, ROOT
+
+# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
+pytestmark = pytest.mark.flaky(reruns=2)
+DESKTOP2R = ROOT / "robots" / "desktop2r"
+CABLE = "ip link add can0 type vxcan peer name can0 netns {pid}"
+LOOPBACK = "ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo"
+
+
+def sh(command: str) -> None:
+    subprocess.run(command, shell=True, check=True, timeout=30)
+
+
+@pytest.fixture
+def folder(stack):
+    """my_arm and my_scenario.yaml, at a rate that any machine holds."""
+    robot = yaml.safe_load((DESKTOP2R / "robot.yaml").read_text(encoding="utf-8"))
+    robot["name"] = "my_arm"
+    robot["rate_hz"] = 100
+    robot["watchdog"]["timeout_s"] = 0.2
+    robot["buses"][0]["can"] = "virtual:my_arm"
+    arm = stack.directory / "my_arm"
+    arm.mkdir()
+    (arm / "robot.urdf").write_text((DESKTOP2R / "robot.urdf").read_text())
+    (arm / "robot.yaml").write_text(yaml.safe_dump(robot), encoding="utf-8")
+    scenario = {
+        "format": "limber-scenario/1",
+        "name": "my_scenario",
+        "robot": "my_arm",
+        "mode": "realtime",
+        "duration_s": 6.0,
+        "timeline": [{"at_s": 1.0, "mode": "hold"}, {"at_s": 2.0, "mode": "active"}],
+    }
+    (stack.directory / "my_scenario.yaml").write_text(yaml.safe_dump(scenario), encoding="utf-8")
+    return stack.directory
+
+
+@pytest.fixture
+def arm(folder):
+    """The simulator, which keeps to its own end of the cable."""
+    wait = "until ip link set can0 mtu 72 up 2>/dev/null; do sleep 0.1; done"
+    program = f"{BIN}/limber-sim --robot {folder}/my_arm --realtime --bus arm=socketcan:can0"
+    command = ["unshare", "-n", "sh", "-c", f"{LOOPBACK}; {wait}; exec {program}"]
+    with open(folder / "arm.log", "w", encoding="utf-8") as log:
+        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+        time.sleep(0.5)
+        sh(CABLE.format(pid=process.pid) + " && ip link set can0 mtu 72 up")
+        yield process
+        process.kill()
+        process.wait()
+        subprocess.run("ip link del can0", shell=True, check=False, capture_output=True)
+
+
+def limber(folder, *arguments: str) -> subprocess.CompletedProcess:
+    command = [str(ROOT / ".venv" / "bin" / "limber"), *arguments]
+    return subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=200, check=False
+    )
+
+
+def change_the_word(folder) -> None:
+    file = folder / "my_arm" / "robot.yaml"
+    text = file.read_text(encoding="utf-8")
+    assert text.count("virtual:my_arm") == 1
+    file.write_text(text.replace("virtual:my_arm", "socketcan:can0"), encoding="utf-8")
+
+
+def test_the_readmes_commands(folder, arm):
+    change_the_word(folder)
+    run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", "out")
+    said = run.stdout + run.stderr
+    assert "whatever is on socketcan:can0 will move" in said
+    assert "private network" not in said
+    assert arm.poll() is None
+    assert run.returncode == 0, said + (folder / "arm.log").read_text()
+    assert (folder / "out" / "run.lcmlog").exists()
+
+
+def test_without_a_multicast_route_the_cure_is_named(folder, arm):
+    change_the_word(folder)
+    sh("ip route del 224.0.0.0/4 dev lo")
+    try:
+        run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", "out")
+    finally:
+        sh("ip route add 224.0.0.0/4 dev lo")
+    assert run.returncode == 3
+    assert "ip route add 224.0.0.0/4 dev lo" in run.stdout + run.stderr
+    assert "private" not in run.stdout + run.stderr
+
+
+def test_a_simulator_does_not_speak_on_a_real_bus(folder, arm):
+    """Without --no-sim the word alone must not put a second arm on the bus."""
+    change_the_word(folder)
+    run = limber(folder, "run", "my_scenario.yaml", "--out", "out")
+    assert run.returncode != 0
+    assert "--no-sim" in run.stdout + run.stderr
+
+
+def test_a_private_network_is_refused(folder, arm):
+    change_the_word(folder)
+    run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--private", "--out", "out")
+    assert run.returncode == 2
+    assert "--private" in run.stderr
