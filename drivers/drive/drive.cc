@@ -106,7 +106,10 @@ void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   const bool startup = awaits_answer(state);
   if (!startup && link_.take_unsolicited(frame)) return;
   ++late_;
-  if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) return;
+  if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) {
+    if (!startup) count_invalid();
+    return;
+  }
   if (startup) {
     late_answer_ = true;
     return;

@@ -124,6 +124,21 @@ TEST(BusIntruders, ReplayedRepliesAreNoticedWithinTenCycles) {
   EXPECT_EQ(arm.state->fault_joint, 0);
 }
 
+TEST(BusIntruders, UnreadableFramesAfterTheRepliesCountToo) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  CanFrame frame = reply_now(&arm, 0);
+  frame.length = 3;
+  int cycles = 0;
+  for (; cycles < 50 && arm.state->drive_state == joint_state_t::DRIVE_ON; ++cycles) {
+    arm.intruder->send(frame);  // the cycle is over: it is found at the start of the next
+    arm.cycle_with(joint_command_t::REQUEST_KEEP);
+  }
+  EXPECT_LE(cycles, 11);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_REPLY_INVALID);
+  EXPECT_EQ(arm.state->fault_joint, 0);
+}
+
 TEST(BusIntruders, AFewDoubledRepliesAreBridged) {
   IntrudedArm arm(test_robot(3));
   ASSERT_TRUE(arm.switch_on());
