@@ -197,9 +197,9 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
 }
 
 std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) const {
-  if (detail == 0) return "";
-  if (fault == joint_state_t::FAULT_DRIVE_ERROR)
+  if (fault == joint_state_t::FAULT_DRIVE_ERROR && joint >= 0)
     return drives_.status_text(static_cast<std::size_t>(joint), detail);
+  if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
   const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
   switch (detail & 0xFFU) {

@@ -97,7 +97,7 @@ class ArmDriver {
   /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*; else 0.
   /// Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
-  /// The same in words; "" for 0. Allocates: for messages.
+  /// The same in words; "" if nothing is known beyond the fault. Allocates: for messages.
   std::string fault_text(int fault, int joint, std::uint16_t detail) const;
 
   /// Counters and states; the timing fields are left as they are.

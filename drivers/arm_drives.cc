@@ -6,6 +6,7 @@
 
 #include "drivers/driver_setup.h"
 #include "drivers/protocols/canopen.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
 namespace {
@@ -14,7 +15,8 @@ constexpr double kSettling_s = 0.1;
 
 std::string line_about(const Drive& motor, const std::string& words) {
   const JointConfig& joint = motor.link().joint();
-  return fmt::format("{} (id 0x{:X}): {}", joint.name, joint.drive.command_id, words);
+  return fmt::format("{} ({}): {}", joint.name,
+                     traits_of(joint.drive.protocol).address(joint.drive), words);
 }
 
 std::string out_of_range_line(const ArmJoint& joint) {

@@ -11,7 +11,14 @@ void TamperedBus::release() {
 }
 
 int TamperedBus::send(std::span<const CanFrame> frames) noexcept {
-  const int sent = refuses_ || cut_off() ? 0 : bus_->send(frames);
+  int sent = 0;
+  for (const CanFrame& frame : frames) {
+    if (refuses_ || cut_off()) break;
+    const bool replaced = replacement_ && has_id(frame, replacement_->id);
+    if (bus_->send(replaced ? *replacement_ : frame) != 1) break;
+    if (replaced) replacement_.reset();
+    ++sent;
+  }
   refused_ += static_cast<std::int64_t>(frames.size()) - sent;
   if (refuses_) statistics_.last_errno = ENOBUFS;
   update_statistics();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "drivers/can/can_bus.h"
@@ -19,6 +20,8 @@ class TamperedBus final : public CanBus {
   explicit TamperedBus(CanBus* bus) : bus_(bus) {}
 
   void set_change(Change change) { change_ = std::move(change); }
+  /// The next frame sent with this identifier is replaced.
+  void replace_sent(const CanFrame& frame) { replacement_ = frame; }
   /// The frame arrives with the next release().
   void hold(const CanFrame& frame) { held_.push_back(frame); }
   void release();
@@ -38,6 +41,7 @@ class TamperedBus final : public CanBus {
 
   CanBus* bus_;
   Change change_;
+  std::optional<CanFrame> replacement_;
   std::vector<CanFrame> held_;
   std::vector<CanFrame> arrived_;
   bool refuses_ = false;

@@ -12,6 +12,7 @@
 #include "drivers/can/lockstep_frame.h"
 #include "drivers/drive/motor_view.h"
 #include "drivers/families/drive_family.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
 namespace {
@@ -131,8 +132,8 @@ class Discovery {
   void list(std::size_t i, std::string* names) const {
     const JointConfig& joint = motors_[i];
     const BusConfig& bus = robot_.buses[static_cast<std::size_t>(joint.drive.bus)];
-    *names += fmt::format("{}{} (id 0x{:X} on {})", names->empty() ? "" : ", ", joint.name,
-                          joint.drive.command_id, bus.can);
+    *names += fmt::format("{}{} ({} on {})", names->empty() ? "" : ", ", joint.name,
+                          traits_of(joint.drive.protocol).address(joint.drive), bus.can);
   }
 
  private:

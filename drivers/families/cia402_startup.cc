@@ -285,6 +285,11 @@ std::string Cia402Startup::describe(const StartupFailure& failure) const {
       if (failure.reg == kCountsObjects.back().id.number())
         return fmt::format("counts {:.10g} a turn of the joint (608Fh, 6091h), expected {:.10g}",
                            failure.found, failure.expected);
+      if (failure.reg == cia402::kSupportedModes.id.number())
+        return "has no cyclic synchronous torque mode (6502h, bit 9 is 0)";
+      if (failure.reg == canopen::kDeviceType.id.number())
+        return fmt::format("is no CiA 402 drive: object 1000h has profile {:.0f}, expected {}",
+                           failure.found, kProfile);
       break;
   }
   return fmt::format("{} is {:.10g}, expected {:.10g}", object, failure.found, failure.expected);

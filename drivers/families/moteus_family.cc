@@ -51,6 +51,16 @@ DriveCondition condition_of(Mode mode) noexcept {
   }
 }
 
+/// Registers have hexadecimal numbers in the maker's reference.
+std::string describe_register(const StartupFailure& failure) {
+  if (failure.reg == 0) return "could not be stopped, or does not answer";
+  const bool map = failure.reg == static_cast<std::uint32_t>(Register::kRegisterMap);
+  const std::string name =
+      fmt::format("{} (register {:03X}h)", map ? "register map" : "home state", failure.reg);
+  if (failure.answer == Answer::kNone) return name + " not answered";
+  return fmt::format("{} is {:g}, expected {:g}", name, failure.found, failure.expected);
+}
+
 }  // namespace
 
 MoteusFamily::MoteusFamily(const JointConfig& joint)
@@ -138,7 +148,7 @@ std::string MoteusFamily::status_text(std::uint16_t status) const {
   const int fault = status >> 8;
   if (mode == static_cast<int>(moteus::Mode::kTimeout))
     return "mode 11: no command within the drive's time-out";
-  if (fault == 0) return fmt::format("mode {}", mode);
+  if (fault == 0) return fmt::format("mode {}: {}", mode, moteus::mode_text(mode));
   const std::string_view text = moteus::fault_text(fault);
   return fmt::format("mode {}, fault {}: {}", mode, fault,
                      text.empty() ? "see the maker's list" : text);
@@ -225,7 +235,7 @@ Answer MoteusFamily::check_line(const Question& question, std::string_view text,
 }
 
 std::string MoteusFamily::describe(const StartupFailure& failure) const {
-  if (failure.reg < kFirstQuestion) return DriveFamily::describe(failure);
+  if (failure.reg < kFirstQuestion) return describe_register(failure);
   std::string_view name = questions_[failure.reg - kFirstQuestion].line;
   if (name.starts_with(kGet)) name.remove_prefix(kGet.size());
   if (failure.answer == Answer::kMissing && failure.reg == kFirstQuestion)

@@ -87,10 +87,12 @@ void StateReporter::report(std::uint64_t packed) const {
     spdlog::info("drives: {}", name_in(kStateNames, state));
     return;
   }
-  const std::string where = joint < joints_.size() ? " (" + joints_[joint] + ")" : "";
   const auto detail = static_cast<std::uint16_t>(packed >> 32U);
-  const bool told = fault_text_ && detail != 0;
-  const std::string cause = told ? ": " + fault_text_(fault, static_cast<int>(joint), detail) : "";
+  const bool named = joint < joints_.size();
+  const int of_joint = named ? static_cast<int>(joint) : -1;
+  const std::string text = fault_text_ ? fault_text_(fault, of_joint, detail) : "";
+  const std::string where = named ? " (" + joints_[joint] + ")" : "";
+  const std::string cause = text.empty() ? "" : ": " + text;
   spdlog::warn("drives: {}, because of: {}{}{}", name_in(kStateNames, state),
                name_in(kFaultNames, fault), where, cause);
 }

@@ -69,6 +69,15 @@ constexpr std::int32_t greatest(Type type) noexcept {
 
 }  // namespace
 
+const char* mode_text(int mode) noexcept {
+  constexpr std::array kTexts = {"stopped",    "fault",       "enabling", "calibrating",
+                                 "calibrated", "PWM",         "voltage",  "voltage FOC",
+                                 "voltage DQ", "current",     "position", "time-out",
+                                 "zero speed", "stay within", "",         "brake"};
+  const bool known = mode >= 0 && mode < static_cast<int>(kTexts.size());
+  return known ? kTexts[static_cast<std::size_t>(mode)] : "";
+}
+
 const char* fault_text(int fault) noexcept {
   constexpr int kFirst = 32;
   constexpr std::array kTexts = {

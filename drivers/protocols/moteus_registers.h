@@ -58,6 +58,8 @@ enum class Mode : std::uint8_t {
   kBrake = 15,
 };
 inline constexpr int kLastMode = 15;
+/// "stopped" for a value of Register::kMode; empty for one that the maker does not list.
+const char* mode_text(int mode) noexcept;
 /// "over-voltage" for a value of Register::kFault; empty for one that the maker does not list.
 const char* fault_text(int fault) noexcept;
 

@@ -79,7 +79,7 @@ def test_what_the_drive_lacks_is_told(stack, drive):
         "the start-up dialogue",
     )
     log = stack.log("driver")
-    assert "joint (id 0x201): object 1400h:05 is missing" in log
+    assert "joint (node 1): object 1400h:05 is missing" in log
     missing = re.findall(r"object (\S+) is missing", log)
     assert missing == ["1400h:05", "6007h:00", "605Eh:00", "60C2h:01", "60C2h:02"]
 

@@ -59,12 +59,6 @@ struct Word {
   int number;
   const char* word;
 };
-constexpr std::array kModes = {
-    Word{0, "stopped"},     Word{1, "fault"},        Word{2, "enabling"},  Word{3, "calibrating"},
-    Word{4, "calibrated"},  Word{5, "PWM"},          Word{6, "voltage"},   Word{7, "voltage FOC"},
-    Word{8, "voltage DQ"},  Word{9, "current"},      Word{10, "position"}, Word{11, "time-out"},
-    Word{12, "zero speed"}, Word{13, "stay within"}, Word{15, "brake"},
-};
 constexpr std::array kHomeStates = {Word{0, "relative"}, Word{1, "rotor"}, Word{2, "output"}};
 
 std::string worded(std::span<const Word> words, double value) {
@@ -74,18 +68,18 @@ std::string worded(std::span<const Word> words, double value) {
   return number(value);
 }
 
-std::string fault_word(double value) {
+std::string word_or_number(const char* (*text)(int) noexcept, double value) {
   const bool finite = std::isfinite(value);  // NaN: the drive does not know
-  const std::string word = finite ? moteus::fault_text(static_cast<int>(value)) : "";
+  const std::string word = finite ? text(static_cast<int>(value)) : "";
   return word.empty() ? number(value) : word;
 }
 
 std::string value_text(std::uint16_t reg, double value) {
   switch (static_cast<Register>(reg)) {
     case Register::kMode:
-      return worded(kModes, value);
+      return word_or_number(moteus::mode_text, value);
     case Register::kFault:
-      return fault_word(value);
+      return word_or_number(moteus::fault_text, value);
     case Register::kHomeState:
       return worded(kHomeStates, value);
     default:

@@ -68,6 +68,10 @@ FrameSizes cia402_frames(const JointConfig& joint, bool fd) {
   return sizes;
 }
 
+std::string node_address(const DriveConfig& drive) {
+  return fmt::format("node {}", drive.command_id - kRpdo1);
+}
+
 }  // namespace
 
 const DriveProtocolTraits kCia402Traits = {
@@ -80,6 +84,7 @@ const DriveProtocolTraits kCia402Traits = {
     .keys = kCia402Keys,
     .read_motor = read_cia402_motor,
     .read_ids = read_cia402_ids,
+    .address = node_address,
     .frames = cia402_frames,
     .reserves_id = reserves_id,
 };

@@ -40,6 +40,10 @@ void read_damiao_mit_ids(const YamlMap& yaml, DriveConfig* drive) {
 
 FrameSizes damiao_mit_frames(const JointConfig& /*joint*/, bool /*fd*/) { return {8, {8}}; }
 
+std::string damiao_address(const DriveConfig& drive) {
+  return fmt::format("id 0x{:X}", drive.command_id);
+}
+
 }  // namespace
 
 const DriveProtocolTraits kDamiaoMitTraits = {
@@ -49,6 +53,7 @@ const DriveProtocolTraits kDamiaoMitTraits = {
     .keys = kDamiaoKeys,
     .read_motor = read_damiao_mit_motor,
     .read_ids = read_damiao_mit_ids,
+    .address = damiao_address,
     .frames = damiao_mit_frames,
 };
 

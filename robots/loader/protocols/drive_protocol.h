@@ -35,6 +35,8 @@ struct DriveProtocolTraits {
   void (*read_motor)(const YamlMap& yaml, DriveConfig* drive);
   /// Reads command_id and reply_id. Throws ConfigError.
   void (*read_ids)(const YamlMap& yaml, DriveConfig* drive);
+  /// The drive's number on its bus, as its maker's tools count: "id 0x1", "node 1".
+  std::string (*address)(const DriveConfig& drive);
   /// The frames between driver and drive in a cycle; of a second motor see second_motor.h. `fd`:
   /// the bus carries FD frames.
   FrameSizes (*frames)(const JointConfig& joint, bool fd);

@@ -1,5 +1,7 @@
 // moteus: id 1 to 126. On the bus the command is 0x8000 | id, from host 0 with an answer wanted,
 // and the answer id << 8.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,6 +43,10 @@ bool accepts(const DriveConfig& drive, std::uint32_t id) {
   return node == (drive.command_id & kNodeBits) || node == kBroadcast;
 }
 
+std::string servo_address(const DriveConfig& drive) {
+  return fmt::format("servo {}", drive.command_id & kNodeBits);
+}
+
 FrameSizes moteus_frames(const JointConfig& /*joint*/, bool /*fd*/) { return {48, {32}}; }
 
 }  // namespace
@@ -55,6 +61,7 @@ const DriveProtocolTraits kMoteusTraits = {
     .keys = kMoteusKeys,
     .read_motor = read_moteus_motor,
     .read_ids = read_moteus_ids,
+    .address = servo_address,
     .frames = moteus_frames,
     .accepts_id = accepts,
 };

@@ -28,7 +28,7 @@ TEST(Cia402Warnings, Bit7IsTold) {
   arm.cycle_with(kKeep);
   EXPECT_TRUE(warned(arm, 1));
   EXPECT_FALSE(warned(arm, 0));
-  EXPECT_EQ(warning_text(arm, 1), "joint2 (id 0x204): the drive warns (statusword, bit 7)");
+  EXPECT_EQ(warning_text(arm, 1), "joint2 (node 4): the drive warns (statusword, bit 7)");
   EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
 }
 
@@ -39,7 +39,7 @@ TEST(Cia402Warnings, AnEmergencyWithoutAFaultIsToldUntilItIsTakenBack) {
   arm.motor_ends[0]->send(testing::parse("083#1043080000000000"));
   arm.cycle_with(kKeep);
   EXPECT_TRUE(warned(arm, 0));
-  EXPECT_EQ(warning_text(arm, 0), "joint1 (id 0x203): emergency 4310h: drive too hot");
+  EXPECT_EQ(warning_text(arm, 0), "joint1 (node 3): emergency 4310h: drive too hot");
   EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
   arm.motor_ends[0]->send(testing::parse("083#0000000000000000"));
   arm.cycle_with(kKeep);

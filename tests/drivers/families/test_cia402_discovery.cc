@@ -65,7 +65,7 @@ TEST(Cia402Discovery, TwoNodesWithOneNumberAreNamed) {
   ServerBus chatty(1, true);
   EXPECT_EQ(find_twins(chatty.robot, chatty.buses), "");
   ServerBus twins(2);
-  EXPECT_NE(find_twins(twins.robot, twins.buses).find("joint1 (id 0x203"), std::string::npos);
+  EXPECT_NE(find_twins(twins.robot, twins.buses).find("joint1 (node 3"), std::string::npos);
 }
 
 TEST(Cia402Discovery, ServersAreNotTimed) {

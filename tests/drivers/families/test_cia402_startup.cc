@@ -204,7 +204,7 @@ TEST(Cia402StartUp, CountsOfTheMotorTimesTheGear) {
 
 // What the profile leaves to the maker may be missing; the user is told what that means.
 TEST(Cia402StartUp, MissingObjectsAreWarnings) {
-  const std::string of = "joint2 (id 0x204): object ";
+  const std::string of = "joint2 (node 4): object ";
   for (const auto& [object, words] :
        {std::pair{0x140005U,
                   "1400h:05 is missing: the drive does not notice that its commands "
@@ -230,7 +230,7 @@ void expect_refused(Cia402Arm* arm, const std::string& words) {
   ASSERT_TRUE(arm->run_until(kFault, joint_command_t::REQUEST_ON, 4400)) << words;
   EXPECT_EQ(arm->state->fault, int{joint_state_t::FAULT_CONFIGURATION});
   EXPECT_EQ(arm->state->fault_joint, 1);
-  EXPECT_EQ(arm->driver->configuration_problem(), "joint2 (id 0x204): " + words);
+  EXPECT_EQ(arm->driver->configuration_problem(), "joint2 (node 4): " + words);
   for (int i = 0; i < 20; ++i) arm->cycle_with(joint_command_t::REQUEST_ON);
   EXPECT_EQ(arm->state->drive_state, kFault);
   EXPECT_NE(arm->motors[0].status(), testing::kOperationEnabled);
@@ -242,8 +242,9 @@ TEST(Cia402StartUp, AnotherDriveThanDescribedIsRefused) {
     const char* words;
   };
   for (const Case& c :
-       {Case{0x100000, 0x00020191, "object 1000h:00 is 401, expected 402"},
-        Case{0x650200, 0x000001FF, "object 6502h:00 is 0, expected 512"},
+       {Case{0x100000, 0x00020191,
+             "is no CiA 402 drive: object 1000h has profile 401, expected 402"},
+        Case{0x650200, 0x000001FF, "has no cyclic synchronous torque mode (6502h, bit 9 is 0)"},
         Case{0x607600, 10000, "object 6076h:00 is 10000, expected 28000"},
         Case{0x608F01, 1U << 20U,
              "counts 1048576 a turn of the joint (608Fh, 6091h), expected 65536"},

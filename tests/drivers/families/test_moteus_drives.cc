@@ -313,7 +313,8 @@ TEST(MoteusStartUp, UnknownRegisterMapIsRefused) {
   EXPECT_EQ(arm.state->fault, int{joint_state_t::FAULT_CONFIGURATION});
   EXPECT_EQ(arm.state->fault_joint, 1);
   const std::string problem = arm.driver->configuration_problem();
-  EXPECT_NE(problem.find("joint2 (id 0x8002): register 258 is 4, expected 5"), std::string::npos)
+  EXPECT_NE(problem.find("joint2 (servo 2): register map (register 102h) is 4, expected 5"),
+            std::string::npos)
       << problem;
   EXPECT_TRUE(is_stop(arm.motors[0].frames.back()));
 }
