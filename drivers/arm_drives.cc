@@ -41,7 +41,7 @@ void ArmDrives::apply(DriveEvent event, int joint) noexcept {
   if (!machine_.apply(event, joint)) return;
   cycles_in_state_ = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i)
-    joints_[i].enter(machine_.state(), {tau_gravity_[i], torque_[i].preload});
+    joints_[i].enter(machine_.state(), torque_present_[i], {tau_gravity_[i], torque_[i].preload});
   if (in(DriveState::kOn) && from == DriveState::kEnabling) {
     torque_.fill({});
     torque_present_.fill({});

@@ -32,8 +32,10 @@ double ArmJoint::share(const JointTorque& torque, std::size_t motor) const noexc
   return motor == 0 ? first_share(torque) : second_share(torque);
 }
 
-void ArmJoint::enter(DriveState state, const JointTorque& held) noexcept {
-  for (std::size_t m = 0; m < motors_.size(); ++m) motors_[m].enter(state, share(held, m));
+void ArmJoint::enter(DriveState state, const JointTorque& present,
+                     const JointTorque& held) noexcept {
+  for (std::size_t m = 0; m < motors_.size(); ++m)
+    motors_[m].enter(state, share(present, m), share(held, m));
 }
 
 void ArmJoint::close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept {

@@ -42,8 +42,8 @@ class ArmJoint {
   const std::vector<Drive>& motors() const noexcept { return motors_; }
   /// The part of a torque that motor 0 or 1 makes.
   double share(const JointTorque& torque, std::size_t motor) const noexcept;
-  /// The arm's state changed; `held` is what the motors go on making in FALLBACK.
-  void enter(DriveState state, const JointTorque& held) noexcept;
+  /// The arm's state changed. In FALLBACK the motors go from the torque `present` to `held`.
+  void enter(DriveState state, const JointTorque& present, const JointTorque& held) noexcept;
   /// `time_s`: arm time of the cycle.
   void close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept;
   /// The operator has acknowledged the fault: the watchdogs start afresh.

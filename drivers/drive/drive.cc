@@ -8,13 +8,14 @@ namespace limber {
 Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
       configure_(&link_.family()),
+      fallback_(joint.torque_rate_limit_Nm_per_s / rate_hz),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
       feedback_(link_),
       heat_(joint.drive.warning_temperature_degC),
       invalid_window_(bridged_cycles),
       cycles_per_second_(static_cast<int>(std::ceil(rate_hz))) {}
 
-void Drive::enter(DriveState state, double held) noexcept {
+void Drive::enter(DriveState state, double present, double held) noexcept {
   switch (state) {
     case DriveState::kConfiguring:
       configure_.start();
@@ -27,7 +28,7 @@ void Drive::enter(DriveState state, double held) noexcept {
       enable_.start(link_);
       break;
     case DriveState::kFallback:
-      fallback_.start(held);
+      fallback_.start(present, held);
       break;
     case DriveState::kOn:
     case DriveState::kDamp:
@@ -85,7 +86,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
     return;
   }
   // Without power an arm may swing at any speed: the next angle is taken as it comes.
-  if (state == DriveState::kOff) link_.forget_angle();
+  if (state == DriveState::kOff || state == DriveState::kFault) link_.forget_angle();
   if (!link_.receive(frame)) {
     if (!link_.take_unsolicited(frame)) count_invalid();
     return;

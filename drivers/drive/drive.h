@@ -21,8 +21,8 @@ class Drive {
  public:
   Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles);
 
-  /// The arm's state changed; `held`: torque that the motor goes on making in FALLBACK, N m.
-  void enter(DriveState state, double held) noexcept;
+  /// The arm's state changed. In FALLBACK the motor goes from the torque `present` to `held`, N m.
+  void enter(DriveState state, double present, double held) noexcept;
 
   /// This cycle's one frame. `tau` counts in ON, `settling` in FALLBACK (the first 100 ms).
   CanFrame next_frame(DriveState state, double tau, bool settling) noexcept;

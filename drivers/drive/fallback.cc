@@ -9,6 +9,7 @@ JointCommand Fallback::command(const JointLink& link, bool settling, bool truste
   const JointConfig& joint = link.joint();
   const double kp = joint.drive.hold_kp_Nm_per_rad;
   const double kd = joint.drive.hold_kd_Nms_per_rad;
+  held_ += std::clamp(held_in_the_end_ - held_, -torque_step_, torque_step_);
   if (settling || !trusted) {
     holding_ = false;
     return {link.theta(), 0.0, kd, held_};

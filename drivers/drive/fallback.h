@@ -1,7 +1,9 @@
 // FALLBACK and DAMP of one drive: its command while the driver holds the arm without the
 // controller.
 //
-//   first 100 ms:  tau = held - kd theta_dot,  held: the motor's part of gravity and preload
+//   first 100 ms:  tau = held - kd theta_dot,  held: from the torque before, by the joint's
+//                                              torque rate, to the motor's part of gravity and
+//                                              preload
 //   then:          tau = held + kp (theta_hold - theta) - kd theta_dot,
 //                                              theta_hold: the angle reached by then
 //
@@ -19,19 +21,26 @@ namespace limber {
 /// Allowed inside the cycle.
 class Fallback {
  public:
-  /// FALLBACK begins with the motor making `held`, N m.
-  void start(double held) noexcept {
-    held_ = held;
+  /// `torque_step`: most by which the held torque changes in a cycle, N m.
+  explicit Fallback(double torque_step) noexcept : torque_step_(torque_step) {}
+
+  /// FALLBACK begins with the motor making `present`, and goes to `held`, N m.
+  void start(double present, double held) noexcept {
+    held_ = present;
+    held_in_the_end_ = held;
     holding_ = false;
   }
 
   /// `settling`: within the first 100 ms. `trusted`: the measured angle is good; a joint whose
   /// replies return is held where it is then. The spring gives way: theta_hold follows a joint that
   /// is pushed so far that spring and held torque together would exceed the joint's torque limit.
+  /// Once a cycle.
   JointCommand command(const JointLink& link, bool settling, bool trusted) noexcept;
 
  private:
+  double torque_step_;
   double held_ = 0.0;
+  double held_in_the_end_ = 0.0;
   double theta_hold_ = 0.0;
   bool holding_ = false;
 };

@@ -1,5 +1,6 @@
 #include "drivers/gate/torque_gate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limber/driver_status_t.hpp>
 
@@ -83,6 +84,15 @@ bool torque_step_within_limits(const CheckInput& in) noexcept {
   });
 }
 
+bool gravity_step_within_limits(const CheckInput& in) noexcept {
+  if (!in.situation.followed || !in.memory.has_gravity) return true;
+  const auto cycles = static_cast<double>(std::max<std::int64_t>(in.memory.silent_cycles, 1));
+  return every_joint(in, [&](int i) {
+    const double step = in.command.tau_gravity[i] - in.memory.gravity[i];
+    return std::abs(step) <= kGravitySteps * cycles * in.limits.torque_step_Nm[i];
+  });
+}
+
 bool power_within_limit(const CheckInput& in) noexcept {
   double power_W = 0.0;
   for (int i = 0; i < in.limits.n; ++i) power_W += in.command.tau[i] * in.situation.velocity[i];
@@ -106,6 +116,7 @@ constexpr Check kChecks[] = {
     {driver_status_t::VERDICT_NOT_ON, request_possible},
     {driver_status_t::VERDICT_TORQUE, torque_within_limits},
     {driver_status_t::VERDICT_RATE, torque_step_within_limits},
+    {driver_status_t::VERDICT_RATE, gravity_step_within_limits},
     {driver_status_t::VERDICT_POWER, power_within_limit},
 };
 
@@ -122,14 +133,17 @@ int check_command(const GateLimits& limits, const GateMemory& memory,
 
 void TorqueGate::next_cycle() noexcept {
   ++cycle_;
-  if (++memory_.silent_cycles >= limits_.lease_cycles) memory_.controller = 0;
+  if (++memory_.silent_cycles < limits_.lease_cycles) return;
+  memory_.controller = 0;
+  memory_.has_gravity = false;
 }
 
 int TorqueGate::judge(const joint_command_t& command, const GateSituation& situation) noexcept {
   const int verdict = check_command(limits_, memory_, situation, command);
   too_often_ = false;
   if (verdict == driver_status_t::VERDICT_ACCEPTED) {
-    memory_ = {command.controller, 0, command.state_seq};
+    memory_ = {command.controller, 0, command.state_seq, true, {}};
+    std::copy_n(command.tau_gravity, kMaxJoints, memory_.gravity.begin());
     return verdict;
   }
   const bool from_holder = memory_.controller != 0 && command.session == limits_.session &&

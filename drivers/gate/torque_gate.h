@@ -48,10 +48,16 @@ struct GateMemory {
   std::int64_t controller = 0;  ///< number of the lease's holder; 0: none
   std::int64_t silent_cycles = 0;
   std::int64_t state_seq = -1;  ///< the state answered by the command accepted last
+  bool has_gravity = false;     ///< of a command that this controller was accepted with
+  std::array<double, kMaxJoints> gravity{};  ///< its tau_gravity, N m
 };
 
 /// An answer may refer to a state this many cycles old.
 inline constexpr std::int64_t kOldestAnswer = 5;
+
+/// The weight of a moving arm changes by less than a step of the torque in a cycle; a switch of the
+/// position at which it is evaluated adds to that.
+inline constexpr double kGravitySteps = 3.0;
 
 /// The judgement alone, without effect: VERDICT_* of driver_status_t. The checks are made in this
 /// order and the first that fails names the verdict:
@@ -65,7 +71,8 @@ inline constexpr std::int64_t kOldestAnswer = 5;
 ///   NOT_ON      no REQUEST_HOLD to drives that are off: they cannot hold
 ///   TORQUE      |tau| and |tau_gravity| within the limit, |tau| + |tau_preload| within that of two
 ///               motors; no tau_preload for one
-///   RATE        tau and tau_preload within their steps of what is present, where the torque is
+///   RATE        tau and tau_preload within their steps of what is present, tau_gravity within
+///               kGravitySteps of those a cycle of the last one accepted, where the torque is
 ///               followed
 ///   POWER       sum of tau v within the limit, where the torque is followed
 int check_command(const GateLimits& limits, const GateMemory& memory,

@@ -26,6 +26,8 @@ constexpr int kJoints = 3;
 constexpr double kLimit = 8.0;
 constexpr double kStep = 0.5;
 constexpr double kCount = 20.0 / 4095.0;
+/// Commands are refused for so long at the most before the drives hold the arm: three refusals.
+constexpr std::int64_t kRemembered = 100;
 
 /// What a controller asked for that was fit to be obeyed, as far as one command tells by itself.
 struct Offer {
@@ -54,7 +56,7 @@ class Oracle {
 
   /// After a cycle: one frame for each motor, and no frame that must not be.
   void judge(std::int64_t cycle) {
-    while (!offers_.empty() && offers_.front().cycle < cycle - 5) offers_.pop_front();
+    while (!offers_.empty() && offers_.front().cycle < cycle - kRemembered) offers_.pop_front();
     for (std::size_t j = 0; j < kJoints; ++j) {
       const FakeMotor& motor = arm_.motors[j];
       ASSERT_EQ(motor.frames.size(), 1U) << "joint " << j << " cycle " << cycle;
@@ -114,14 +116,27 @@ class Oracle {
     ++hold_frames;
     ASSERT_EQ(raw.kd, 819);
     ASSERT_TRUE(raw.kp == 0 || raw.kp == 410) << raw.kp;
+    // Never a step, but from zero where the drive was off; and towards a gravity torque that was
+    // offered before.
+    const double largest_step = kStep + 2.02 * kCount;
+    if (before_[j] != Kind::kOther && std::abs(tau) > largest_step) {
+      ASSERT_LE(std::abs(tau - last_[j]), largest_step)
+          << "joint " << j << " is held with " << tau << " after " << last_[j] << " in cycle "
+          << cycle;
+    }
     before_[j] = Kind::kFallback;
-    const bool gravity_of_then = std::any_of(held_.begin(), held_.end(), [&](const Offer& offer) {
-      return std::abs(offer.gravity[j] - tau) <= 1.01 * kCount;
-    });
+    const auto offered_before = [&](auto fits) {
+      return std::ranges::any_of(held_, fits) || std::ranges::any_of(offers_, fits);
+    };
+    const bool towards = offered_before(
+        [&](const Offer& offer) { return (offer.gravity[j] - tau) * (tau - last_[j]) > 0.0; });
+    const bool gravity_of_then = offered_before(
+        [&](const Offer& offer) { return std::abs(offer.gravity[j] - tau) <= 1.01 * kCount; });
     const bool new_gravity = offered_lately(j, tau, &Offer::gravity, cycle);
     const bool as_before = std::abs(tau - last_[j]) <= 2.02 * kCount;
-    ASSERT_TRUE(gravity_of_then || new_gravity || as_before)
-        << "joint " << j << " is held with " << tau << " in cycle " << cycle;
+    ASSERT_TRUE(towards || gravity_of_then || new_gravity || as_before)
+        << "joint " << j << " is held with " << tau << " after " << last_[j] << " in cycle "
+        << cycle;
     last_[j] = tau;
     if (raw.kp == 0) return;
     const double drive_tau = arm_.robot.joints[j].drive.sign * tau;
@@ -235,7 +250,7 @@ class BadDay {
       if (state != joint_state_t::DRIVE_ON) c.tau[i] = arm.state->tau_applied[i];
       const double next = c.tau[i] + uniform(-0.45, 0.45);
       c.tau[i] = std::clamp(next, -kLimit, kLimit);
-      c.tau_gravity[i] = std::clamp(c.tau[i] + uniform(-1, 1), -kLimit, kLimit);
+      c.tau_gravity[i] = std::clamp(c.tau_gravity[i] + uniform(-1, 1), -kLimit, kLimit);
     }
     c.state_seq = arm.state->seq;
     const joint_command_t good = c;

@@ -190,6 +190,9 @@ TEST(RecoveryTest, AfterAFaultTheArmStartsFromTheBeginning) {
     EXPECT_EQ(arm.state->drive_state, kFault);
   }
   EXPECT_EQ(arm.motors[0].error, 0);
+  // A controller acknowledges only what is fresh again.
+  EXPECT_EQ(arm.state->age_cycles[0], 0);
+  EXPECT_NEAR(arm.state->q[0], 1.0, 4e-4);
   arm.cycle_with(kAcknowledge);
   ASSERT_TRUE(arm.run_until(kOff, kKeep, 20));
   arm.cycle_with(kKeep);

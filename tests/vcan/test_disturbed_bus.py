@@ -58,12 +58,11 @@ def gateway(stack):
     sh("cangw -F")
 
 
-def test_a_flood_of_foreign_frames_is_counted_and_nothing_else(arm):
-    before = arm.driver_status.frames_foreign[0]
-    with subprocess.Popen("exec cangen vxcan1 -g 2 -I 5A5 -L 8 -D r -n 500", shell=True) as flood:
-        flood.wait(timeout=60)
+def test_a_flood_of_foreign_frames_is_not_even_heard(arm):
+    """The kernel's filters let through what concerns this arm."""
+    sh("exec cangen vxcan1 -g 2 -I 5A5 -L 8 -D r -n 500")
     time.sleep(2.5)
-    assert arm.driver_status.frames_foreign[0] - before == 500
+    assert arm.driver_status.frames_foreign[0] == 0
     assert arm.state.drive_state == State.DRIVE_ON
     assert arm.mode == Status.MODE_ACTIVE
 
@@ -106,18 +105,13 @@ def test_lost_replies_are_a_fault(arm):
     arm.acknowledge()
 
 
-def test_late_replies_are_counted(arm):
-    """5 ms are within the window of a period of 20 ms; 25 ms are beyond the period."""
+def test_late_replies_are_counted_and_used(arm):
+    """Of a period of 20 ms the window is 12 ms: 5 ms are within it, 15 ms behind it."""
     sh("tc qdisc add dev vxcan1 root netem delay 5ms limit 1000")
     time.sleep(3.0)
     assert arm.state.drive_state == State.DRIVE_ON, arm.describe()
     late = sum(arm.driver_status.replies_late)
-    sh("tc qdisc change dev vxcan1 root netem delay 25ms limit 1000")
-    arm.until(
-        lambda: (
-            sum(arm.driver_status.replies_late) > late + 10
-            or arm.state.drive_state == State.DRIVE_HOLD
-        ),
-        20,
-        "late replies",
-    )
+    sh("tc qdisc change dev vxcan1 root netem delay 15ms limit 1000")
+    arm.until(lambda: sum(arm.driver_status.replies_late) > late + 100, 20, "late replies")
+    assert arm.state.drive_state == State.DRIVE_ON, arm.describe()
+    assert list(arm.state.age_cycles[:2]) == [1, 1]

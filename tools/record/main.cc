@@ -19,13 +19,22 @@ namespace {
 constexpr std::int64_t kQuiet_ns = 200'000'000;
 constexpr std::int64_t kDrainLimit_ns = 5'000'000'000;
 
+/// Longer than any message of limber's. LCM hands on sizes of broken datagrams as they come.
+constexpr std::uint32_t kMostBytes = 1U << 20U;
+
 struct Sink {
   limber::Recorder* recorder;
   std::int64_t last_ns = 0;
-  std::string failure;  // no exception may cross LCM's C code
+  std::int64_t ignored = 0;  // impossible sizes
+  std::string failure;       // no exception may cross LCM's C code
 };
 
 void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Sink* sink) {
+  if (buffer->data_size > kMostBytes) {
+    if (sink->ignored++ == 0)
+      spdlog::warn("a datagram on {} has an impossible size: left out", channel);
+    return;
+  }
   try {
     sink->recorder->write(buffer->recv_utime, channel, buffer->data,
                           static_cast<std::int32_t>(buffer->data_size));
@@ -40,7 +49,7 @@ int record(const std::string& path, const std::string& url, double duration_s) {
   limber::Recorder recorder(path);
   lcm::LCM lcm(limber::checked_lcm_url(url));
   if (!lcm.good()) throw limber::ConfigError(limber::no_multicast_route(url));
-  Sink sink{&recorder, limber::monotonic_ns(), {}};
+  Sink sink{&recorder, limber::monotonic_ns(), 0, {}};
   lcm.subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
   spdlog::info("recording {} to {}", url, path);
   const std::int64_t start_ns = limber::monotonic_ns();

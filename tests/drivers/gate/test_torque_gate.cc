@@ -245,6 +245,45 @@ TEST_F(TorqueGateTest, StepCountsOnlyWhereTheTorqueIsFollowed) {
   EXPECT_EQ(check_with([](auto& c) { c.tau[1] = 20.0; }), Status::VERDICT_RATE + 0);
 }
 
+// Steps of 1, 2 and 0.5 N m a cycle: gravity may change by three of them, after a silence by more.
+TEST_F(TorqueGateTest, GravityStepFromTheLastAccepted) {
+  memory_.has_gravity = true;
+  memory_.gravity = {2.0, 0.0, -1.0};
+  for (int i = 0; i < 3; ++i) good_.tau_gravity[i] = memory_.gravity[static_cast<std::size_t>(i)];
+  struct Case {
+    double gravity;
+    std::int64_t silent_cycles;
+    int verdict;
+  };
+  for (const Case& c : {Case{5.0, 1, kAccepted}, Case{-1.0, 1, kAccepted},
+                        Case{std::nextafter(5.0, 6.0), 1, Status::VERDICT_RATE},
+                        Case{-1.001, 0, Status::VERDICT_RATE}, Case{8.0, 2, kAccepted},
+                        Case{8.1, 2, Status::VERDICT_RATE}}) {
+    memory_.silent_cycles = c.silent_cycles;
+    EXPECT_EQ(check_with([&](auto& command) { command.tau_gravity[0] = c.gravity; }), c.verdict)
+        << c.gravity << " after " << c.silent_cycles;
+  }
+  memory_.silent_cycles = 1;
+  EXPECT_EQ(check_with([](auto& command) { command.tau_gravity[2] = -2.6; }),
+            +Status::VERDICT_RATE);
+  situation_.followed = false;
+  EXPECT_EQ(check_with([](auto& command) { command.tau_gravity[2] = -2.6; }), kAccepted);
+}
+
+TEST_F(TorqueGateTest, AnotherControllerBringsAGravityOfItsOwn) {
+  TorqueGate gate(limits_);
+  good_.tau_gravity[1] = 15.0;
+  EXPECT_EQ(gate.judge(good_, situation_), kAccepted);
+  gate.next_cycle();
+  ++good_.state_seq;
+  ++situation_.state_seq;
+  good_.tau_gravity[1] = -15.0;
+  EXPECT_EQ(gate.judge(good_, situation_), +Status::VERDICT_RATE);
+  for (int i = 0; i < limits_.lease_cycles; ++i) gate.next_cycle();
+  ++good_.controller;
+  EXPECT_EQ(gate.judge(good_, situation_), kAccepted);
+}
+
 TEST_F(TorqueGateTest, ALimitThatIsNoNumberLetsNothingPass) {
   limits_.torque_Nm[1] = kNan;
   EXPECT_EQ(check(good_), Status::VERDICT_TORQUE + 0);

@@ -107,6 +107,22 @@ def test_a_process_that_dies_is_named(long_run):
     assert gone(programs)
 
 
+def test_a_recorder_that_dies_stops_no_arm(long_run):
+    process, folder, programs = long_run
+    subprocess.run(["kill", "-KILL", str(programs["limber-record"])], check=True)
+    time.sleep(1.0)
+    assert process.poll() is None, "the run goes on"
+    assert "limber-driver" in children(process.pid)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=30)
+    assert "limber-record ended (killed by SIGKILL)" in output
+    assert "the run goes on without it" in output
+    assert process.returncode == 3, "but the log is not whole"
+    assert "limber-record ended" in errors
+    assert "disabled" in (folder / "limber-driver.log").read_text(), "in good order"
+    assert gone(programs)
+
+
 def test_kill_of_limber_itself_leaves_nothing(long_run):
     process, _, programs = long_run
     process.kill()

@@ -23,6 +23,7 @@ class Child:
     log: Path
     read: int = 0  # bytes of the log that news() has seen
     may_end: bool = False  # it was signalled to end, or its end is awaited
+    spared: bool = False  # once all have started, the others go on without it
 
     @property
     def code(self) -> int | None:
@@ -68,7 +69,7 @@ class ProcessGroup:
         for child in running:
             _wait_or_kill(child.process, 2.0)
 
-    def start(self, name: str, command: list[str]) -> Child:
+    def start(self, name: str, command: list[str], spared: bool = False) -> Child:
         """The output of the child goes to NAME.log in the group's folder."""
         log = self.folder / f"{name}.log"
         libc = ctypes.CDLL(None)
@@ -90,7 +91,7 @@ class ProcessGroup:
             )
         if self._leader is None:
             self._leader = process.pid
-        child = self.children[name] = Child(name, process, log)
+        child = self.children[name] = Child(name, process, log, spared=spared)
         return child
 
     def _group(self) -> int:
@@ -111,11 +112,20 @@ class ProcessGroup:
                 return
             time.sleep(0.01)
 
-    def check(self) -> None:
-        """Raises if a child has ended that was not expected to."""
+    def check(self, started: bool = False) -> None:
+        """Raises if a child has ended that was not expected to; `started`: all have started."""
         for child in self.children.values():
-            if child.code is not None and not child.may_end:
+            ended = child.code is not None and not child.may_end
+            if ended and not (started and child.spared):
                 raise child.failure()
+
+    def missed(self) -> list[Child]:
+        """The spared children that have ended since the last call."""
+        ended = [c for c in self.children.values() if c.spared and not c.may_end]
+        ended = [child for child in ended if child.code is not None]
+        for child in ended:
+            child.may_end = True
+        return ended
 
     def stop(self, name: str, number: signal.Signals, timeout_s: float) -> int:
         """Sends a signal to a child, kills it after the timeout; returns its exit code."""
@@ -127,11 +137,11 @@ class ProcessGroup:
         return child.process.returncode
 
     def run_until(self, name: str, tick: Callable[[], None], interval_s: float = 0.05) -> int:
-        """Waits for one child to end by itself; raises if another one ends before it."""
+        """Waits for one child to end by itself; raises if one that is not spared ends before it."""
         child = self.children[name]
         child.may_end = True
         while child.code is None:
-            self.check()
+            self.check(started=True)
             tick()
             time.sleep(interval_s)
         return child.process.returncode

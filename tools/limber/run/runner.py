@@ -19,6 +19,7 @@ from limber.run.processes import Child, ProcessGroup, process_group
 
 START_TIMEOUT_S = 10.0
 STOP_TIMEOUT_S = 5.0
+RECORDERS = ("limber-record", "limber-can")  # never a reason to stop an arm
 
 
 def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> FinishedRun:
@@ -102,7 +103,7 @@ def _commands(
 
 def _start(group: ProcessGroup, name: str, command: list[str]) -> None:
     """Waits until the program is ready, which its first line of output shows."""
-    child = group.start(name, command)
+    child = group.start(name, command, spared=name in RECORDERS)
     if name != "limber-driver":
         group.wait_for_line(child, "\n", START_TIMEOUT_S)
 
@@ -120,6 +121,9 @@ def _follow(
 
             def tick() -> None:
                 _tell(driver, console)
+                for child in group.missed():
+                    lost = f"{child.failure()}; the run goes on without it"
+                    console.print(lost, style="bold red", markup=False, soft_wrap=True)
                 update()
 
             return group.run_until("limber-driver", tick)
@@ -136,12 +140,13 @@ def _tell(driver: Child, console: Console) -> None:
 
 def _stop_others(group: ProcessGroup) -> dict:
     """Ends the rest, the recorder last, so that its log is complete; returns its report."""
-    for name in ("limber-controller", "limber-sim", "limber-can"):
+    for name in ("limber-controller", "limber-sim"):
         if name in group.children:
             group.stop(name, signal.SIGTERM, STOP_TIMEOUT_S)
+    for name, end in (("limber-can", signal.SIGTERM), ("limber-record", signal.SIGINT)):
+        if name in group.children and group.stop(name, end, 2 * STOP_TIMEOUT_S) != 0:
+            raise group.children[name].failure()
     recorder = group.children["limber-record"]
-    if group.stop("limber-record", signal.SIGINT, 2 * STOP_TIMEOUT_S) != 0:
-        raise recorder.failure()
     try:
         return json.loads(recorder.last_lines(1)[0])
     except (IndexError, json.JSONDecodeError) as error:
