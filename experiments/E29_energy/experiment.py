@@ -9,7 +9,7 @@ TITLE = "Let go far from its goal, the arm only loses energy; delay alone would 
 CLAIM = "An arm behind a virtual spring and damper stays passive without cancelling Coriolis"
 CLAIM += " torques"
 SECTION = "2"
-PLANT = "ideal7 at 1 and 2 kHz, exact equations, cartesian_impedance with gravity alone"
+PLANT = "ideal7 at 1 and 0.5 kHz, exact equations, cartesian_impedance with gravity alone"
 FAST = False
 RISE_J = 5e-3
 

@@ -1,7 +1,6 @@
 """ideal7 pushed far aside and let go: kinetic energy and the law's spring energy from then on."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -21,7 +20,7 @@ DAMPED_S, UNDAMPED_S = 3.0, 0.4  # looked at
 UNDAMPED_SHARE = 0.3  # of the push: without damping the wrist gets faster
 ZETA = 0.3
 D_JOINTS = [2.0, 2.0, 2.0, 2.0, 0.3, 0.2, 0.03]  # N m s/rad, so that the elbow does not wander
-RATES_HZ = (1000, 2000)
+RATES_HZ = (1000, 500)
 
 
 @dataclass(frozen=True)
@@ -46,17 +45,8 @@ class Fall:
         return float((self.total - np.minimum.accumulate(self.total)).max())
 
 
-def at_rate(rate_hz: float) -> dict[str, Any]:
-    """Two joints a bus and 8 Mbit/s: that lets ideal7 run at 2 kHz."""
-    names = ["base", "shoulder", "elbow", "wrist"]
-    rates = {"fd": True, "bitrate_bps": 1000000, "data_bitrate_bps": 8000000}
-    buses = [{"name": name, "can": f"virtual:ideal7_{name}", **rates} for name in names]
-    joints = {f"joint_{i + 1}": {"bus": names[i // 2]} for i in range(7)}
-    return {"rate_hz": rate_hz, "buses": buses, "joints": joints}
-
-
 def fall(context: Context, rate_hz: int, damped: bool) -> Fall:
-    robot = variant(context.out, "ideal7", at_rate(rate_hz))
+    robot = variant(context.out, "ideal7", {"rate_hz": rate_hz})
     null = {"K_null_Nm_per_rad": 0.0, "D_null_Nms_per_rad": D_JOINTS}
     bounds = {"spring_force_N": 1000.0, "spring_moment_Nm": 200.0}
     gains = tip_gains(K[:3], K[3:], model_compensation="gravity", damping_ratio=ZETA)
