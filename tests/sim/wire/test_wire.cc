@@ -116,6 +116,25 @@ TEST(Wire, BusOffEndsAfter128Times11Bits) {
   EXPECT_EQ(wire.transmit_errors(kDriver), 0);
 }
 
+// ISO 11898-1: an error-passive sender waits eight bits more after a frame of its own, so that
+// others come first. 16 destroyed frames count 128.
+TEST(Wire, AnErrorPassiveSenderWaitsEightBitsAfterItsFrame) {
+  const auto second_after_first_ns = [](int destroyed) {
+    Wire wire(classic(), {.on = true}, 3, 0);
+    wire.send(kNode, frame(0x555, {1}), 0);
+    wire.send(kNode, frame(0x555, {1}), 0);
+    wire.send(kOther, frame(0x555, {2}), 0);
+    WireEvent event;
+    for (int i = 0; i < destroyed; ++i) EXPECT_TRUE(wire.next(INT64_MAX, &event));
+    CanFrame taken;
+    EXPECT_TRUE(wire.take(kOther, &taken));
+    const auto all = events(&wire, INT64_MAX);
+    EXPECT_EQ(all.size(), 2U);
+    return all.size() == 2 ? all[1].end_ns - all[0].end_ns : 0;
+  };
+  EXPECT_EQ(second_after_first_ns(18), second_after_first_ns(2) + 8 * kBit_ns);
+}
+
 TEST(Wire, ACorruptedFrameIsSentAgainAndCostsTime) {
   Wire ideal(classic(), {.on = true}, 2, 0);
   Wire noisy(classic(), {.on = true, .corruption = 0.3, .seed = 7}, 2, 0);
