@@ -56,18 +56,17 @@ std::function<void(FaultStage*)> moved(const MotionChange& change, int count) {
   };
 }
 
-/// The replies that came `one cycle` before come in their place, or in front of them.
-std::function<void(FaultStage*)> repeat(bool also_true) {
-  return replies([also_true, last = Frames()](const CanFrame& frame, Frames* instead) mutable {
+/// The replies of the cycle before come in front of the true ones.
+std::function<void(FaultStage*)> replay() {
+  return replies([last = Frames()](const CanFrame& frame, Frames* instead) mutable {
     const auto same = std::ranges::find(last, frame.id, &CanFrame::id);
     if (same == last.end()) {
       last.push_back(frame);
-      return;
+      return instead->push_back(frame);
     }
     CanFrame old = *same;
     old.timestamp_ns = frame.timestamp_ns;
-    instead->push_back(old);
-    if (also_true) instead->push_back(frame);
+    instead->insert(instead->end(), {old, frame});
     *same = frame;
   });
 }
@@ -88,28 +87,16 @@ void foreign_master(FaultStage* stage) {
   });
 }
 
-void foreign_disable(FaultStage* stage) {
-  stage->set_each_cycle([stage, done = false]() mutable {
-    if (!done) stage->send_from_outside(stage->family().disable());
-    done = true;
-  });
-}
+void foreign_disable(FaultStage* stage) { stage->send_from_outside(stage->family().disable()); }
 
 /// Damiao: PMAX; CiA 402: the mode, 6060h.
 void foreign_setting(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
-  CanFrame frame;
-  if (drive.protocol == DriveProtocol::kDamiaoMit) {
-    frame = mit::encode_register_write(static_cast<std::uint16_t>(drive.command_id),
-                                       mit::Register::kPositionRange, mit::float_bits(6.0F), false);
-  } else {
-    const auto node = static_cast<std::uint8_t>(drive.command_id & 0x7F);
-    frame = canopen::encode_sdo_write(cia402::kMode, 1, node);
-  }
-  stage->set_each_cycle([stage, frame, done = false]() mutable {
-    if (!done) stage->send_from_outside(frame);
-    done = true;
-  });
+  stage->send_from_outside(
+      drive.protocol == DriveProtocol::kDamiaoMit
+          ? mit::encode_register_write(static_cast<std::uint16_t>(drive.command_id),
+                                       mit::Register::kPositionRange, mit::float_bits(6.0F), false)
+          : canopen::encode_sdo_write(cia402::kMode, 1, canopen::node_of(drive.command_id)));
 }
 
 /// The velocity is wrong by half of the joint's limit, so that no limit notices.
@@ -179,7 +166,7 @@ std::vector<Fault> make_table() {
                  [stage](const CanFrame& frame, auto*) { stage->bus().hold(frame); });
            }},
       {.name = "replies of the last cycle in front of the true ones",
-       .begin = repeat(true),
+       .begin = replay(),
        .most_cycles = 12},
       {.name = "two motors with one identifier",
        .begin =

@@ -43,7 +43,7 @@ CanFrame moteus_drive(const CanFrame& reply, const MotionChange& change) {
 
 CanFrame cia402_drive(const CanFrame& reply, const JointConfig& joint, bool fd,
                       const MotionChange& change) {
-  const cia402::StateLayout layout{fd, joint.link_encoder.present, joint.torque_sensor.present};
+  const cia402::StateLayout layout = cia402::layout_of(joint, fd);
   const auto k = static_cast<int>((reply.id - joint.drive.reply_id) >> 8U);
   if (k >= cia402::tpdos_of(layout)) return reply;
   const auto objects = cia402::state_objects(layout, k);

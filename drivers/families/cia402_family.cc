@@ -31,10 +31,6 @@ bool ignores_target(std::uint16_t status) noexcept {
          (status & cia402::kFollowing) == 0;
 }
 
-cia402::StateLayout layout_of(const JointConfig& joint, bool fd) noexcept {
-  return {fd, joint.link_encoder.present, joint.torque_sensor.present};
-}
-
 }  // namespace
 
 Cia402Family::Cia402Family(const JointConfig& joint, bool fd, double period_s)
@@ -46,9 +42,9 @@ Cia402Family::Cia402Family(const JointConfig& joint, bool fd, double period_s)
       link_rad_per_count_(std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)),
       rated_current_A_(joint.drive.rated_torque_Nm / joint.drive.torque_constant_Nm_per_A),
       most_torque_(most_permille(joint) * drive_.rated_torque_Nm / 1000.0),
-      state_(layout_of(joint, fd), node()),
+      state_(cia402::layout_of(joint, fd), node()),
       last_state_(state_),
-      startup_(joint, layout_of(joint, fd), period_s) {}
+      startup_(joint, cia402::layout_of(joint, fd), period_s) {}
 
 // --- towards the drive ---------------------------------------------------------------------------
 

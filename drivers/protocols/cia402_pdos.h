@@ -18,6 +18,7 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/cia402.h"
+#include "robots/loader/robot.h"
 
 namespace limber::cia402 {
 
@@ -29,6 +30,10 @@ struct StateLayout {
   bool torque_sensor = false;
 };
 inline constexpr int kMostTpdos = 3;
+/// That of a joint's drive; `fd`: of its bus.
+inline StateLayout layout_of(const JointConfig& joint, bool fd) noexcept {
+  return {fd, joint.link_encoder.present, joint.torque_sensor.present};
+}
 
 struct DriveCommand {
   std::uint16_t controlword = 0;
