@@ -98,13 +98,13 @@ void ArmDriver::repeat_tick() noexcept {
   }
 }
 
-void ArmDriver::hear_only_this_arm() {
+void ArmDriver::set_receive_filters() {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    std::vector<CanFilter> filters = drives_.heard(b);
-    if (tip_sensor_ && tip_sensor_->bus() == b) tip_sensor_->add_heard(&filters);
+    std::vector<CanFilter> filters = drives_.receive_filters(b);
+    if (tip_sensor_ && tip_sensor_->bus() == b) tip_sensor_->add_receive_filters(&filters);
     if (lockstep_)
       filters.insert(filters.end(), {exactly(lockstep::kTickId), exactly(lockstep::kTockId)});
-    buses_[b].hear_only(filters);
+    buses_[b].set_receive_filters(filters);
   }
 }
 
@@ -135,7 +135,7 @@ void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcep
   } else if (!drives_.receive(bus, frame, late)) {
     buses_[bus].count_foreign();
     // This driver's own frames do not come back to it.
-    if (drives_.is_order(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
+    if (drives_.is_foreign_command(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
   }
 }
 

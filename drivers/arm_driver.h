@@ -54,7 +54,7 @@ class ArmDriver {
   void repeat_tick() noexcept;
   /// From here on the buses need receive only what drives and tip sensor of this arm send, and what
   /// anybody else sends to them. Before the first cycle; set-up only.
-  void hear_only_this_arm();
+  void set_receive_filters();
   /// No reply is faster than this: what comes sooner after the start of a cycle answers the command
   /// before. In lock step it is computed; in real time it is 0 until it has been measured.
   void set_least_round_trip(std::int64_t time_ns) noexcept { least_round_trip_ns_ = time_ns; }

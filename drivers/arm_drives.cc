@@ -130,12 +130,12 @@ void ArmDrives::add_commands(std::vector<BusEnd>* buses) noexcept {
 
 // --- from the drives -----------------------------------------------------------------------------
 
-std::vector<CanFilter> ArmDrives::heard(std::size_t bus) const {
+std::vector<CanFilter> ArmDrives::receive_filters(std::size_t bus) const {
   std::vector<CanFilter> filters;
   for (const ArmJoint& joint : joints_) {
     for (const Drive& motor : joint.motors()) {
       if (motor.bus() != bus) continue;
-      const std::vector<CanFilter> more = motor.link().heard();
+      const std::vector<CanFilter> more = motor.link().receive_filters();
       filters.insert(filters.end(), more.begin(), more.end());
     }
   }
@@ -151,11 +151,11 @@ Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   return nullptr;
 }
 
-bool ArmDrives::is_order(std::size_t bus, const CanFrame& frame) const noexcept {
+bool ArmDrives::is_foreign_command(std::size_t bus, const CanFrame& frame) const noexcept {
   for (const ArmJoint& joint : joints_) {
     for (const Drive& motor : joint.motors()) {
       if (motor.bus() != bus) continue;
-      if (motor.link().is_order(frame)) return true;
+      if (motor.link().is_foreign_command(frame)) return true;
     }
   }
   return false;

@@ -63,11 +63,11 @@ class ArmDrives {
 
   // --- from the drives ------------------------------------------------------------------------
 
-  /// What receive() and is_order() take of one bus. Allocates: set-up only.
-  std::vector<CanFilter> heard(std::size_t bus) const;
+  /// What receive() and is_foreign_command() take of one bus. Allocates: set-up only.
+  std::vector<CanFilter> receive_filters(std::size_t bus) const;
 
   /// The frame, of somebody else, commands a drive of this arm or writes its settings.
-  bool is_order(std::size_t bus, const CanFrame& frame) const noexcept;
+  bool is_foreign_command(std::size_t bus, const CanFrame& frame) const noexcept;
   /// False if the frame is of no drive of this arm. `late`: it came after its cycle.
   bool receive(std::size_t bus, const CanFrame& frame, bool late) noexcept;
   /// End of the cycle: replies that are missing now are missing.

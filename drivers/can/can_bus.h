@@ -54,7 +54,9 @@ class CanBus {
 
   /// From here on only error frames and what one of the filters passes need be received; a carrier
   /// that cannot leave the rest out receives it as before. Set-up only.
-  virtual void hear_only(std::span<const CanFilter> filters) { static_cast<void>(filters); }
+  virtual void set_receive_filters(std::span<const CanFilter> filters) {
+    static_cast<void>(filters);
+  }
 };
 
 /// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the

@@ -153,16 +153,16 @@ class SocketCanBus final : public DatagramBus {
     watch_ = std::jthread([this](const std::stop_token& stop) { await_return(stop); });
   }
 
-  void hear_only(std::span<const CanFilter> filters) override {
+  void set_receive_filters(std::span<const CanFilter> filters) override {
     const std::lock_guard lock(filters_mutex_);
     filters_.clear();
     for (const CanFilter& filter : filters) filters_.push_back(to_kernel(filter));
-    if (!set_filters())
+    if (!apply_filters())
       refuse(interface_, std::string("cannot set the receive filters: ") + std::strerror(errno));
   }
 
  private:
-  bool set_filters() noexcept {
+  bool apply_filters() noexcept {
     const std::size_t bytes = filters_.size() * sizeof(can_filter);
     return setsockopt(receiver_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                       static_cast<socklen_t>(bytes)) == 0;
@@ -188,8 +188,8 @@ class SocketCanBus final : public DatagramBus {
       address.can_family = AF_CAN;
       address.can_ifindex = checked_interface(receiver_.get(), interface_, fd_);
       const std::lock_guard lock(filters_mutex_);
-      return set_filters() && bind(receiver_.get(), reinterpret_cast<const sockaddr*>(&address),
-                                   sizeof(address)) == 0;
+      return apply_filters() && bind(receiver_.get(), reinterpret_cast<const sockaddr*>(&address),
+                                     sizeof(address)) == 0;
     } catch (const ConfigError&) {
       return false;  // not there yet, or still down
     }

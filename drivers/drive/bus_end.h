@@ -39,7 +39,9 @@ class BusEnd {
   /// whole period at once); a stamp more than a second later is another clock's and does not count.
   std::span<const CanFrame> receive(std::int64_t until_ns) noexcept;
   /// See CanBus. Set-up only.
-  void hear_only(std::span<const CanFilter> filters) { bus_->hear_only(filters); }
+  void set_receive_filters(std::span<const CanFilter> filters) {
+    bus_->set_receive_filters(filters);
+  }
   /// Counts a frame of no drive or sensor of this arm.
   void count_foreign() noexcept { ++foreign_; }
 

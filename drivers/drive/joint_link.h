@@ -50,9 +50,11 @@ class JointLink {
   bool needs_bus_frame(CanFrame* frame) const noexcept { return family_->needs_bus_frame(frame); }
   bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
   /// Somebody else's frame that commands this drive or writes its settings.
-  bool is_order(const CanFrame& frame) const noexcept { return family_->is_order(frame); }
+  bool is_foreign_command(const CanFrame& frame) const noexcept {
+    return family_->is_foreign_command(frame);
+  }
   /// See DriveFamily. Allocates: set-up only.
-  std::vector<CanFilter> heard() const { return family_->heard(); }
+  std::vector<CanFilter> receive_filters() const { return family_->receive_filters(); }
   /// True if the frame is from this drive, but no reply to a command, and nothing that must be
   /// understood; what it tells is kept.
   bool take_unsolicited(const CanFrame& frame) noexcept {

@@ -24,7 +24,7 @@ bool TipSensorLink::is_mine(std::size_t on_bus, const CanFrame& frame) const noe
          (sensor_.replies() == 2 && frame.id == sensor_.reply_ids[1]);
 }
 
-void TipSensorLink::add_heard(std::vector<CanFilter>* filters) const {
+void TipSensorLink::add_receive_filters(std::vector<CanFilter>* filters) const {
   for (int i = 0; i < sensor_.replies(); ++i)
     filters->push_back(exactly(sensor_.reply_ids[static_cast<std::size_t>(i)]));
 }

@@ -28,7 +28,7 @@ class TipSensorLink {
   /// The frame is on one of the sensor's reply identifiers.
   bool is_mine(std::size_t bus, const CanFrame& frame) const noexcept;
   /// The identifiers of is_mine(). Allocates: set-up only.
-  void add_heard(std::vector<CanFilter>* filters) const;
+  void add_receive_filters(std::vector<CanFilter>* filters) const;
   /// A reading that comes too late for its cycle (`late`) is taken as well, and is a cycle old.
   void receive(const CanFrame& frame, bool late) noexcept;
   void close_cycle() noexcept {

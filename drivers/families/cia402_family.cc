@@ -103,7 +103,7 @@ void Cia402Family::note_unsolicited(const CanFrame& frame) noexcept {
     emergency_.store(emergency.code, std::memory_order_relaxed);
 }
 
-bool Cia402Family::is_order(const CanFrame& frame) const noexcept {
+bool Cia402Family::is_foreign_command(const CanFrame& frame) const noexcept {
   if (has_id(frame, canopen::kSyncId)) return true;
   canopen::NmtCommand command;
   if (canopen::decode_nmt(frame, node(), &command)) return true;
@@ -114,7 +114,7 @@ bool Cia402Family::is_order(const CanFrame& frame) const noexcept {
 }
 
 // Every identifier of a node ends in its number.
-std::vector<CanFilter> Cia402Family::heard() const {
+std::vector<CanFilter> Cia402Family::receive_filters() const {
   constexpr std::uint32_t kNumber = 0x7F;
   return {{node(), kNumber, false}, exactly(canopen::kSyncId), exactly(canopen::kNmtId)};
 }

@@ -44,8 +44,8 @@ class Cia402Family final : public DriveFamily {
     return emergency_.load(std::memory_order_relaxed);
   }
   /// RPDOs, SDO requests that write, network management and SYNC.
-  bool is_order(const CanFrame& frame) const noexcept override;
-  std::vector<CanFilter> heard() const override;
+  bool is_foreign_command(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> receive_filters() const override;
   bool is_presence(const CanFrame& frame) const noexcept override;
   void begin_cycle() noexcept override {
     last_state_ = state_;

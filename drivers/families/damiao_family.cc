@@ -104,14 +104,14 @@ CanFrame DamiaoFamily::presence_request() const noexcept {
   return mit::encode_register_read(id(), mit::Register::kControlMode, fd_);
 }
 
-bool DamiaoFamily::is_order(const CanFrame& frame) const noexcept {
+bool DamiaoFamily::is_foreign_command(const CanFrame& frame) const noexcept {
   if (has_id(frame, drive_.command_id)) return true;
   mit::RegisterRequest request;
   return mit::decode_register_request(frame, &request) && request.id == id() &&
          (request.operation == kWrite || request.operation == kStore);
 }
 
-std::vector<CanFilter> DamiaoFamily::heard() const {
+std::vector<CanFilter> DamiaoFamily::receive_filters() const {
   return {exactly(drive_.reply_id), exactly(drive_.command_id), exactly(mit::kRegisterId)};
 }
 

@@ -32,8 +32,8 @@ class DamiaoFamily final : public DriveFamily {
     return has_id(frame, drive_.reply_id);
   }
   /// Frames with its identifier, and register writes to it.
-  bool is_order(const CanFrame& frame) const noexcept override;
-  std::vector<CanFilter> heard() const override;
+  bool is_foreign_command(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> receive_filters() const override;
   /// As delivered, a drive answers with identifier 0 (MST_ID).
   bool is_astray(const CanFrame& frame) const noexcept override;
   /// Half a count is added to the fields, because drives truncate.

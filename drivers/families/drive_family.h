@@ -126,9 +126,9 @@ class DriveFamily {
   virtual std::uint16_t emergency() const noexcept { return 0; }
   /// Whether a frame of somebody else commands this drive or writes its settings: sent by anybody
   /// but this driver, it must not go unnoticed.
-  virtual bool is_order(const CanFrame& frame) const noexcept = 0;
-  /// All identifiers of is_mine() and is_order(). Allocates: set-up only.
-  virtual std::vector<CanFilter> heard() const = 0;
+  virtual bool is_foreign_command(const CanFrame& frame) const noexcept = 0;
+  /// All identifiers of is_mine() and is_foreign_command(). Allocates: set-up only.
+  virtual std::vector<CanFilter> receive_filters() const = 0;
   /// Whether the frame answers presence_request().
   virtual bool is_presence(const CanFrame& frame) const noexcept {
     return is_mine(frame) && !is_unsolicited(frame);

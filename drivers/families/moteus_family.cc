@@ -110,14 +110,14 @@ CanFrame MoteusFamily::enable(const DriveMemory& memory) noexcept {
   return command(nothing, memory, &frame, &sent) ? frame : state_request();
 }
 
-bool MoteusFamily::is_order(const CanFrame& frame) const noexcept {
+bool MoteusFamily::is_foreign_command(const CanFrame& frame) const noexcept {
   // Bits 16 to 28 are the prefix, which must be the drive's; a reply is for host 0.
   const bool prefix = frame.id >> 16U == drive_.command_id >> 16U;
   return !frame.error && prefix && accepts_id(drive_, frame.id);
 }
 
 // The last seven bits are the number of whom a frame is for, 7Fh all; its prefix is the drive's.
-std::vector<CanFilter> MoteusFamily::heard() const {
+std::vector<CanFilter> MoteusFamily::receive_filters() const {
   constexpr std::uint32_t kNumber = 0x7F;
   constexpr std::uint32_t kPrefix = 0x1FFF0000;
   std::vector<CanFilter> filters = {exactly(drive_.reply_id)};

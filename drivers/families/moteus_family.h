@@ -35,8 +35,8 @@ class MoteusFamily final : public DriveFamily {
     return has_id(frame, drive_.reply_id);
   }
   /// Frames for its number, or for all, whoever they are from.
-  bool is_order(const CanFrame& frame) const noexcept override;
-  std::vector<CanFilter> heard() const override;
+  bool is_foreign_command(const CanFrame& frame) const noexcept override;
+  std::vector<CanFilter> receive_filters() const override;
   StateReading read_state(const CanFrame& frame, bool late, DriveReport* report) noexcept override;
   std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;

@@ -98,7 +98,7 @@ int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
     }
     measure_delay();
   }
-  port_.driver().hear_only_this_arm();
+  port_.driver().set_receive_filters();
   const bool done = run_cycles(stop);
   port_.publish_status();
   reporter_.stop();

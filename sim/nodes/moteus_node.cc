@@ -79,7 +79,7 @@ void MoteusNode::work(const moteus::Subframe& subframe, const JointReading& join
   if (!text || subframe.first != moteus::kTextChannel) return;
   const std::size_t most = subframe.kind == Kind::kTextPoll ? subframe.count : moteus::kMostText;
   if (request->answered)
-    answer->text_from_drive(text_.hear(std::min(most, answer->room_for_text())));
+    answer->text_from_drive(text_.read(std::min(most, answer->room_for_text())));
   if (subframe.kind == Kind::kTextToDrive && !deaf) text_.take(subframe.text());
 }
 

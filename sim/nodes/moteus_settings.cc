@@ -102,8 +102,8 @@ void MoteusSettings::enumerate(std::string_view group, MoteusText* text) const n
   for (std::size_t i = 0; i < kCount; ++i) {
     const SettingRow& row = kSettingRows[i];
     if (!group.empty() && group_of(row.name) != group) continue;
-    text->say(row.name);
-    text->say_value(" ", values_[i], row.whole, "\r\n");
+    text->write(row.name);
+    text->write_value(" ", values_[i], row.whole, "\r\n");
   }
   text->ok();
 }
@@ -112,7 +112,7 @@ void MoteusSettings::get(std::string_view name, MoteusText* text) const noexcept
   if (!is_group(group_of(name))) return text->error("unknown group");
   const std::size_t i = row_of(name);
   if (i == kCount) return text->error("error reading");
-  text->say_value("", values_[i], kSettingRows[i].whole, "\r\n");
+  text->write_value("", values_[i], kSettingRows[i].whole, "\r\n");
 }
 
 void MoteusSettings::set(std::string_view words, MoteusText* text) noexcept {

@@ -119,21 +119,21 @@ void say_blob(std::string_view word, std::string_view name, const Blob& blob,
               MoteusText* text) noexcept {
   Blob size;
   size.put(blob.bytes().size(), 4);
-  text->say(word);
-  text->say(" ");
-  text->say(name);
-  text->say("\r\n");
-  text->say(size.bytes());
-  text->say(blob.bytes());
+  text->write(word);
+  text->write(" ");
+  text->write(name);
+  text->write("\r\n");
+  text->write(size.bytes());
+  text->write(blob.bytes());
 }
 
 void say_text(const TelemetryChannel& channel, const MoteusStats& stats,
               MoteusText* text) noexcept {
   for (const TelemetryField& field : channel.fields) {
-    text->say(channel.name);
-    text->say(".");
-    text->say(field.name);
-    text->say_value(" ", field.value(stats), field.type != kFloat32, "\r\n");
+    text->write(channel.name);
+    text->write(".");
+    text->write(field.name);
+    text->write_value(" ", field.value(stats), field.type != kFloat32, "\r\n");
   }
   text->ok();
 }
@@ -150,8 +150,8 @@ void MoteusTelemetry::command(std::string_view words, const MoteusStats& stats,
   }
   if (verb == "list") {
     for (const TelemetryChannel& channel : kTelemetryChannels) {
-      text->say(channel.name);
-      text->say("\r\n");
+      text->write(channel.name);
+      text->write("\r\n");
     }
     return text->ok();
   }

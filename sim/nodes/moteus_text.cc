@@ -28,32 +28,32 @@ bool MoteusText::line(std::string_view* line) noexcept {
   return true;
 }
 
-void MoteusText::say(std::string_view text) noexcept {
-  if (heard_ == said_) heard_ = said_ = 0;
-  const std::size_t taken = std::min(text.size(), out_.size() - said_);
-  std::copy_n(text.begin(), taken, out_.begin() + static_cast<std::ptrdiff_t>(said_));
-  said_ += taken;
+void MoteusText::write(std::string_view text) noexcept {
+  if (read_ == written_) read_ = written_ = 0;
+  const std::size_t taken = std::min(text.size(), out_.size() - written_);
+  std::copy_n(text.begin(), taken, out_.begin() + static_cast<std::ptrdiff_t>(written_));
+  written_ += taken;
 }
 
-void MoteusText::say_value(std::string_view before, double value, bool whole,
-                           std::string_view after) noexcept {
+void MoteusText::write_value(std::string_view before, double value, bool whole,
+                             std::string_view after) noexcept {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), whole ? "%.0f" : "%f", value);
-  say(before);
-  say(text.data());
-  say(after);
+  write(before);
+  write(text.data());
+  write(after);
 }
 
 void MoteusText::error(std::string_view why) noexcept {
-  say("ERR ");
-  say(why);
-  say("\r\n");
+  write("ERR ");
+  write(why);
+  write("\r\n");
 }
 
-std::string_view MoteusText::hear(std::size_t most) noexcept {
-  const std::string_view heard(out_.data() + heard_, std::min(most, said_ - heard_));
-  heard_ += heard.size();
-  return heard;
+std::string_view MoteusText::read(std::size_t most) noexcept {
+  const std::string_view bytes(out_.data() + read_, std::min(most, written_ - read_));
+  read_ += bytes.size();
+  return bytes;
 }
 
 std::string_view next_word(std::string_view* text) noexcept {

@@ -16,23 +16,23 @@ class MoteusText {
   /// The next whole line, without its end; it lives until the next take().
   bool line(std::string_view* line) noexcept;
 
-  void say(std::string_view text) noexcept;
+  void write(std::string_view text) noexcept;
   /// "NAME VALUE", with six decimals or none.
-  void say_value(std::string_view before, double value, bool whole,
-                 std::string_view after) noexcept;
-  void ok() noexcept { say("OK\r\n"); }
+  void write_value(std::string_view before, double value, bool whole,
+                   std::string_view after) noexcept;
+  void ok() noexcept { write("OK\r\n"); }
   void error(std::string_view why) noexcept;
 
-  /// What has been said and not heard yet, at most so many bytes; it is taken off.
-  std::string_view hear(std::size_t most) noexcept;
+  /// What has been written and not read yet, at most so many bytes.
+  std::string_view read(std::size_t most) noexcept;
 
  private:
   std::array<char, 128> in_{};
   std::size_t in_size_ = 0;
   std::size_t line_size_ = 0;  ///< given away by line(), with its end
   std::array<char, 4096> out_{};
-  std::size_t heard_ = 0;
-  std::size_t said_ = 0;
+  std::size_t read_ = 0;
+  std::size_t written_ = 0;
 };
 
 /// Cuts the first word off; both without spaces around.

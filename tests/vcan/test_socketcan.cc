@@ -220,7 +220,7 @@ bool sends_again(CanBus* bus) {
 TEST(SocketCanFaults, AnInterfaceThatIsRemovedAndComesBack) {
   run("ip link add dev vcan7 type vcan && ip link set vcan7 mtu 72 up");
   const auto bus = open_can_bus("socketcan:vcan7", true);
-  bus->hear_only(std::array{exactly(0x11)});
+  bus->set_receive_filters(std::array{exactly(0x11)});
   const int descriptor = bus->descriptor();
   run("ip link del vcan7");
   EXPECT_TRUE(is_silent(bus.get()));
@@ -278,7 +278,7 @@ TEST(SocketCanFaults, FramesThatWaitInTheQueueAreKnown) {
 TEST(SocketCan, HearsOnlyWhatItsFiltersPass) {
   const auto a = open_can_bus("socketcan:vcan0", true);
   const auto b = open_can_bus("socketcan:vcan0", true);
-  b->hear_only(std::array{exactly(0x11), exactly(0x8005), CanFilter{0x03, 0x7F, false}});
+  b->set_receive_filters(std::array{exactly(0x11), exactly(0x8005), CanFilter{0x03, 0x7F, false}});
   std::vector<CanFrame> sent;
   for (std::uint32_t id : {0x10U, 0x11U, 0x111U, 0x183U, 0x7FFU}) sent.push_back(numbered(id));
   for (std::uint32_t id : {0x11U, 0x8005U, 0x8006U}) {

@@ -25,7 +25,7 @@ class Arm {
     for (const JointConfig& joint : robot_.joints) motors.emplace_back(joint.drive);
     driver = std::make_unique<ArmDriver>(robot_, std::vector<CanBus*>{driver_end_.get()},
                                          ArmDriverOptions{42, false, 2});
-    driver->hear_only_this_arm();
+    driver->set_receive_filters();
   }
 
   void cycle(int request) {

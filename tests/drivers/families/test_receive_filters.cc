@@ -8,7 +8,7 @@
 #include "drivers/families/drive_family.h"
 #include "tests/drivers/families/fake_cia402.h"
 
-namespace limber::test_heard {
+namespace limber::test_receive_filters {
 namespace {
 
 bool passes(const std::vector<CanFilter>& filters, const CanFrame& frame) {
@@ -42,14 +42,14 @@ Robot moteus_robot() {
   return robot;
 }
 
-TEST(Heard, HoldsAllThatIsADrivesOwnOrAnOrderToIt) {
+TEST(ReceiveFilters, HoldsAllThatIsADrivesOwnOrAnOrderToIt) {
   const std::vector<CanFrame> frames = every_kind_of_id();
   for (const Robot& robot : {testing::test_robot(3), moteus_robot(), testing::cia402_robot()}) {
     for (const JointConfig& joint : robot.joints) {
       const auto family = make_drive_family(joint, true, 1e-3);
-      const std::vector<CanFilter> filters = family->heard();
+      const std::vector<CanFilter> filters = family->receive_filters();
       for (const CanFrame& frame : frames) {
-        const bool wanted = family->is_mine(frame) || family->is_order(frame);
+        const bool wanted = family->is_mine(frame) || family->is_foreign_command(frame);
         ASSERT_TRUE(!wanted || passes(filters, frame)) << std::hex << frame.id;
       }
     }
@@ -57,22 +57,24 @@ TEST(Heard, HoldsAllThatIsADrivesOwnOrAnOrderToIt) {
 }
 
 /// 11-bit identifiers that pass.
-std::vector<std::uint32_t> heard_of(const Robot& robot) {
+std::vector<std::uint32_t> filtered_ids(const Robot& robot) {
   std::vector<std::uint32_t> ids;
-  const std::vector<CanFilter> filters = make_drive_family(robot.joints[0], true, 1e-3)->heard();
+  const std::vector<CanFilter> filters =
+      make_drive_family(robot.joints[0], true, 1e-3)->receive_filters();
   for (std::uint32_t id = 0; id <= kStandardIdMax; ++id) {
     if (passes(filters, with_id(id, false))) ids.push_back(id);
   }
   return ids;
 }
 
-TEST(Heard, OfADamiaoDriveAreReplyCommandAndRegisters) {
-  EXPECT_EQ(heard_of(testing::test_robot(1)), std::vector<std::uint32_t>({0x001, 0x011, 0x7FF}));
+TEST(ReceiveFilters, OfADamiaoDriveAreReplyCommandAndRegisters) {
+  EXPECT_EQ(filtered_ids(testing::test_robot(1)),
+            std::vector<std::uint32_t>({0x001, 0x011, 0x7FF}));
 }
 
 // Node 3: NMT, SYNC, and sixteen times its number.
-TEST(Heard, OfACanopenDriveAreItsNodeNumberSyncAndNetworkManagement) {
-  const std::vector<std::uint32_t> ids = heard_of(testing::cia402_robot());
+TEST(ReceiveFilters, OfACanopenDriveAreItsNodeNumberSyncAndNetworkManagement) {
+  const std::vector<std::uint32_t> ids = filtered_ids(testing::cia402_robot());
   EXPECT_EQ(ids.size(), 18U);
   for (std::uint32_t id : ids) EXPECT_TRUE(id == 0 || id == 0x80 || id % 128 == 3) << id;
 }
@@ -87,20 +89,20 @@ class RememberingBus final : public CanBus {
   int receive(std::span<CanFrame> /*frames*/) noexcept override { return 0; }
   int descriptor() const noexcept override { return -1; }
   const CanStatistics& statistics() const noexcept override { return statistics_; }
-  void hear_only(std::span<const CanFilter> wanted) override {
+  void set_receive_filters(std::span<const CanFilter> wanted) override {
     filters.assign(wanted.begin(), wanted.end());
   }
   std::vector<CanFilter> filters;
   CanStatistics statistics_;
 };
 
-TEST(Heard, EachBusHearsItsOwnJoints) {
+TEST(ReceiveFilters, EachBusHearsItsOwnJoints) {
   const Robot robot = testing::test_robot(3, 2);  // joints 1 and 3, joint 2
   for (bool lockstep : {false, true}) {
     RememberingBus a;
     RememberingBus b;
     ArmDriver driver(robot, {&a, &b}, ArmDriverOptions{1, lockstep});
-    driver.hear_only_this_arm();
+    driver.set_receive_filters();
     for (std::uint32_t id : {0x1U, 0x11U, 0x3U, 0x13U})
       EXPECT_TRUE(passes(a.filters, with_id(id, false)));
     for (std::uint32_t id : {0x2U, 0x12U}) {
@@ -111,15 +113,15 @@ TEST(Heard, EachBusHearsItsOwnJoints) {
   }
 }
 
-TEST(Heard, TheTipSensorToo) {
+TEST(ReceiveFilters, TheTipSensorToo) {
   Robot robot = testing::test_robot(1);
   robot.has_tip_sensor = true;
   robot.tip_sensor.reply_ids = {0x65, 0x66};
   RememberingBus bus;
   ArmDriver driver(robot, {&bus}, {});
-  driver.hear_only_this_arm();
+  driver.set_receive_filters();
   EXPECT_TRUE(passes(bus.filters, with_id(0x65, false)));
 }
 
 }  // namespace
-}  // namespace limber::test_heard
+}  // namespace limber::test_receive_filters
