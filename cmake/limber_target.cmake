@@ -3,7 +3,9 @@
 #   limber_sources(RESULT [ONLY folder] [EXCEPT ...])   the sources of a folder
 #   limber_library(NAME SOURCES... [LINK targets...])   static library limber_NAME
 #   limber_program(NAME SOURCES... [LINK targets...])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin
-#   limber_tests(NAME [EXCEPT ...] [LINK targets...] [SHARDS n])   GoogleTest program of all test_*.cc below, registered with ctest
+#   limber_tests(NAME [EXCEPT ...] [LINK targets...] [SHARDS n] [PLAIN])   GoogleTest program of all test_*.cc below, registered with
+#                                                 ctest, and part of the target unit_tests. PLAIN: full of Eigen; under sanitizers, which
+#                                                 triple its build, only with LIMBER_SANITIZE_ALL. Else it is part of plain_tests
 #
 # What takes time is Eigen: its headers, which are precompiled once for all, and its templates, which every translation unit
 # instantiates anew. So files are compiled LIMBER_UNITY at a time as one. Two of them may then not have helpers of one name in
@@ -14,6 +16,8 @@ option(LIMBER_BUILD_BENCH "Build the benchmarks" OFF)
 option(LIMBER_WERROR "Treat warnings as errors" OFF)
 set(LIMBER_UNITY 16 CACHE STRING "Source files compiled as one; 0: each by itself")
 set(LIMBER_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
+option(LIMBER_SANITIZE_ALL "Sanitizers also for the tests that are full of Eigen" OFF)
+option(LIMBER_FUZZER "Link the fuzz targets with libFuzzer (clang)" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
@@ -22,7 +26,7 @@ find_program(LIMBER_CCACHE ccache)
 if(LIMBER_CCACHE)
   # What ccache asks for with precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${LIMBER_CCACHE})
-  add_compile_options(-fpch-preprocess)
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 
 if(LIMBER_UNITY)
@@ -45,6 +49,10 @@ endif()
 if(LIMBER_SANITIZE)
   target_compile_options(limber_flags INTERFACE -fsanitize=${LIMBER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(limber_flags INTERFACE -fsanitize=${LIMBER_SANITIZE})
+  if(LIMBER_SANITIZE MATCHES "undefined")
+    # In Eigen's templates these are most of the checks and of the compiler's time; a null pointer shows under ASan anyway.
+    target_compile_options(limber_flags INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
+  endif()
 endif()
 
 # Precompiled headers that all targets share, and those that all tests share.
@@ -96,12 +104,21 @@ function(limber_program name)
   set_target_properties(limber-${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endfunction()
 
+add_custom_target(unit_tests)
+add_custom_target(plain_tests)
 # All test_*.cc of this folder and the ones below in one program; run as several, side by side, if SHARDS is given.
 function(limber_tests name)
-  cmake_parse_arguments(arg "" "SHARDS" "EXCEPT;LINK" ${ARGN})
+  cmake_parse_arguments(arg "PLAIN" "SHARDS" "EXCEPT;LINK" ${ARGN})
+  if(arg_PLAIN AND LIMBER_SANITIZE AND NOT LIMBER_SANITIZE_ALL)
+    return()
+  endif()
   limber_sources(sources EXCEPT ${arg_EXCEPT})
   list(FILTER sources INCLUDE REGEX "(^|/)test_[^/]*$")
   add_executable(test_${name} ${sources})
+  add_dependencies(unit_tests test_${name})
+  if(arg_PLAIN)
+    add_dependencies(plain_tests test_${name})
+  endif()
   target_link_libraries(test_${name} PRIVATE limber_flags ${arg_LINK} GTest::gtest GTest::gtest_main)
   target_precompile_headers(test_${name} REUSE_FROM limber_test_headers)
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 6)
@@ -114,6 +131,7 @@ function(limber_tests name)
   foreach(shard RANGE ${last})
     add_test(NAME ${name}_${shard} COMMAND test_${name})
     set_tests_properties(${name}_${shard} PROPERTIES
-      TIMEOUT 900 ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+      TIMEOUT 900 ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}"
+      LABELS $<IF:$<BOOL:${arg_PLAIN}>,plain,unit>)
   endforeach()
 endfunction()

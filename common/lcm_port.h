@@ -6,23 +6,25 @@
 #include <cstdint>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/decode_message.h"
+#include "common/lcm_url.h"
 #include "common/wait_readable.h"
 
 namespace limber {
 
-/// Longest encoded message: never fragmented on any link.
-inline constexpr int kMaxMessageBytes = 1400;
-
 class LcmPort {
  public:
-  /// Opens `url` with a 2 MiB receive buffer. Refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1 is
-  /// set. Throws ConfigError with the two commands that help when there is no multicast route.
-  explicit LcmPort(const std::string& url);
+  enum class Use { kBothWays, kPublishOnly };
+  /// Opens `url`, see checked_lcm_url(). Throws ConfigError, without a multicast route with the two
+  /// commands that help. LCM's receiving thread starts here, with the priority of the caller; a
+  /// port for publishing alone has none, and must not subscribe.
+  explicit LcmPort(const std::string& url, Use use = Use::kBothWays);
 
   /// Encodes into a buffer of its own and sends. False if the message is too long or LCM could not
   /// send it.
@@ -37,12 +39,18 @@ class LcmPort {
   template <typename Message, typename Handler>
   void subscribe(const char* channel, int queue, Handler handler);
 
-  /// Handles everything that has arrived, without waiting. LCM's own receive path may allocate.
-  void handle_waiting() noexcept;
+  /// Handles what has arrived, at most so many messages, without waiting. LCM's own receive path
+  /// may allocate.
+  void handle_waiting(int most = kEverything) noexcept;
 
+  /// -1 of a port for publishing alone.
   int descriptor() const noexcept { return descriptor_; }
+  /// Messages of subscribed channels that were dropped: too long, or of another version of their
+  /// type.
+  std::int64_t undecodable() const noexcept { return undecodable_; }
 
  private:
+  static constexpr int kEverything = std::numeric_limits<int>::max();
   using BytesHandler = std::function<void(const void* data, unsigned size)>;
   bool publish_bytes(const char* channel, int size) noexcept;
   void subscribe_bytes(const char* channel, int queue, BytesHandler handler);
@@ -51,29 +59,19 @@ class LcmPort {
       handlers_;  // outlive lcm_, which holds pointers to them
   std::unique_ptr<lcm::LCM> lcm_;
   int descriptor_ = -1;
+  std::int64_t undecodable_ = 0;
   std::array<std::uint8_t, kMaxMessageBytes> buffer_{};
 };
-
-/// `url` with a 2 MiB receive buffer; refuses a ttl above 0 unless LIMBER_ALLOW_REMOTE=1. Throws
-/// ConfigError. Set-up only.
-std::string checked_lcm_url(const std::string& url);
-/// The error message for a machine without a multicast route.
-std::string no_multicast_route(const std::string& url);
-
-/// $LIMBER_ARM_URL or the arm plane's address of the channel table; $LCM_DEFAULT_URL or the user
-/// plane's.
-std::string arm_plane_url();
-std::string user_plane_url();
 
 template <typename Message, typename Handler>
 void LcmPort::subscribe(const char* channel, int queue, Handler handler) {
   subscribe_bytes(channel, queue,
                   [this, handler, message = Message()](const void* data, unsigned size) mutable {
-                    if (size > static_cast<unsigned>(kMaxMessageBytes) ||
-                        message.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size)) {
-                      return;
+                    if (decode_message(data, size, &message)) {
+                      handler(message);
+                    } else {
+                      ++undecodable_;
                     }
-                    handler(message);
                   });
 }
 

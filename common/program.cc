@@ -1,13 +1,16 @@
 #include "common/program.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 
 #include "common/config_error.h"
+#include "common/log_sink.h"
 
 namespace limber {
 namespace {
@@ -18,8 +21,16 @@ void request_stop(int) { stop_requested = 1; }
 
 void start_log(const std::string& name) {
   spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+      std::make_shared<spdlog::logger>("", std::make_shared<LogSink>(STDERR_FILENO)));
   spdlog::set_pattern("%T.%e " + name + ": %v");
+}
+
+/// What was printed is where it should be; a full disk shows when the buffers are emptied.
+void finish_output() {
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && std::ferror(stdout) == 0) return;
+  if (!flushed && errno == EPIPE) return;  // the reader has seen enough
+  throw std::runtime_error("standard output could not be written; is the disk full?");
 }
 
 int failed(const std::string& name, const std::exception& error, ExitCode code) {
@@ -41,7 +52,9 @@ int run_program(CommandLine& line, int argc, char** argv, const std::function<in
   std::signal(SIGPIPE, SIG_IGN);
   start_log(line.name());
   try {
-    return line.parse(argc, argv) ? run() : kExitDone;
+    const int code = line.parse(argc, argv) ? run() : kExitDone;
+    finish_output();
+    return code;
   } catch (const ConfigError& error) {
     return failed(line.name(), error, kExitWrongInput);
   } catch (const std::exception& error) {

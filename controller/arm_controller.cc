@@ -41,8 +41,9 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
 ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOptions& options)
     : options_(options),
       supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
-      cycle_(controllable(robot), options.law,
-             options.simulated || robot.robot.on_virtual_buses()) {
+      cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
+      start_watch_(robot.robot),
+      encoder_watch_(robot.robot) {
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -62,16 +63,30 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
 
   // After a longer gap the goal goes on from where it was, not from where it would be.
   const std::int64_t periods = std::min(judgement.missed, kLongestStep - 1) + 1;
+  const double dt_s = static_cast<double>(periods) * period_s_;
   const Activity activity = activity_of(supervisor_);
-  if (activity != Activity::kStandby &&
-      !cycle_.step(activity, static_cast<double>(periods) * period_s_)) {
+  if (activity != Activity::kStandby && !cycle_.step(activity, dt_s))
     supervisor_.raise(Event::kTorqueInvalid);
-  }
+  if (judgement.usable) watch_motion(state, dt_s);
   if (activity_of(supervisor_) == Activity::kStandby) cycle_.stand_by(standby());
 
   write_answer(state);
   write_status(started_ns);
   return answer_;
+}
+
+void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexcept {
+  const bool engaged = supervisor_.engaged();
+  if (!engaged) encoder_watch_.reset();
+  if (engaged && !was_engaged_) start_watch_.begin(state);
+  if (supervisor_.mode() != Mode::kHold) start_watch_.end();
+  was_engaged_ = engaged;
+  if (!engaged) return;
+  if (const int joint = start_watch_.strayed(state); joint >= 0)
+    supervisor_.raise(Event::kStrayed, joint);
+  const int joint =
+      encoder_watch_.stopped(state, cycle_.gravity(), cycle_.trace().terms.M_total, dt_s);
+  if (joint >= 0) supervisor_.raise(Event::kEncoderStopped, joint);
 }
 
 void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
@@ -125,6 +140,7 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.state_seq = answer_.state_seq;
   status_.mode = answer_.mode;
   status_.reason = supervisor_.reason();
+  status_.reason_joint = static_cast<std::int8_t>(supervisor_.reason_joint());
   status_.states_received = supervisor_.states().received();
   status_.states_lost = supervisor_.states().lost();
   controller::write_status(cycle_.trace(), &status_);
@@ -160,10 +176,12 @@ const char* ArmController::on_gains(const compliance_gains_t& gains) noexcept {
 }
 
 void ArmController::on_silence() noexcept {
+  supervisor_.forget_sequence();
   supervisor_.raise(Event::kStateLost);
   ++status_.seq;
   status_.mode = static_cast<std::int8_t>(supervisor_.mode());
   status_.reason = supervisor_.reason();
+  status_.reason_joint = static_cast<std::int8_t>(supervisor_.reason_joint());
 }
 
 }  // namespace limber

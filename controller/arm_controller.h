@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "controller/modes/encoder_watch.h"
+#include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
 #include "controller/torque_cycle.h"
 #include "robots/loader/load_robot.h"
@@ -53,7 +55,12 @@ class ArmController {
   const char* on_goal(const compliance_goal_t& goal) noexcept;
   const char* on_gains(const compliance_gains_t& gains) noexcept;
 
-  /// Realtime only: no JOINT_STATE for this long. The supervisor enters FAULT; the next answer
+  /// A request was refused before it came here.
+  void count_refusal() noexcept { ++status_.requests_refused; }
+  /// Messages so far that could not be read.
+  void count_undecodable(std::int64_t count) noexcept { status_.messages_undecodable = count; }
+
+  /// Realtime only: no new JOINT_STATE for this long. The supervisor enters FAULT; the next answer
   /// carries it.
   void on_silence() noexcept;
 
@@ -61,6 +68,7 @@ class ArmController {
 
  private:
   void apply_timeline(std::int64_t time_ns) noexcept;
+  void watch_motion(const joint_state_t& state, double dt_s) noexcept;
   controller::Standby standby() const noexcept;
   void write_answer(const joint_state_t& state) noexcept;
   void write_status(std::int64_t started_ns) noexcept;
@@ -69,6 +77,9 @@ class ArmController {
   ArmControllerOptions options_;
   controller::Supervisor supervisor_;
   controller::TorqueCycle cycle_;
+  controller::StartWatch start_watch_;
+  controller::EncoderWatch encoder_watch_;
+  bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   double period_s_ = 0.0;
   joint_command_t answer_{};

@@ -15,7 +15,27 @@ namespace {
 // Lock step keeps everything, realtime only needs the newest; the rest is counted as lost.
 constexpr int kStateQueue = 64;
 constexpr int kRequestQueue = 32;
+// Then the next state is looked for: no flood of requests keeps it waiting.
+constexpr int kRequestsAtOnce = 2;
 constexpr std::int64_t kLogInterval_ns = 200'000'000;
+
+const char* decide(ArmController* controller, const mode_request_t& request) noexcept {
+  return controller->on_mode(request);
+}
+const char* decide(ArmController* controller, const compliance_goal_t& goal) noexcept {
+  return controller->on_goal(goal);
+}
+const char* decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
+  return controller->on_gains(gains);
+}
+
+bool is_stop(const mode_request_t& request) noexcept {
+  return request.request == mode_request_t::REQUEST_STOP;
+}
+template <typename Request>
+bool is_stop(const Request&) noexcept {
+  return false;
+}
 
 RealtimeGrant request_realtime(const ControllerProcessOptions& options) {
   if (options.lockstep || options.priority == 0) return {};
@@ -29,6 +49,7 @@ RealtimeGrant request_realtime(const ControllerProcessOptions& options) {
 ControllerProcess::ControllerProcess(ArmController* controller,
                                      const ControllerProcessOptions& options)
     : controller_(controller),
+      guard_(controller->status().controller),
       options_(options),
       // LCM starts a thread for each plane. The user plane's, which anybody may flood, keeps normal
       // priority; the arm plane's inherits ours.
@@ -37,18 +58,17 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       arm_(arm_plane_url()) {
   arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
                                 [this](const joint_state_t& state) { on_state(state); });
-  user_.subscribe<mode_request_t>(
-      channels::kModeRequest, kRequestQueue, [this](const mode_request_t& request) {
-        reply(request, "mode request refused", controller_->on_mode(request));
-      });
-  user_.subscribe<compliance_goal_t>(channels::kComplianceGoal, kRequestQueue,
-                                     [this](const compliance_goal_t& goal) {
-                                       reply(goal, "goal refused", controller_->on_goal(goal));
-                                     });
-  user_.subscribe<compliance_gains_t>(channels::kComplianceGains, kRequestQueue,
-                                      [this](const compliance_gains_t& gains) {
-                                        reply(gains, "gains refused", controller_->on_gains(gains));
-                                      });
+  require_local(user_plane_url(), options.moves_motors);
+  require_local(arm_plane_url(), options.moves_motors);
+  subscribe<mode_request_t>(channels::kModeRequest, "mode request refused");
+  subscribe<compliance_goal_t>(channels::kComplianceGoal, "goal refused");
+  subscribe<compliance_gains_t>(channels::kComplianceGains, "gains refused");
+}
+
+template <typename Request>
+void ControllerProcess::subscribe(const char* channel, const char* what) {
+  user_.subscribe<Request>(channel, kRequestQueue,
+                           [this, what](const Request& request) { take(request, what); });
 }
 
 void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
@@ -69,7 +89,8 @@ void ControllerProcess::handle_waiting() noexcept {
   arm_.handle_waiting();
   if (waiting_) answer(newest_);
   waiting_ = false;
-  user_.handle_waiting();  // after the answer: users wait for the arm, not the other way round
+  // After the answer: users wait for the arm, not the other way round.
+  user_.handle_waiting(kRequestsAtOnce);
 }
 
 void ControllerProcess::on_state(const joint_state_t& state) noexcept {
@@ -82,16 +103,19 @@ void ControllerProcess::on_state(const joint_state_t& state) noexcept {
 }
 
 void ControllerProcess::answer(const joint_state_t& state) noexcept {
-  last_state_ns_ = monotonic_ns();
   const joint_command_t& torque = controller_->step(state);
   arm_.publish(channels::kJointTorque, torque);
   if (torque.state_seq == answered_seq_ && torque.session == answered_session_) return;
+  last_state_ns_ = monotonic_ns();
   answered_seq_ = torque.state_seq;
   answered_session_ = torque.session;
   user_.publish(channels::kJointTorque, torque);
-  if (torque.state_seq % channels::kControllerStatusEvery == 0) {
-    user_.publish(channels::kControllerStatus, controller_->status());
-  }
+  if (torque.state_seq % channels::kControllerStatusEvery == 0) publish_status();
+}
+
+void ControllerProcess::publish_status() noexcept {
+  controller_->count_undecodable(arm_.undecodable() + user_.undecodable());
+  user_.publish(channels::kControllerStatus, controller_->status());
 }
 
 void ControllerProcess::check_silence() noexcept {
@@ -99,12 +123,24 @@ void ControllerProcess::check_silence() noexcept {
   if (now_ns - last_state_ns_ < kSilence_ns) return;
   last_state_ns_ = now_ns;
   controller_->on_silence();
-  user_.publish(channels::kControllerStatus, controller_->status());
+  publish_status();
 }
 
 template <typename Request>
-void ControllerProcess::reply(const Request& request, const char* what,
-                              const char* reason) noexcept {
+const char* ControllerProcess::judge(const Request& request) noexcept {
+  if (!is_stop(request)) {
+    const char* reason = guard_.check(request.controller, request.client, request.seq);
+    if (reason != nullptr) {
+      controller_->count_refusal();
+      return reason;
+    }
+  }
+  return decide(controller_, request);
+}
+
+template <typename Request>
+void ControllerProcess::take(const Request& request, const char* what) noexcept {
+  const char* reason = judge(request);
   request_answer_t answer;
   answer.time_ns = controller_->status().time_ns;
   answer.client = request.client;

@@ -8,6 +8,7 @@
 #include "common/lcm_port.h"
 #include "common/realtime.h"
 #include "controller/arm_controller.h"
+#include "controller/request_guard.h"
 
 namespace limber {
 
@@ -15,11 +16,14 @@ struct ControllerProcessOptions {
   bool lockstep = false;    ///< every state is answered in order; no clock is read
   double duration_s = 0.0;  ///< ends by itself after this long; 0: never
   int priority = 0;         ///< SCHED_FIFO priority to request; 0: none
+  /// Some bus is no simulated one: requests must not come from the network.
+  bool moves_motors = false;
 };
 
 class ControllerProcess {
  public:
-  /// Opens both planes. The controller outlives the process. Throws ConfigError.
+  /// Opens both planes, see require_local(). The controller outlives the process. Throws
+  /// ConfigError.
   ControllerProcess(ArmController* controller, const ControllerProcessOptions& options);
 
   /// Runs until the duration is over or `stop` is set.
@@ -33,12 +37,19 @@ class ControllerProcess {
   void answer(const joint_state_t& state) noexcept;
   void handle_waiting() noexcept;
   void check_silence() noexcept;
-  /// Publishes REQUEST_ANSWER; a refusal also goes to the log.
+  /// Guard first, then the controller.
   template <typename Request>
-  void reply(const Request& request, const char* what, const char* reason) noexcept;
+  const char* judge(const Request& request) noexcept;
+  /// Judges a request and publishes REQUEST_ANSWER; a refusal also goes to the log.
+  template <typename Request>
+  void take(const Request& request, const char* what) noexcept;
+  template <typename Request>
+  void subscribe(const char* channel, const char* what);
+  void publish_status() noexcept;
   void log_refusal(const char* what, const char* reason) noexcept;
 
   ArmController* controller_;
+  RequestGuard guard_;
   ControllerProcessOptions options_;
   LcmPort user_;
   RealtimeGrant grant_;  // between the planes, see the constructor
@@ -47,7 +58,7 @@ class ControllerProcess {
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;
   std::int64_t answered_seq_ = -1;
-  std::int64_t last_state_ns_ = 0;
+  std::int64_t last_state_ns_ = 0;  ///< that was new
   std::int64_t logged_ns_ = 0;
 };
 

@@ -83,7 +83,8 @@ int run(const Arguments& given) {
   const ArmControllerOptions options = options_from(given, robot.robot, lockstep);
   ArmController controller(robot, options);
   if (scenario) controller.set_timeline(&scenario->timeline);
-  ControllerProcess process(&controller, {lockstep, given.duration_s, given.priority});
+  ControllerProcess process(
+      &controller, {lockstep, given.duration_s, given.priority, !robot.robot.on_virtual_buses()});
   const auto& stop = stop_on_signals();
   spdlog::info("{}: {} joints, law {}, {}, controller {}", robot.robot.name, robot.robot.size(),
                options.law, lockstep ? "lock step" : "realtime", options.controller);

@@ -55,6 +55,7 @@ ArmDriver::ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses,
       least_round_trip_ns_(options.lockstep ? least_round_trip_ns_of(robot) : 0) {
   drives_.add_bus_frames(&buses_);
   if (robot.has_tip_sensor) tip_sensor_.emplace(robot.tip_sensor, options.bridged_cycles);
+  if (robot.emergency_stop) emergency_stop_.emplace(*robot.emergency_stop, robot.rate_hz);
   state_.session = session_;
   state_.period_ns = std::llround(1e9 / rate_hz_);
   state_.num_joints = static_cast<std::int8_t>(robot.size());
@@ -102,6 +103,7 @@ void ArmDriver::set_receive_filters() {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     std::vector<CanFilter> filters = drives_.receive_filters(b);
     if (tip_sensor_ && tip_sensor_->bus() == b) tip_sensor_->add_receive_filters(&filters);
+    if (emergency_stop_) emergency_stop_->add_receive_filters(b, &filters);
     if (lockstep_)
       filters.insert(filters.end(), {exactly(lockstep::kTickId), exactly(lockstep::kTockId)});
     buses_[b].set_receive_filters(filters);
@@ -132,6 +134,8 @@ void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcep
   if (frame.error || buses_[bus].take_lockstep(frame)) return;
   if (tip_sensor_ && tip_sensor_->is_mine(bus, frame)) {
     tip_sensor_->receive(frame, late);
+  } else if (emergency_stop_ && emergency_stop_->is_mine(bus, frame)) {
+    emergency_stop_->receive(frame);
   } else if (!drives_.receive(bus, frame, late)) {
     buses_[bus].count_foreign();
     // This driver's own frames do not come back to it.
@@ -149,6 +153,7 @@ bool ArmDriver::complete() const noexcept {
 const joint_state_t& ArmDriver::finish_cycle() noexcept {
   drives_.close_cycle(cycle_, 1e-9 * static_cast<double>(time_ns_));
   if (tip_sensor_) tip_sensor_->close_cycle();
+  if (emergency_stop_) check_emergency_stop();
   supervisor_.check(buses_, &drives_);
   drives_.update_torque_present();
   if ((cycle_ + 1) % channels::kDriverStatusEvery == 0) {
@@ -159,6 +164,13 @@ const joint_state_t& ArmDriver::finish_cycle() noexcept {
   drives_.write_state(&state_);
   if (tip_sensor_) tip_sensor_->write_state(&state_);
   return state_;
+}
+
+void ArmDriver::check_emergency_stop() noexcept {
+  emergency_stop_->close_cycle();
+  if (emergency_stop_->stopped()) drives_.apply(DriveEvent::kEmergencyStop);
+  if (emergency_stop_->power_is_off()) drives_.apply(DriveEvent::kEmergencyOff);
+  state_.emergency_stop = emergency_stop_->state();
 }
 
 // --- 4. accept -----------------------------------------------------------------------------------

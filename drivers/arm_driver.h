@@ -15,6 +15,7 @@
 #include "drivers/can/can_bus.h"
 #include "drivers/controller_watch.h"
 #include "drivers/drive/bus_end.h"
+#include "drivers/drive/emergency_stop_link.h"
 #include "drivers/drive/tip_sensor_link.h"
 #include "drivers/drive_supervisor.h"
 #include "drivers/gate/torque_gate.h"
@@ -107,6 +108,7 @@ class ArmDriver {
   void receive(bool before_commands) noexcept;
   void route(std::size_t bus, const CanFrame& frame, bool late) noexcept;
   void advance_shut_down() noexcept;
+  void check_emergency_stop() noexcept;
   GateSituation situation() const noexcept;
 
   double rate_hz_;
@@ -116,6 +118,7 @@ class ArmDriver {
   std::vector<BusEnd> buses_;
   ArmDrives drives_;
   std::optional<TipSensorLink> tip_sensor_;
+  std::optional<EmergencyStopLink> emergency_stop_;
   DriveSupervisor supervisor_;
   TorqueGate gate_;
   ControllerWatch controller_watch_;

@@ -29,7 +29,7 @@ class ArmDrives {
   void apply(DriveEvent event, int joint = -1) noexcept;
   bool in(DriveState state) const noexcept { return machine_.state() == state; }
   /// Commands sent since the state was entered.
-  int cycles_in_state() const noexcept { return cycles_in_state_; }
+  std::int64_t cycles_in_state() const noexcept { return cycles_in_state_; }
   const std::vector<ArmJoint>& joints() const noexcept { return joints_; }
   bool all_answered() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::answered); }
   bool all_disabled() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::disabled); }
@@ -101,7 +101,7 @@ class ArmDrives {
   std::vector<ArmJoint> joints_;
   DriveStateMachine machine_;
   int settling_cycles_;  ///< FALLBACK: damping before the position is held
-  int cycles_in_state_ = 0;
+  std::int64_t cycles_in_state_ = 0;
   std::array<JointTorque, kMaxJoints> torque_{};          ///< accepted last, sent next
   std::array<double, kMaxJoints> tau_gravity_{};          ///< N m, of the command accepted last
   std::array<JointTorque, kMaxJoints> torque_present_{};  ///< sent last, or exerted by the drives

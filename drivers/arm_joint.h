@@ -110,7 +110,7 @@ class ArmJoint {
 
   JointConfig joint_;
   std::vector<Drive> motors_;  ///< one or two
-  int fast_cycles_ = 0;
+  std::int64_t fast_cycles_ = 0;
 };
 
 }  // namespace limber

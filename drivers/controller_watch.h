@@ -36,7 +36,7 @@ class ControllerWatch {
  private:
   int bridged_cycles_;
   bool answered_ = false;  ///< a command was accepted since the cycle began
-  int silent_cycles_ = 0;
+  std::int64_t silent_cycles_ = 0;
   std::int64_t missing_ = 0;
   std::array<std::int64_t, 16> verdicts_{};  ///< by VERDICT_*
 };

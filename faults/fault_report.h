@@ -5,10 +5,21 @@
 
 namespace limber::faults {
 
-/// {"faults": [{"name", "most_cycles", "watched_cycles", "from_start", "families": {PROTOCOL:
-/// REACTION}}]}. A reaction has the members of Reaction, the worst over `phases` phases of the
-/// motion, with "cycles": [least, most], and the robot's name and rate, the joint's and its bus's.
-/// `name`: one fault only, empty: all. Throws ConfigError for a name that is none.
-std::string report_json(int phases, const std::string& name);
+struct ReportOptions {
+  int phases = 3;
+  std::string fault;   ///< by its name; empty: all
+  std::string place;   ///< only faults of this place; empty: all
+  std::string family;  ///< only this protocol's; empty: all
+  std::string traces;  ///< folder for one candump log a run, PROTOCOL-PHASE.log; empty: none
+};
+
+/// {"faults": [{"name", "place", "most_cycles", "watched_cycles", "from_start", "families":
+/// {PROTOCOL: REACTION}}]}. A reaction has the members of Reaction, the worst over the phases of
+/// the motion, with "cycles": [least, most], the robot's name and rate, the joint's and its bus's,
+/// and "each": the reaction at each phase. Throws ConfigError for a word that is none.
+std::string report_json(const ReportOptions& options);
+
+/// {"faults": [{"name", "place", "families": [PROTOCOL, ..]}]}, without injecting any.
+std::string list_json();
 
 }  // namespace limber::faults

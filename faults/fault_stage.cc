@@ -1,12 +1,14 @@
 #include "faults/fault_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 namespace limber::faults {
 namespace {
 
+constexpr int kVerdicts = 16;  // room in driver_status_t
 constexpr std::int64_t kHoldAt_ns = 300'000'000;
 constexpr std::int64_t kActiveAt_ns = 500'000'000;
 constexpr std::int64_t kCircleAt_ns = 600'000'000;
@@ -43,7 +45,23 @@ Reaction counters(const driver_status_t& status) {
   out.late = sum(status.replies_late, status.num_joints);
   out.invalid = sum(status.replies_invalid, status.num_joints);
   out.foreign = sum(status.frames_foreign, status.num_buses);
+  out.refused = sum(status.commands_refused, kVerdicts);
   return out;
+}
+
+/// Of the refusals between the two.
+int most_frequent_verdict(const driver_status_t& before, const driver_status_t& after) {
+  std::array<std::int64_t, kVerdicts> counts{};
+  for (std::size_t i = 0; i < kVerdicts; ++i)
+    counts[i] = after.commands_refused[i] - before.commands_refused[i];
+  return static_cast<int>(std::ranges::max_element(counts) - counts.begin());
+}
+
+void note_motion(const sim_truth_t& start, const sim_truth_t& now, Reaction* reaction) {
+  for (int i = 0; i < now.num_joints; ++i) {
+    reaction->moved_rad = std::max(reaction->moved_rad, std::abs(now.q[i] - start.q[i]));
+    reaction->speed_rad_per_s = std::max(reaction->speed_rad_per_s, std::abs(now.v[i]));
+  }
 }
 
 }  // namespace
@@ -55,7 +73,14 @@ FaultStage::FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated)
     tampered_.push_back(bus.get());
     return bus;
   };
-  lab_ = std::make_unique<Lab>(robot, scenario_, LabOptions{simulated, tamper});
+  const auto before_gate = [this](const joint_command_t& answer, auto* instead) {
+    if (answer_change_) {
+      answer_change_(answer, instead);
+    } else {
+      instead->push_back(answer);
+    }
+  };
+  lab_ = std::make_unique<Lab>(robot, scenario_, LabOptions{simulated, tamper, before_gate});
   outside_ = lab_->attach();
   family_ = make_drive_family(joint(), bus_config().fd, 1.0 / robot.robot.rate_hz);
 }
@@ -91,6 +116,11 @@ void FaultStage::step() {
   for (TamperedBus* bus : tampered_) bus->release();
   if (each_cycle_) each_cycle_();
   lab_->step();
+  if (frames_) frames_->write_cycle(lab_->state().time_ns);
+}
+
+void FaultStage::record(const std::string& path) {
+  frames_ = std::make_unique<FrameLog>(path, robot_.robot, lab_.get());
 }
 
 void FaultStage::run(int cycles) {
@@ -102,12 +132,16 @@ bool FaultStage::on() const { return lab_->state().drive_state == joint_state_t:
 bool FaultStage::moves() const { return on() && lab_->controller_status().requests_refused == 0; }
 
 Reaction FaultStage::watch(int cycles) {
-  const Reaction before = counters(lab_->driver_status());
+  const driver_status_t status_before = lab_->driver_status();
+  const Reaction before = counters(status_before);
   const bool was_on = on();
+  const sim_truth_t start = lab_->truth();
   Reaction out;
   for (int i = 1; i <= cycles; ++i) {
     step();
     const joint_state_t& state = lab_->state();
+    note_motion(start, lab_->truth(), &out);
+    out.returned = out.returned || (out.cycles >= 0 && on());
     const bool left = was_on ? state.drive_state != joint_state_t::DRIVE_ON
                              : state.drive_state == joint_state_t::DRIVE_FAULT;
     if (out.cycles < 0 && left) {
@@ -128,6 +162,8 @@ Reaction FaultStage::watch(int cycles) {
   out.late = after.late - before.late;
   out.invalid = after.invalid - before.invalid;
   out.foreign = after.foreign - before.foreign;
+  out.refused = after.refused - before.refused;
+  out.verdict = most_frequent_verdict(status_before, lab_->driver_status());
   return out;
 }
 

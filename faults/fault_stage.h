@@ -9,6 +9,7 @@
 
 #include "drivers/families/drive_family.h"
 #include "faults/tampered_bus.h"
+#include "lab/frame_log.h"
 #include "lab/lab.h"
 
 namespace limber::faults {
@@ -19,12 +20,18 @@ struct Reaction {
   int state = 0;    ///< then, joint_state_t::DRIVE_*
   int cause = 0;    ///< then, FAULT_*
   int joint = -1;
-  std::string text;          ///< what lies behind the cause, in words
-  int fault_cycles = -1;     ///< until DRIVE_FAULT
-  std::int64_t lost = 0;     ///< replies, over all motors
-  std::int64_t late = 0;     ///< likewise
-  std::int64_t invalid = 0;  ///< likewise
-  std::int64_t foreign = 0;  ///< frames
+  std::string text;              ///< what lies behind the cause, in words
+  int fault_cycles = -1;         ///< until DRIVE_FAULT
+  std::int64_t lost = 0;         ///< replies, over all motors
+  std::int64_t late = 0;         ///< likewise
+  std::int64_t invalid = 0;      ///< likewise
+  std::int64_t foreign = 0;      ///< frames
+  std::int64_t refused = 0;      ///< commands of the controller
+  int verdict = 0;               ///< by which most of them were, driver_status_t::VERDICT_*
+  bool returned = false;         ///< the drives were ON again although nobody acknowledged
+  double moved_rad = 0.0;        ///< farthest from where the fault began, of all joints
+  double speed_rad_per_s = 0.0;  ///< greatest, of all joints
+  std::int64_t fault_ns = 0;     ///< arm time of its begin
 };
 
 /// Set-up and members allocate; nothing here runs beside a real arm.
@@ -48,9 +55,23 @@ class FaultStage {
   void change_replies(TamperedBus::Change change);
   /// Somebody else sends a frame on the drive's bus, at the start of a cycle.
   void send_from_outside(const CanFrame& frame);
+  /// What reaches the gate in the place of the controller's answers, from now on.
+  using AnswerChange =
+      std::function<void(const joint_command_t& answer, std::vector<joint_command_t>* instead)>;
+  void change_answers(AnswerChange change) { answer_change_ = std::move(change); }
+  const Robot& robot() const { return robot_.robot; }
+  /// That the answers are to.
+  const joint_state_t& state() const { return lab_->state(); }
+  /// Writes all buses' frames to a candump log from now on. Throws ConfigError.
+  void record(const std::string& path);
+  /// For what is random in a fault.
+  void seed(unsigned seed) { seed_ = seed; }
+  unsigned seed() const { return seed_; }
   /// Before every cycle from now on.
   void set_each_cycle(std::function<void()> call) { each_cycle_ = std::move(call); }
 
+  /// One more cycle.
+  void step();
   /// Runs the first `cycles` cycles.
   void run(int cycles);
   /// The drives are ON and every request was accepted.
@@ -60,7 +81,6 @@ class FaultStage {
 
  private:
   bool on() const;
-  void step();
 
   const LoadedRobot& robot_;
   Scenario scenario_;
@@ -69,6 +89,9 @@ class FaultStage {
   std::vector<std::unique_ptr<CanBus>> outside_;
   std::unique_ptr<DriveFamily> family_;
   std::function<void()> each_cycle_;
+  AnswerChange answer_change_;
+  std::unique_ptr<FrameLog> frames_;
+  unsigned seed_ = 1;
 };
 
 }  // namespace limber::faults

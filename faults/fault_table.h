@@ -1,4 +1,4 @@
-// The faults of a bus and its drives that are injected: one table, one row a fault.
+// The faults that are injected: one table, one row a fault.
 #pragma once
 
 #include <functional>
@@ -10,21 +10,31 @@
 
 namespace limber::faults {
 
+/// Where a fault is; those of the bus are in the table of docs/bus.md.
+enum class Place : std::uint8_t { kBus, kController, kFeedback };
+const char* name_of(Place place) noexcept;
+
 struct Fault {
-  std::string name;  ///< in the tables of docs/bus.md
+  std::string name;  ///< in docs/bus.md and faults/matrix.yaml
   /// Causes the fault, in an arm that moves.
   std::function<void(FaultStage*)> begin = {};
-  /// What the drives have stored that differs from robot.yaml, from the start; then the arm is not
-  /// to be enabled. Empty: nothing.
-  std::function<void(DriveConfig*)> stored = {};
+  /// How the drives differ from robot.yaml, from the start; then the arm is not to be enabled.
+  /// Empty: not at all.
+  std::function<void(Robot*)> stored = {};
   /// The drives leave ON within so many cycles; 0: the fault is bridged and counted.
   int most_cycles = 0;
   int watched_cycles = 100;
   /// Words of the protocols that know the fault; empty: all.
   std::vector<DriveProtocol> protocols = {};
+  Place place = Place::kBus;
 };
 
+/// All of them.
 std::span<const Fault> fault_table();
+// Its parts.
+std::vector<Fault> bus_faults();
+std::vector<Fault> controller_faults();
+std::vector<Fault> feedback_faults();
 
 /// An arm of each family of drives.
 struct Family {
@@ -34,8 +44,12 @@ struct Family {
 std::span<const Family> families();
 bool applies(const Fault& fault, DriveProtocol protocol);
 
-/// One fault on one family, at a phase of the motion: 0, 1, 2, ... Throws std::runtime_error if the
-/// arm does not come up.
-Reaction react(const Fault& fault, const LoadedRobot& robot, int phase);
+struct Run {
+  int phase = 0;      ///< of the motion: 0, 1, 2, ...; all below 1000 differ. Also the seed.
+  std::string trace;  ///< candump log to write, from 0.1 s before the fault on; empty: none
+};
+/// One fault on one arm. Throws std::runtime_error if the arm does not come up, ConfigError if the
+/// trace cannot be written.
+Reaction react(const Fault& fault, const LoadedRobot& robot, const Run& run);
 
 }  // namespace limber::faults

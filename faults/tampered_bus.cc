@@ -14,15 +14,25 @@ int TamperedBus::send(std::span<const CanFrame> frames) noexcept {
   int sent = 0;
   for (const CanFrame& frame : frames) {
     if (refuses_ || cut_off()) break;
-    const bool replaced = replacement_ && has_id(frame, replacement_->id);
-    if (bus_->send(replaced ? *replacement_ : frame) != 1) break;
-    if (replaced) replacement_.reset();
+    if (!pass_on(frame)) break;
     ++sent;
   }
   refused_ += static_cast<std::int64_t>(frames.size()) - sent;
   if (refuses_) statistics_.last_errno = ENOBUFS;
   update_statistics();
   return sent;
+}
+
+/// False if the bus does not take it.
+bool TamperedBus::pass_on(const CanFrame& frame) noexcept {
+  if (sent_change_) {
+    const std::optional<CanFrame> changed = sent_change_(frame);
+    return !changed || bus_->send(*changed) == 1;
+  }
+  const bool replaced = replacement_ && has_id(frame, replacement_->id);
+  if (bus_->send(replaced ? *replacement_ : frame) != 1) return false;
+  if (replaced) replacement_.reset();
+  return true;
 }
 
 int TamperedBus::receive(std::span<CanFrame> frames) noexcept {

@@ -20,6 +20,9 @@ class TamperedBus final : public CanBus {
   explicit TamperedBus(CanBus* bus) : bus_(bus) {}
 
   void set_change(Change change) { change_ = std::move(change); }
+  /// What leaves in the place of a sent frame; none: it is lost, without the sender's knowledge.
+  using SentChange = std::function<std::optional<CanFrame>(const CanFrame& frame)>;
+  void set_sent_change(SentChange change) { sent_change_ = std::move(change); }
   /// The next frame sent with this identifier is replaced.
   void replace_sent(const CanFrame& frame) { replacement_ = frame; }
   /// The frame arrives with the next release().
@@ -37,10 +40,12 @@ class TamperedBus final : public CanBus {
 
  private:
   bool cut_off() const noexcept { return statistics_.bus_off || statistics_.link_down; }
+  bool pass_on(const CanFrame& frame) noexcept;
   void update_statistics() noexcept;
 
   CanBus* bus_;
   Change change_;
+  SentChange sent_change_;
   std::optional<CanFrame> replacement_;
   std::vector<CanFrame> held_;
   std::vector<CanFrame> arrived_;

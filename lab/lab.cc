@@ -8,7 +8,7 @@
 namespace limber {
 
 Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& options)
-    : period_ns_(std::llround(1e9 / robot.robot.rate_hz)) {
+    : period_ns_(std::llround(1e9 / robot.robot.rate_hz)), before_gate_(options.before_gate) {
   std::vector<CanBus*> driver_ends;
   std::vector<CanBus*> arm_ends;
   for (std::size_t i = 0; i < robot.robot.buses.size(); ++i) {
@@ -48,7 +48,13 @@ void Lab::step() noexcept {
   driver_->poll();
   state_ = &driver_->finish_cycle();
   torque_ = &controller_->step(*state_);
-  verdict_ = driver_->accept(*torque_);
+  if (before_gate_) {
+    answers_.clear();
+    before_gate_(*torque_, &answers_);
+    for (const joint_command_t& answer : answers_) verdict_ = driver_->accept(answer);
+  } else {
+    verdict_ = driver_->accept(*torque_);
+  }
   ++cycle_;
 }
 

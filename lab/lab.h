@@ -23,6 +23,10 @@ struct LabOptions {
   /// Stands between the driver and its end of a bus, which outlives it. Called once a bus, in the
   /// order of robot.yaml. Empty: nothing does.
   std::function<std::unique_ptr<CanBus>(CanBus* end)> before_driver;
+  /// Puts what reaches the gate in the place of the controller's answer into `instead`. Empty: the
+  /// answer itself.
+  std::function<void(const joint_command_t& answer, std::vector<joint_command_t>* instead)>
+      before_gate;
 };
 
 class Lab {
@@ -37,7 +41,7 @@ class Lab {
   /// One control cycle:
   ///   commands -> nodes answer, arm advances one period -> replies -> JOINT_STATE -> law ->
   ///   JOINT_TORQUE -> gate.
-  /// Free of allocation, locks, logs and exceptions.
+  /// Free of allocation, locks, logs and exceptions, as far as LabOptions::before_gate is.
   void step() noexcept;
 
   std::int64_t cycles() const noexcept { return cycle_; }
@@ -67,6 +71,8 @@ class Lab {
   const joint_command_t* torque_ = nullptr;
   int verdict_ = 0;
   driver_status_t driver_status_{};
+  decltype(LabOptions::before_gate) before_gate_;
+  std::vector<joint_command_t> answers_;
 };
 
 }  // namespace limber

@@ -20,7 +20,7 @@ for key, row in table["channels"].items():
     if "name" in row:
         continue  # the user-plane copy has the same name
     const = "k" + "".join(part.capitalize() for part in key.split("_"))
-    comment = f'{row["type"]}, from {row["from"]}, {row["rate"]}'
+    comment = f"{row['type']}, from {row['from']}, {row['rate']}"
     out.append(f'inline constexpr const char* {const} = "{key}";  // {comment}')
 out.append("")
 for key, row in table["channels"].items():

@@ -173,7 +173,9 @@ bool Simulator::event(const scenario_event_t& message) noexcept {
       set_payload(payload.mass, payload.p_TL);
       return true;
     case scenario_event_t::EVENT_FAULT:
-      if (!sim::read_fault(message, arm_.body().size(), nodes_.has_tip_sensor(), &fault))
+      if (!sim::read_fault(
+              message, {arm_.body().size(), nodes_.has_tip_sensor(), nodes_.has_emergency_stop()},
+              &fault))
         return false;
       nodes_.inject(fault, arm_, clock_.now_ns());
       return true;

@@ -35,15 +35,17 @@ enum class Event : std::uint8_t {
   kSteadyStates,  ///< enough good states in a row
   kAtRest,        ///< the soft stop is over
   // what goes wrong
-  kStateLost,      ///< too many states missed, a joint silent, or no state at all
-  kStateInvalid,   ///< not finite, or not this arm's
-  kDriverFault,    ///< the drives no longer follow
-  kNewSession,     ///< another run of the driver
-  kTorqueInvalid,  ///< the law's result was not finite
-  kDriveNotOn,     ///< the drives were asked for and did not come
+  kStateLost,       ///< too many states missed, a joint silent, or no state at all
+  kStateInvalid,    ///< not finite, or not this arm's
+  kDriverFault,     ///< the drives no longer follow
+  kNewSession,      ///< another run of the driver
+  kTorqueInvalid,   ///< the law's result was not finite
+  kDriveNotOn,      ///< the drives were asked for and did not come
+  kStrayed,         ///< held, but it moves away
+  kEncoderStopped,  ///< it must be moving, but its encoder does not count
   kEstopPressed,
 };
-inline constexpr int kEvents = 15;
+inline constexpr int kEvents = 17;
 
 struct Transition {
   Mode from;

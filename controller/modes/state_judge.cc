@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limber::controller {
 namespace {
@@ -16,6 +17,9 @@ bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noe
       state.drive_state > joint_state_t::DRIVE_FAULT) {
     return false;
   }
+  if (state.emergency_stop < joint_state_t::STOP_NONE ||
+      state.emergency_stop > joint_state_t::STOP_SILENT)
+    return false;
   for (const double* values :
        {state.q, state.v, state.theta, state.theta_dot, state.tau, state.tau_applied}) {
     if (!std::all_of(values, values + joints, [](double x) { return std::isfinite(x); })) {
@@ -49,13 +53,20 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
     judgement.repeated = true;
     return judgement;
   }
+  const std::int64_t jump = state.seq - seq_;
+  if (state.session == session_ && seq_ >= 0 && jump > kMostMissed) {
+    const std::int64_t from_doubted = state.seq - doubted_seq_;
+    const bool goes_on = doubted_seq_ >= 0 && from_doubted > 0 && from_doubted <= kMostMissed;
+    doubted_seq_ = goes_on ? -1 : state.seq;
+    if (!goes_on) return judgement;
+  }
   judgement.first = session_ == 0;
   judgement.new_session = !judgement.first && state.session != session_;
-  if (state.session == session_) judgement.missed = state.seq - seq_ - 1;
+  if (state.session == session_ && seq_ >= 0) judgement.missed = std::min(jump - 1, kMostMissed);
   session_ = state.session;
   seq_ = state.seq;
   ++received_;
-  lost_ += judgement.missed;
+  lost_ += std::min(judgement.missed, std::numeric_limits<std::int64_t>::max() - lost_);
 
   judgement.usable = usable(state, joints_, flags_);
   if (!judgement.usable) return judgement;

@@ -22,9 +22,9 @@ struct StateJudgement {
   bool repeated = false;     ///< its number was seen before in this session: nothing may advance
   bool first = false;        ///< the first state of all
   bool new_session = false;  ///< another run of the driver
-  bool usable = false;       ///< this arm's joints, all numbers finite, sensible period
-  bool fresh = false;        ///< usable, and every joint has answered in this cycle
-  std::int64_t missed = 0;   ///< states between the last one and this one
+  bool usable = false;  ///< this arm's joints, all numbers finite, sensible period, number in reach
+  bool fresh = false;   ///< usable, and every joint has answered in this cycle
+  std::int64_t missed = 0;  ///< states between the last one and this one
   bool silent = false;  ///< states, or a joint's answers, are missing for longer than is bridged
 };
 
@@ -37,9 +37,15 @@ class StateJudge {
   StateJudge(int joints, int bridged_cycles, const JointFlags& flags = {})
       : joints_(joints), bridged_(bridged_cycles), flags_(flags) {}
   StateJudgement judge(const joint_state_t& state) noexcept;
+  /// The next state may have any number: nothing new has come for too long.
+  void forget_sequence() noexcept { seq_ = -1; }
 
   std::int64_t received() const noexcept { return received_; }
   std::int64_t lost() const noexcept { return lost_; }
+
+  /// A number this much higher than the last one is not believed until the next state goes on from
+  /// it: one forged or damaged message must not make all true ones look old.
+  static constexpr std::int64_t kMostMissed = 1000;
 
  private:
   int joints_;
@@ -47,6 +53,7 @@ class StateJudge {
   JointFlags flags_;
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
+  std::int64_t doubted_seq_ = -1;
   std::int64_t received_ = 0;
   std::int64_t lost_ = 0;
 };

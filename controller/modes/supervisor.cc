@@ -38,7 +38,10 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   }
   time_ns_ = state.time_ns;
   drive_state_ = state.drive_state;
+  stop_pressed_ = state.emergency_stop >= joint_state_t::STOP_PRESSED;
+  if (stop_pressed_) raise(Event::kEstopPressed);
   if (judgement.silent) raise(Event::kStateLost);
+  if (drive_state_ != joint_state_t::DRIVE_FAULT) acknowledged_ = false;
   count_steady(judgement);
   watch_drives();
   if (mode_ == Mode::kSoftStop && time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);
@@ -83,9 +86,15 @@ const char* Supervisor::on_mode(const mode_request_t& request) noexcept {
   if (event == Event::kRequestAcknowledge && steady_ < kSteadyStates) {
     return "the cause is not gone: the states are not steady yet";
   }
+  if (event == Event::kRequestAcknowledge && stop_pressed_)
+    return "the emergency stop is pressed, or its input is silent";
   if (event == Event::kRequestActive && !engaged_) return "ACTIVE is entered from HOLD, drives on";
   if (!raise(event)) return "not in this mode";
-  if (event == Event::kRequestAcknowledge) reason_ = controller_status_t::REASON_NONE;
+  if (event == Event::kRequestAcknowledge) {
+    reason_ = controller_status_t::REASON_NONE;
+    reason_joint_ = -1;
+    acknowledged_ = true;
+  }
   if (event == Event::kRequestIdle) idle_requested_ = true;
   take_lease(request.client);
   return nullptr;
@@ -100,13 +109,23 @@ bool Supervisor::not_yet(const mode_request_t& request) const noexcept {
 
 const char* Supervisor::check_client(std::int64_t client) const noexcept {
   if (client == 0) return "client must not be 0";
-  return lease_ == 0 || client == lease_ ? nullptr : "another client holds the lease";
+  if (lease_ == 0 || client == lease_ || lease_is_over()) return nullptr;
+  return "another client holds the lease: until it releases it, or, outside ACTIVE, has requested "
+         "nothing for 10 s; a stop is taken from anybody";
 }
 
-bool Supervisor::raise(Event event) noexcept {
+bool Supervisor::lease_is_over() const noexcept {
+  return mode_ != Mode::kActive && mode_ != Mode::kSoftStop &&
+         time_ns_ - lease_renewed_ns_ > kLease_ns;
+}
+
+bool Supervisor::raise(Event event, int joint) noexcept {
   const Transition* transition = find_transition(mode_, event);
   if (transition == nullptr) return false;
-  if (transition->reason != controller_status_t::REASON_NONE) reason_ = transition->reason;
+  if (transition->reason != controller_status_t::REASON_NONE) {
+    reason_ = transition->reason;
+    reason_joint_ = joint;
+  }
   if (transition->to == Mode::kInit || transition->to == Mode::kFault) steady_ = 0;
   if (transition->to != mode_) enter(transition->to);
   return true;
@@ -135,6 +154,9 @@ std::int8_t Supervisor::drive_request() const noexcept {
     }
     return joint_command_t::REQUEST_KEEP;
   }
+  // The same fault, acknowledged once: the drives' start-up is repeated before they are wanted.
+  if (mode_ == Mode::kIdle && acknowledged_ && drive_state_ == joint_state_t::DRIVE_FAULT)
+    return joint_command_t::REQUEST_ACKNOWLEDGE;
   // Repeated until the drives are off: a single message may be lost.
   if (idle_requested_ && (on || enabling || holding)) return joint_command_t::REQUEST_OFF;
   // Drives that are on while nobody controls the arm shall hold it themselves.

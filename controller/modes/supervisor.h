@@ -16,26 +16,35 @@ class Supervisor {
  public:
   static constexpr int kSteadyStates = 100;
   static constexpr std::int64_t kDrivesOnWithin_ns = 3'000'000'000;
+  /// Outside ACTIVE and SOFT_STOP the lease of a client ends so long after its last request.
+  static constexpr std::int64_t kLease_ns = 10'000'000'000;
 
   Supervisor(int joints, int bridged_cycles, const JointFlags& flags = {})
       : judge_(joints, bridged_cycles, flags) {}
 
   /// Each state once, before anything else. Nothing happens if the state is a repetition.
   StateJudgement on_state(const joint_state_t& state) noexcept;
+  /// No new state for too long: the next one may have any number.
+  void forget_sequence() noexcept { judge_.forget_sequence(); }
   /// nullptr: obeyed, else why not.
   const char* on_mode(const mode_request_t& request) noexcept;
   /// Too early: the request would be refused because controller or drives are still starting.
   bool not_yet(const mode_request_t& request) const noexcept;
   /// nullptr if the client may send goals and gains: it holds the lease, or nobody does.
   const char* check_client(std::int64_t client) const noexcept;
-  /// The client was obeyed: a free lease is its from now on.
-  void take_lease(std::int64_t client) noexcept { lease_ = client; }
-  /// Something the cycle noticed. False if the table has no row for it.
-  bool raise(Event event) noexcept;
+  /// The client was obeyed: the lease is its from now on.
+  void take_lease(std::int64_t client) noexcept {
+    lease_ = client;
+    lease_renewed_ns_ = time_ns_;
+  }
+  /// Something the cycle noticed, at a joint or (-1) at none. False if the table has no row for it.
+  bool raise(Event event, int joint = -1) noexcept;
 
   Mode mode() const noexcept { return mode_; }
   /// REASON_* of the last transition that nobody asked for; gone after an acknowledgement.
   std::int8_t reason() const noexcept { return reason_; }
+  /// The joint that caused it; -1: none.
+  int reason_joint() const noexcept { return reason_joint_; }
   /// HOLD, ACTIVE or SOFT_STOP: the drives are wanted.
   bool powered_mode() const noexcept;
   /// A powered mode with the drives on: the torque of the cycle reaches the motors.
@@ -57,15 +66,20 @@ class Supervisor {
   void count_steady(const StateJudgement& judgement) noexcept;
   void watch_drives() noexcept;
   void enter(Mode mode) noexcept;
+  bool lease_is_over() const noexcept;
 
   StateJudge judge_;
   Mode mode_ = Mode::kBoot;
   std::int8_t reason_ = controller_status_t::REASON_NONE;
+  int reason_joint_ = -1;
   std::int64_t lease_ = 0;
+  std::int64_t lease_renewed_ns_ = 0;
   int steady_ = 0;
+  bool acknowledged_ = false;  ///< a fault that the drives are still in
   bool engaged_ = false;
   bool idle_requested_ = false;
   std::int8_t drive_state_ = joint_state_t::DRIVE_CONFIGURING;
+  bool stop_pressed_ = false;
   std::int64_t time_ns_ = 0;
   std::int64_t entered_ns_ = 0;
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kErrorFlag = 0x20000000;
 constexpr unsigned kBitRateSwitch = 1;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kLatestSecond = 1'000'000'000'000;
+constexpr std::int64_t kLatestSecond = INT64_MAX / kSecond_ns - 1;  // in the year 2262
 
 /// Takes text from the front of a line; every member is false if it is not there.
 class LineReader {

@@ -81,8 +81,8 @@ class BusEnd {
   std::size_t num_held_ = 0;
   std::int64_t foreign_ = 0;
   std::size_t first_ = 0;  ///< of the batch, in the order of add(), that is sent first
-  int refused_cycles_ = 0;
-  int unsent_cycles_ = 0;
+  std::int64_t refused_cycles_ = 0;
+  std::int64_t unsent_cycles_ = 0;
   std::int64_t tick_ = -1;
   bool tocked_ = false;
   double busy_s_ = 0.0;

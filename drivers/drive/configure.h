@@ -59,9 +59,9 @@ class ConfigureDialogue {
   DriveFamily* family_;
   int step_ = 0;  ///< 0: disabling, i: step i - 1
   int attempts_ = 0;
-  int waited_ = 0;         ///< cycles since the last attempt
-  bool repeat_ = false;    ///< answered, but the value is not there yet
-  bool advanced_ = false;  ///< in this cycle
+  std::int64_t waited_ = 0;  ///< cycles since the last attempt
+  bool repeat_ = false;      ///< answered, but the value is not there yet
+  bool advanced_ = false;    ///< in this cycle
   bool failed_ = false;
   StartupFailure failure_;  ///< as it would be now
   std::array<StartupFailure, kMostMissing> missing_;

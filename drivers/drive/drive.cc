@@ -61,7 +61,7 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
 }
 
 CanFrame Drive::hold(bool settling) noexcept {
-  JointCommand held = fallback_.command(link_, settling, watch_.trusted());
+  JointCommand held = fallback_.command(link_, settling, watch_.trusted() && !link_.jumped());
   // A drive damps by the velocity that it reports: a wrong one would drive the joint.
   if (contradiction() == Contradiction::kVelocity) held.kd = 0.0;
   return link_.command(held);
@@ -85,8 +85,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
     }
     return;
   }
-  // Without power an arm may swing at any speed: the next angle is taken as it comes.
-  if (state == DriveState::kOff || state == DriveState::kFault) link_.forget_angle();
+  expect_angle(state);
   if (!link_.receive(frame)) {
     if (!link_.take_unsolicited(frame)) count_invalid();
     return;
@@ -94,6 +93,15 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   if (!link_.fresh()) return;  // a part of a state
   answered_ = true;
   if (state == DriveState::kConfiguring) configure_.receive_state(link_.enabled());
+}
+
+// Without power an arm may swing at any speed: the next angle is taken as it comes. While the
+// others hold, so is that of a drive that was lost, but it is not held there before it is
+// acknowledged.
+void Drive::expect_angle(DriveState state) noexcept {
+  if (state == DriveState::kOff || state == DriveState::kFault) link_.forget_angle();
+  const bool given_up = state == DriveState::kFallback || state == DriveState::kDamp;
+  link_.take_jumps(given_up && watch_.lost());
 }
 
 void Drive::count_invalid() noexcept {
@@ -107,6 +115,7 @@ void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   const bool startup = awaits_answer(state);
   if (!startup && link_.take_unsolicited(frame)) return;
   ++late_;
+  if (!startup) expect_angle(state);
   if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) {
     if (!startup) count_invalid();
     return;
@@ -143,9 +152,10 @@ void Drive::check_feedback(DriveState state, double time_s) noexcept {
   const bool powered =
       state == DriveState::kOn || state == DriveState::kFallback || state == DriveState::kDamp;
   if (link_.fresh()) heat_.add(link_.temperature_degC());
-  if (!powered) {
+  if (!powered) ignoring_cycles_ = 0;
+  // A drive that is given up since its angle jumped is not held against that angle.
+  if (!powered || link_.jumped()) {
     feedback_.reset();
-    ignoring_cycles_ = 0;
   } else if (link_.fresh()) {
     feedback_.add(link_, time_s);
     ignoring_cycles_ = link_.ignores_target() ? ignoring_cycles_ + 1 : 0;

@@ -36,6 +36,7 @@ class Drive {
   /// The operator has acknowledged the fault: the watchdogs start afresh.
   void acknowledge() noexcept {
     watch_.reset();
+    link_.clear_jump();
     invalid_window_.clear();
     often_invalid_ = false;
   }
@@ -69,15 +70,16 @@ class Drive {
       warnings.push_back(link_.describe(missing));
     return warnings;
   }
-  std::int32_t replies_late() const noexcept { return late_; }
-  std::int32_t replies_lost() const noexcept { return missing_; }
-  std::int32_t replies_invalid() const noexcept { return invalid_; }
+  std::int64_t replies_late() const noexcept { return late_; }
+  std::int64_t replies_lost() const noexcept { return missing_; }
+  std::int64_t replies_invalid() const noexcept { return invalid_; }
   /// Index into Robot::buses.
   std::size_t bus() const noexcept { return static_cast<std::size_t>(link_.joint().drive.bus); }
 
  private:
   CanFrame poll() noexcept;
   CanFrame hold(bool settling) noexcept;
+  void expect_angle(DriveState state) noexcept;
   void count_invalid() noexcept;
   void check_feedback(DriveState state, double time_s) noexcept;
   /// A start-up step waits for its answer.
@@ -92,19 +94,19 @@ class Drive {
   ReplyWatch watch_;
   FeedbackWatch feedback_;
   HeatWatch heat_;
-  int ignoring_cycles_ = 0;
+  std::int64_t ignoring_cycles_ = 0;
   bool answered_ = false;
-  std::int32_t late_ = 0;
-  std::int32_t missing_ = 0;
+  std::int64_t late_ = 0;
+  std::int64_t missing_ = 0;
   LossWindow invalid_window_;
   int cycles_per_second_;
   bool often_invalid_ = false;
   std::int64_t cycle_ = 0;
   std::int64_t invalid_cycle_ = -1;  ///< of the last reply that could not be understood
   bool late_answer_ = false;         ///< of the start-up, in this cycle
-  int silent_cycles_ = 0;            ///< in the start-up
+  std::int64_t silent_cycles_ = 0;   ///< in the start-up
   bool counted_missing_ = false;     ///< in the last cycle; unless the reply comes late
-  std::int32_t invalid_ = 0;
+  std::int64_t invalid_ = 0;
 };
 
 }  // namespace limber

@@ -18,6 +18,7 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kRepeat_ns = 100'000'000;
+constexpr std::int64_t kListen_ns = 250'000'000;
 constexpr std::int64_t kTell_ns = 1'500'000'000;
 constexpr std::int64_t kStragglers_ns = 20'000'000;
 constexpr std::int64_t kTwin_ns = 3'000'000;  // a second answer comes within this after the first
@@ -60,6 +61,20 @@ class Discovery {
         while (buses_[b]->receive(std::span(&frame, 1)) == 1) mark(static_cast<int>(b), frame);
       }
     } while (!complete() && wait_readable(buses_, deadline_ns));
+  }
+
+  /// The first one that arrives until then; nothing is sent.
+  std::string foreign_command(std::int64_t deadline_ns) const {
+    do {
+      for (std::size_t b = 0; b < buses_.size(); ++b) {
+        CanFrame frame;
+        while (buses_[b]->receive(std::span(&frame, 1)) == 1) {
+          std::string names = commanded_by(static_cast<int>(b), frame);
+          if (!names.empty()) return names;
+        }
+      }
+    } while (wait_readable(buses_, deadline_ns));
+    return "";
   }
 
   /// Answers to repeated requests must not be taken for replies of the first cycle.
@@ -137,6 +152,15 @@ class Discovery {
   }
 
  private:
+  std::string commanded_by(int bus, const CanFrame& frame) const {
+    std::string names;
+    for (std::size_t i = 0; i < motors_.size(); ++i) {
+      if (motors_[i].drive.bus != bus || !families_[i]->is_foreign_command(frame)) continue;
+      list(i, &names);
+      return names + fmt::format(", frame 0x{:X}", frame.id);
+    }
+    return names;
+  }
   void add(const JointConfig& motor) {
     const bool fd = robot_.buses[static_cast<std::size_t>(motor.drive.bus)].fd;
     families_.push_back(make_drive_family(motor, fd, 1.0 / robot_.rate_hz));
@@ -167,6 +191,10 @@ class Discovery {
 };
 
 }  // namespace
+
+std::string find_foreign_command(const Robot& robot, std::span<CanBus* const> buses) {
+  return Discovery(robot, buses, false).foreign_command(monotonic_ns() + kListen_ns);
+}
 
 std::string discover_drives(const Robot& robot, std::span<CanBus* const> buses, bool lockstep,
                             double patience_s, const volatile std::sig_atomic_t& stop,

@@ -12,6 +12,11 @@
 
 namespace limber {
 
+/// Listens for 0.25 s without sending: the first frame of somebody else's that commands a motor of
+/// this arm or writes its settings, for a message ("joint3 (id 0x3 on can0), frame 0x3"); "" if
+/// there is none. In real time, set-up only.
+std::string find_foreign_command(const Robot& robot, std::span<CanBus* const> buses);
+
 /// Sends every motor a read request ten times a second (a CANopen drive, whose server may be slow,
 /// once) until all have answered; that moves, enables and disturbs nothing. Returns "" then, or
 /// after `patience_s` (or when `stop` is set) the motors that are missing, for a message. Set-up

@@ -23,6 +23,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kOff, Event::kReplyInvalid, State::kFault, Fault::FAULT_REPLY_INVALID},
     {State::kOff, Event::kForeignCommand, State::kFault, Fault::FAULT_FOREIGN_COMMAND},
     {State::kOff, Event::kBusLost, State::kFault, Fault::FAULT_BUS},
+    {State::kOff, Event::kEmergencyStop, State::kFault, Fault::FAULT_EMERGENCY_STOP},
 
     // Not all are enabled yet: whatever goes wrong ends it.
     {State::kEnabling, Event::kEnabled, State::kOn, kNoFault},
@@ -42,6 +43,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kEnabling, Event::kFeedbackWrong, State::kFault, Fault::FAULT_FEEDBACK},
     {State::kEnabling, Event::kPositionTrip, State::kFault, Fault::FAULT_POSITION},
     {State::kEnabling, Event::kVelocityTrip, State::kFault, Fault::FAULT_VELOCITY},
+    {State::kEnabling, Event::kEmergencyStop, State::kFault, Fault::FAULT_EMERGENCY_STOP},
 
     // The controller's torque.
     {State::kOn, Event::kRequestOff, State::kOff, kNoFault},
@@ -59,6 +61,7 @@ constexpr DriveTransition kTransitions[] = {
     {State::kOn, Event::kFeedbackWrong, State::kFallback, Fault::FAULT_FEEDBACK},
     {State::kOn, Event::kPositionTrip, State::kFallback, Fault::FAULT_POSITION},
     {State::kOn, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
+    {State::kOn, Event::kEmergencyStop, State::kFallback, Fault::FAULT_EMERGENCY_STOP},
 
     // The drives hold the arm.
     {State::kFallback, Event::kTakenOver, State::kOn, kNoFault},
@@ -77,6 +80,8 @@ constexpr DriveTransition kTransitions[] = {
     {State::kFallback, Event::kFeedbackWrong, State::kFallback, Fault::FAULT_FEEDBACK},
     {State::kFallback, Event::kPositionTrip, State::kFallback, Fault::FAULT_POSITION},
     {State::kFallback, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
+    {State::kFallback, Event::kEmergencyStop, State::kFallback, Fault::FAULT_EMERGENCY_STOP},
+    {State::kFallback, Event::kEmergencyOff, State::kFault, Fault::FAULT_EMERGENCY_STOP},
 
     // The drives brake: from here to FAULT, or back on request.
     {State::kDamp, Event::kTakenOver, State::kOn, kNoFault},
@@ -95,6 +100,8 @@ constexpr DriveTransition kTransitions[] = {
     {State::kDamp, Event::kFeedbackWrong, State::kDamp, Fault::FAULT_FEEDBACK},
     {State::kDamp, Event::kPositionTrip, State::kDamp, Fault::FAULT_POSITION},
     {State::kDamp, Event::kVelocityTrip, State::kDamp, Fault::FAULT_VELOCITY},
+    {State::kDamp, Event::kEmergencyStop, State::kDamp, Fault::FAULT_EMERGENCY_STOP},
+    {State::kDamp, Event::kEmergencyOff, State::kFault, Fault::FAULT_EMERGENCY_STOP},
 
     // Latched.
     {State::kFault, Event::kAcknowledge, State::kConfiguring, kNoFault},

@@ -53,8 +53,10 @@ enum class DriveEvent : std::int8_t {
   kFeedbackWrong,  ///< reported velocity or torque contradicts position or command
   kPositionTrip,
   kVelocityTrip,
+  kEmergencyStop,  ///< pressed, or silent
+  kEmergencyOff,   ///< the drives have held long enough
 };
-inline constexpr int kDriveEvents = 22;
+inline constexpr int kDriveEvents = 24;
 
 struct DriveTransition {
   DriveState from;

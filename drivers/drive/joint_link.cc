@@ -5,6 +5,13 @@
 #include <numbers>
 
 namespace limber {
+namespace {
+
+bool finite(const DriveReport& report) noexcept {
+  return std::isfinite(report.angle_rad) && std::isfinite(report.link_angle_rad);
+}
+
+}  // namespace
 
 JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bridged_cycles)
     : joint_(joint),
@@ -52,7 +59,11 @@ bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept
   if (age_cycles_ <= age_cycles) return false;
   const StateReading reading = family_->read_state(frame, late, &report);
   if (reading == StateReading::kPart) return true;
-  if (reading == StateReading::kNone || !plausible(report)) return false;
+  if (reading == StateReading::kNone) return false;
+  if (!plausible(report)) {
+    if (!takes_jumps_ || age_cycles_ <= longest_gap_ || !finite(report)) return false;
+    jumped_ = true;
+  }
   seen_ = report;
   angle_known_ = true;
   age_cycles_ = age_cycles;
@@ -60,7 +71,7 @@ bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept
 }
 
 bool JointLink::plausible(const DriveReport& report) const noexcept {
-  if (!angle_known_) return std::isfinite(report.angle_rad) && std::isfinite(report.link_angle_rad);
+  if (!angle_known_) return finite(report);
   const double most = std::clamp(age_cycles_, 1, longest_gap_) * jump_per_cycle_;
   const double winding = joint_.has_antagonist ? 2.0 : 1.0;
   return std::abs(angle(report) - theta()) <= winding * most + jump_resolution_ &&

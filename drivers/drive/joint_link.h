@@ -74,6 +74,12 @@ class JointLink {
   void begin_cycle() noexcept;
   /// The drive may have been anywhere since: the next angle is taken as it comes.
   void forget_angle() noexcept { angle_known_ = false; }
+  /// While the joint is given up, an angle that it cannot have reached is stored, too, after more
+  /// cycles without a valid one than are bridged, so that it can be acknowledged; jumped() tells of
+  /// it until clear_jump().
+  void take_jumps(bool take) noexcept { takes_jumps_ = take; }
+  bool jumped() const noexcept { return jumped_; }
+  void clear_jump() noexcept { jumped_ = false; }
 
   // --- measured -------------------------------------------------------------------------------
 
@@ -136,6 +142,8 @@ class JointLink {
 
   std::int32_t age_cycles_ = kNever;
   bool angle_known_ = false;
+  bool takes_jumps_ = false;
+  bool jumped_ = false;
   DriveReport seen_;  ///< the last one stored, in the drive's own coordinates
 };
 

@@ -58,9 +58,9 @@ class TipSensorLink {
   CanFrame first_;
   WrenchReading reading_;
   std::int32_t age_cycles_ = kNever;  ///< since the last reading; kNever before the first
-  std::int32_t late_ = 0;
-  std::int32_t lost_ = 0;
-  std::int32_t invalid_ = 0;
+  std::int64_t late_ = 0;
+  std::int64_t lost_ = 0;
+  std::int64_t invalid_ = 0;
 };
 
 }  // namespace limber

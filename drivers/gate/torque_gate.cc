@@ -148,7 +148,10 @@ int TorqueGate::judge(const joint_command_t& command, const GateSituation& situa
   }
   const bool from_holder = memory_.controller != 0 && command.session == limits_.session &&
                            command.controller == memory_.controller;
-  if (from_holder && verdict != driver_status_t::VERDICT_REPLAYED) {
+  const bool late =
+      verdict == driver_status_t::VERDICT_REPLAYED ||
+      (verdict == driver_status_t::VERDICT_STALE && command.state_seq < situation.state_seq);
+  if (from_holder && !late) {
     too_often_ = refusals_.add(cycle_, limits_.refusal_cycles);
   }
   return verdict;

@@ -90,8 +90,9 @@ class TorqueGate {
   int judge(const joint_command_t& command, const GateSituation& situation) noexcept;
 
   /// True if the command judged last was the third of the lease holder's to be refused within
-  /// refusal_cycles. Repetitions of an accepted command (REPLAYED) do not count: networks
-  /// duplicate.
+  /// refusal_cycles. Repetitions of an accepted command (REPLAYED) do not count, since networks
+  /// duplicate, nor do answers to states that are too old: they are missing, which has its own
+  /// watchdog (ControllerWatch).
   bool refused_too_often() const noexcept { return too_often_; }
 
   /// Some controller holds the lease.

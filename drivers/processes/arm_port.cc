@@ -98,6 +98,7 @@ void ArmPort::log_problem(const std::string& problem) {
 void ArmPort::publish_status() {
   driver_->fill_status(&status_);
   timing_.write_status(&status_);
+  status_.messages_undecodable = arm_plane_.undecodable();
   user_plane_->publish(channels::kDriverStatus, status_);
   ++status_.seq;
 }

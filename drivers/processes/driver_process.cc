@@ -42,6 +42,14 @@ int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
   return std::max(on_a_wire, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
 }
 
+std::vector<RunLock> lock_buses(const Robot& robot) {
+  std::vector<RunLock> locks;
+  require_local(arm_plane_url(), !robot.on_virtual_buses());
+  locks.emplace_back("driver on " + arm_plane_url());
+  for (const BusConfig& bus : robot.buses) locks.emplace_back("driver of " + bus.can);
+  return locks;
+}
+
 std::vector<std::string> joint_names(const Robot& robot) {
   std::vector<std::string> names;
   for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
@@ -66,8 +74,9 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
     : options_(options),
       robot_(load(options)),
       bridged_cycles_(bridged_cycles(options, &robot_)),
+      locks_(lock_buses(robot_)),
       reporter_(joint_names(robot_)),
-      user_plane_(user_plane_url()),
+      user_plane_(user_plane_url(), LcmPort::Use::kPublishOnly),
       grant_(request_realtime(options)),
       port_(robot_, ArmDriverOptions{options.session, options.lockstep, bridged_cycles_},
             &user_plane_, &reporter_) {
@@ -77,6 +86,7 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
 int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
   log_start();
   check_interfaces();
+  if (!options_.lockstep) check_bus_is_free();
   const std::string missing = discover_drives(
       robot_, port_.buses(), options_.lockstep, options_.patience_s, stop,
       [](const std::string& silent) {
@@ -131,6 +141,13 @@ void DriverProcess::check_interfaces() const {
   }
 }
 
+void DriverProcess::check_bus_is_free() {
+  const std::string commanded = find_foreign_command(robot_, port_.buses());
+  if (commanded.empty()) return;
+  throw ConfigError(robot_.name + ": another program commands " + commanded +
+                    "; stop it first: two masters would fight for the arm");
+}
+
 void DriverProcess::measure_delay() {
   const std::int64_t window_ns = port_.driver().reply_window_ns();
   std::int64_t least_ns = 0;
@@ -175,7 +192,7 @@ void DriverProcess::log_end() const {
   std::int64_t refused = 0;
   for (const std::int64_t count : status.commands_refused) refused += count;
   std::int64_t lost = 0;
-  for (const std::int32_t count : status.replies_lost) lost += count;
+  for (const std::int64_t count : status.replies_lost) lost += count;
   spdlog::info("{} cycles; commands: {} accepted, {} refused, {} missing; replies lost: {}",
                status.cycles, status.commands_accepted, refused, status.commands_missing, lost);
   if (options_.lockstep) return;

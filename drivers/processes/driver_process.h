@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "common/lcm_port.h"
 #include "common/realtime.h"
+#include "common/run_lock.h"
 #include "drivers/processes/arm_port.h"
 #include "drivers/processes/state_reporter.h"
 #include "robots/loader/robot.h"
@@ -28,8 +30,8 @@ struct DriverProcessOptions {
 
 class DriverProcess {
  public:
-  /// Loads the robot, opens LCM and the buses, requests real-time priority, builds the driver.
-  /// Throws ConfigError.
+  /// Loads the robot, locks its buses and the arm plane, opens LCM and the buses, requests
+  /// real-time priority, builds the driver. Throws ConfigError.
   explicit DriverProcess(const DriverProcessOptions& options);
 
   /// Waits for the motors, then cycles until the end or until `stop` is set, and shuts the arm down
@@ -39,9 +41,11 @@ class DriverProcess {
 
  private:
   bool run_cycles(const volatile std::sig_atomic_t& stop);
-  /// Round trips of the roll call. Throws ConfigError if a reply cannot come in its cycle.
   /// Adapters against robot.yaml: warns in the log, throws ConfigError for what is wrong.
   void check_interfaces() const;
+  /// Throws ConfigError: somebody else commands a motor of this arm.
+  void check_bus_is_free();
+  /// Round trips of the roll call. Throws ConfigError if a reply cannot come in its cycle.
   void measure_delay();
   void log_start() const;
   void log_end() const;
@@ -49,6 +53,7 @@ class DriverProcess {
   DriverProcessOptions options_;
   Robot robot_;
   int bridged_cycles_;
+  std::vector<RunLock> locks_;  ///< on the arm plane and every bus: nobody else may drive them
   // In this order: LCM starts a thread for each port. The user plane's, which anybody may flood,
   // and the reporter's keep normal priority; the arm plane's inherits the one requested.
   StateReporter reporter_;

@@ -24,7 +24,8 @@ constexpr std::array kFaultNames = {
     "requested",
     "replies doubled or unreadable: is another motor on this id, or a log replayed?",
     "somebody else commands a drive of this arm, or writes its settings: stop the other program",
-    "feedback contradicts itself"};
+    "feedback contradicts itself",
+    "emergency stop: release it, then acknowledge"};
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 
 template <typename Names>

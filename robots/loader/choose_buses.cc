@@ -12,8 +12,7 @@ void choose_buses(const std::map<std::string, std::string>& addresses, Robot* ro
   std::string names;
   for (const BusConfig& bus : robot->buses) names += (names.empty() ? "" : ", ") + bus.name;
   for (const auto& [name, address] : addresses) {
-    const auto bus = std::find_if(robot->buses.begin(), robot->buses.end(),
-                                  [&](const BusConfig& one) { return one.name == name; });
+    const auto bus = std::ranges::find(robot->buses, name, &BusConfig::name);
     if (bus == robot->buses.end())
       throw ConfigError(fmt::format("--bus {}={}: {} has no bus '{}'; it has: {}", name, address,
                                     robot->name, name, names));

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "robots/loader/emergency_stop_config.h"
 #include "robots/loader/joint_chain.h"
 #include "robots/loader/tip_sensor_config.h"
 
@@ -142,6 +144,7 @@ struct Robot {
   bool has_drives = false;  ///< false for a bare URDF: fit for `check` and `eval`, not for running
   bool has_tip_sensor = false;
   TipSensorConfig tip_sensor;  ///< counts only if there is one
+  std::optional<EmergencyStopConfig> emergency_stop;
 
   int size() const { return static_cast<int>(joints.size()); }
   int motors() const {

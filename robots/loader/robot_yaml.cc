@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/complaints.h"
+#include "robots/loader/emergency_stop_yaml.h"
 #include "robots/loader/joint_yaml.h"
 #include "robots/loader/motor_yaml.h"
 #include "robots/loader/tip_sensor_yaml.h"
@@ -76,6 +77,8 @@ void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   if (buses_known && motors_known) complaints.collect([&] { read_joints(yaml, motors, robot); });
   if (yaml.has("tip_sensor") && buses_known)
     complaints.collect([&] { read_tip_sensor(yaml.map("tip_sensor"), robot); });
+  if (yaml.has("emergency_stop") && buses_known)
+    complaints.collect([&] { read_emergency_stop(yaml.map("emergency_stop"), robot); });
   complaints.collect([&] { read_watchdog(yaml.map("watchdog"), robot); });
   complaints.collect([&] { robot->gains = read_gains(yaml.map("gains"), robot->size()); });
   complaints.collect([&] { yaml.finish(); });

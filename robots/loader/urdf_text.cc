@@ -4,6 +4,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -48,6 +49,24 @@ int line_at(const std::string& text, std::size_t position) {
                  std::count(text.begin(), text.begin() + static_cast<long>(position), '\n'));
 }
 
+/// The five characters that XML has names for, and nothing else: of a bare `&`, and of characters
+/// by number, two parsers make different texts, and so different names.
+bool is_named_character(const std::string& text, std::size_t at) {
+  return std::ranges::any_of(
+      std::array{"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"},
+      [&](const std::string& name) { return text.compare(at, name.size(), name) == 0; });
+}
+
+void scan_references(const std::string& text, const std::string& path) {
+  for (auto at = text.find_first_of("&<"); at != std::string::npos;
+       at = text.find_first_of("&<", at + 1)) {
+    if (text.compare(at, 4, "<!--") == 0) at = std::min(text.find("-->", at + 4), text.size());
+    if (at == text.size() || text[at] != '&' || is_named_character(text, at)) continue;
+    throw ConfigError::at(path, line_at(text, at), "",
+                          "'&' begins none of &amp; &lt; &gt; &quot; &apos;");
+  }
+}
+
 /// What must not reach an XML parser at all.
 void scan(const std::string& text, const std::string& path) {
   const auto zero = text.find('\0');
@@ -55,6 +74,7 @@ void scan(const std::string& text, const std::string& path) {
     throw ConfigError::at(path, line_at(text, zero), "",
                           "not XML text: it holds a zero byte (is it UTF-8?)");
   }
+  scan_references(text, path);
   int elements = 0;
   for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
     if (text.compare(at, 4, "<!--") == 0) {

@@ -73,6 +73,17 @@ scenario_event_t read_payload(const YamlMap& entry) {
 
 namespace {
 
+/// `input: emergency_stop`, in place of a joint.
+void read_input_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t* event) {
+  yaml.word("input", {"emergency_stop"});
+  if (!robot.emergency_stop)
+    yaml.refuse("input", fmt::format("{} has no emergency stop in robot.yaml", robot.name));
+  event->joint = scenario_event_t::NODE_EMERGENCY_STOP;
+  event->fault = yaml.word("kind", {"pressed", "silent"}) == "silent"
+                     ? scenario_event_t::FAULT_SILENT
+                     : scenario_event_t::FAULT_PRESSED;
+}
+
 /// `sensor: tip`, in place of a joint: it can only fall silent.
 void read_sensor_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t* event) {
   yaml.word("sensor", {"tip"});
@@ -98,6 +109,8 @@ scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
   event.normal[2] = 1.0;
   if (yaml.has("sensor")) {
     read_sensor_fault(yaml, robot, &event);
+  } else if (yaml.has("input")) {
+    read_input_fault(yaml, robot, &event);
   } else {
     read_joint_fault(yaml, robot, &event);
   }

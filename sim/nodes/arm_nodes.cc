@@ -7,6 +7,7 @@ namespace limber::sim {
 ArmNodes::ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm)
     : motors_(robot, reality) {
   if (reality.has_tip_sensor) tip_sensor_.emplace(reality.tip_sensor, arm.body());
+  if (reality.emergency_stop) emergency_stop_.emplace(*reality.emergency_stop);
 }
 
 void ArmNodes::receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
@@ -22,6 +23,11 @@ void ArmNodes::update(const SimulatedArm& arm, double h, std::int64_t now_ns,
                       std::vector<BusSide>* buses) noexcept {
   motors_.update(arm.forces(), arm.state(), h, now_ns, buses);
   update_tip_sensor(arm, h, now_ns);
+  CanFrame frame;
+  if (emergency_stop_ && emergency_stop_->next(now_ns, &frame)) {
+    const auto bus = static_cast<std::size_t>(emergency_stop_->bus());
+    (*buses)[bus].send(motors_.size() + 1, frame, now_ns);
+  }
 }
 
 void ArmNodes::update_tip_sensor(const SimulatedArm& arm, double h, std::int64_t now_ns) noexcept {
@@ -40,6 +46,8 @@ void ArmNodes::inject(const NodeFault& fault, const SimulatedArm& arm,
       fault.duration_ns > kForEver - now_ns ? kForEver : now_ns + fault.duration_ns;
   if (fault.joint == scenario_event_t::NODE_TIP_SENSOR) {
     tip_sensor_->node.silence(until_ns);
+  } else if (fault.joint == scenario_event_t::NODE_EMERGENCY_STOP) {
+    emergency_stop_->inject(fault.fault, until_ns);
   } else {
     motors_.inject(fault.joint, fault.fault, arm.forces(), arm.state(), until_ns);
   }
@@ -48,6 +56,7 @@ void ArmNodes::inject(const NodeFault& fault, const SimulatedArm& arm,
 void ArmNodes::clear_faults() noexcept {
   motors_.clear_faults();
   if (tip_sensor_) tip_sensor_->node.clear_faults();
+  if (emergency_stop_) emergency_stop_->clear_faults();
 }
 
 }  // namespace limber::sim

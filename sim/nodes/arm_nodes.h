@@ -1,9 +1,10 @@
-// Everything of the arm that is on a bus: its drives and its tip sensor.
+// Everything of the arm that is on a bus: its drives, its tip sensor, its emergency stop.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "sim/nodes/emergency_stop_node.h"
 #include "sim/nodes/motor_nodes.h"
 #include "sim/nodes/tip_sensor.h"
 #include "sim/plant/simulated_arm.h"
@@ -23,8 +24,8 @@ class ArmNodes {
     return motors_.steps_per_period(rate_hz, step_s);
   }
 
-  /// Senders beside the driver: the motors, then the tip sensor.
-  int size() const noexcept { return motors_.size() + 1; }
+  /// Senders beside the driver: the motors, the tip sensor, the emergency stop.
+  int size() const noexcept { return motors_.size() + 2; }
   /// Hands a frame from a bus to its nodes and sends their answers there.
   void receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
                BusSide* out) noexcept;
@@ -37,6 +38,7 @@ class ArmNodes {
   void command(ForceModel* forces) const noexcept { motors_.command(forces); }
   bool all_enabled() const noexcept { return motors_.all_enabled(); }
   bool has_tip_sensor() const noexcept { return tip_sensor_.has_value(); }
+  bool has_emergency_stop() const noexcept { return emergency_stop_.has_value(); }
 
   /// The tip sensor's mechanics carry the payload, too.
   void set_payload(const SimulatedArm& arm, double mass, const Eigen::Vector3d& p_TL) noexcept;
@@ -46,6 +48,7 @@ class ArmNodes {
  private:
   MotorNodes motors_;
   std::optional<TipSensor> tip_sensor_;
+  std::optional<EmergencyStopNode> emergency_stop_;
 };
 
 }  // namespace limber::sim

@@ -10,6 +10,12 @@ namespace {
 constexpr std::int64_t kComplaintInterval_ns = 1'000'000'000;
 constexpr int kUserQueue = 100;  // a push or an event now and then
 
+std::vector<RunLock> lock_buses(const Robot& robot) {
+  std::vector<RunLock> locks;
+  for (const BusConfig& bus : robot.buses) locks.emplace_back("simulator of " + bus.can);
+  return locks;
+}
+
 std::vector<std::unique_ptr<CanBus>> open_buses(const Robot& robot) {
   std::vector<std::unique_ptr<CanBus>> buses;
   for (const BusConfig& bus : robot.buses) buses.push_back(open_can_bus(bus.can, bus.fd));
@@ -26,7 +32,8 @@ std::vector<CanBus*> pointers(const std::vector<std::unique_ptr<CanBus>>& buses)
 
 SimPort::SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* timeline,
                  const SimulatorOptions& options)
-    : buses_(open_buses(robot.robot)),
+    : locks_(lock_buses(robot.robot)),
+      buses_(open_buses(robot.robot)),
       simulator_(robot, pointers(buses_), options),
       user_(user_plane_url()) {
   simulator_.set_timeline(timeline);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/lcm_port.h"
+#include "common/run_lock.h"
 #include "drivers/can/can_bus.h"
 #include "lcmtypes/channels.h"
 #include "sim/simulator.h"
@@ -29,12 +30,15 @@ class SimPort {
 
   /// Until a frame or a message waits, or the absolute CLOCK_MONOTONIC time has come.
   void wait(std::int64_t deadline_ns) noexcept { wait_readable(descriptors_, deadline_ns); }
-  void handle_messages() noexcept { user_.handle_waiting(); }
+  void handle_messages() noexcept { user_.handle_waiting(kMessagesAtOnce); }
   void publish_truth() noexcept;
   /// To the log, at most once a second.
   void complain(const char* what);
 
  private:
+  static constexpr int kMessagesAtOnce = 64;  // a flood must not keep the arm
+
+  std::vector<RunLock> locks_;  ///< a second simulator's drives would answer to the same ids
   std::vector<std::unique_ptr<CanBus>> buses_;
   Simulator simulator_;
   LcmPort user_;

@@ -81,16 +81,18 @@ bool read_payload(const scenario_event_t& event, Payload* payload) noexcept {
   return true;
 }
 
-bool read_fault(const scenario_event_t& event, int joints, bool has_tip_sensor,
+bool read_fault(const scenario_event_t& event, const FaultyNodes& nodes,
                 NodeFault* fault) noexcept {
-  const bool on_sensor = has_tip_sensor && event.joint == scenario_event_t::NODE_TIP_SENSOR &&
-                         event.fault == scenario_event_t::FAULT_SILENT;
-  const bool on_joint = event.joint >= 0 && event.joint < joints;
-  if (!(on_joint || on_sensor) || event.fault < scenario_event_t::FAULT_SILENT ||
-      event.fault > scenario_event_t::FAULT_DROP_COMMANDS ||
-      !within(event.duration_s, 0.0, kMaxFault_s)) {
+  using Event = scenario_event_t;
+  const bool silent = event.fault == Event::FAULT_SILENT;
+  const bool on_sensor = nodes.tip_sensor && event.joint == Event::NODE_TIP_SENSOR && silent;
+  const bool on_stop = nodes.emergency_stop && event.joint == Event::NODE_EMERGENCY_STOP &&
+                       (silent || event.fault == Event::FAULT_PRESSED);
+  const bool on_joint = event.joint >= 0 && event.joint < nodes.joints &&
+                        event.fault >= Event::FAULT_SILENT &&
+                        event.fault <= Event::FAULT_DROP_COMMANDS;
+  if (!(on_joint || on_sensor || on_stop) || !within(event.duration_s, 0.0, kMaxFault_s))
     return false;
-  }
   *fault = {
       event.joint, event.fault,
       event.duration_s > 0.0 ? to_ns(event.duration_s) : std::numeric_limits<std::int64_t>::max()};

@@ -29,12 +29,19 @@ struct Payload {
 [[nodiscard]] bool read_payload(const scenario_event_t& event, Payload* payload) noexcept;
 
 struct NodeFault {
-  int joint = 0;  ///< or NODE_TIP_SENSOR
+  int joint = 0;  ///< or NODE_*
   int fault = 0;
   std::int64_t duration_ns = 0;  ///< the largest there is: for ever
 };
-/// A FAULT_* on one of the joints, or silence of the tip sensor, for up to 600 s; 0 means for ever.
-[[nodiscard]] bool read_fault(const scenario_event_t& event, int joints, bool has_tip_sensor,
+/// Nodes that can have faults.
+struct FaultyNodes {
+  int joints = 0;
+  bool tip_sensor = false;
+  bool emergency_stop = false;
+};
+/// A FAULT_* on one of the joints, silence of the tip sensor, or an emergency stop that is pressed
+/// or silent, for up to 600 s; 0 means for ever.
+[[nodiscard]] bool read_fault(const scenario_event_t& event, const FaultyNodes& nodes,
                               NodeFault* fault) noexcept;
 
 }  // namespace limber::sim

@@ -222,6 +222,23 @@ TEST(ReplyLostTest, ForeignFramesAreCounted) {
   EXPECT_EQ(arm.state->drive_state, kOn);
 }
 
+// A pause of the messages' delivery is bridged also when all that was under way comes at once.
+TEST(BridgeTest, LateAnswersAreBridgedLikeMissingOnes) {
+  Robot robot = test_robot(2);
+  for (JointConfig& joint : robot.joints) joint.drive.watchdog_s = 0.1;
+  FakeArm arm(robot, false, 50);
+  ASSERT_TRUE(arm.switch_on());
+  joint_command_t late = arm.command;
+  std::vector<std::int64_t> unanswered;
+  for (int i = 0; i < 40; ++i) unanswered.push_back(arm.half_cycle().seq);
+  for (std::int64_t seq : unanswered) {
+    late.state_seq = seq;
+    arm.driver->accept(late);
+  }
+  arm.cycle_with(kRequestOn);
+  EXPECT_EQ(arm.state->drive_state, kOn);
+}
+
 // On a virtual bus, whose pauses are those of a scheduler, more is bridged.
 TEST(ToleranceTest, AsManyCyclesAsWantedAreBridgedAndNotOneMore) {
   for (int bridged : {2, 3, 7, 50}) {
@@ -271,6 +288,24 @@ TEST(EncoderTest, OneGlitchIsRejectedAStepIsALoss) {
   EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
   for (int i = 0; i < 200; ++i) arm.cycle_with(kRequestOn);
   EXPECT_EQ(raw_command(arm.motors[0].last()).kp, 0);  // never held at an angle it is not at
+}
+
+// Its angle is told again, so that the loss can be acknowledged; it is held there only after that.
+TEST(EncoderTest, AStepIsReportedAndHeldOnceAcknowledged) {
+  FakeArm arm = loaded_arm(2);
+  arm.set_angle(0, 0.5);
+  for (int i = 0; i < 300; ++i) arm.cycle_with(kRequestOn);
+  EXPECT_EQ(arm.state->drive_state, kFallback);
+  EXPECT_NEAR(arm.state->q[0], 0.5, 4e-4);
+  EXPECT_NE(arm.state->joint_flags[0] & joint_state_t::JOINT_FRESH, 0);
+  EXPECT_EQ(raw_command(arm.motors[0].last()).kp, 0);
+  arm.cycle_with(joint_command_t::REQUEST_ACKNOWLEDGE);
+  arm.half_cycle();
+  for (int j = 0; j < 2; ++j) arm.command.tau[j] = arm.state->tau_applied[j];
+  arm.command.request = kRequestOn;
+  arm.answer_state();
+  arm.half_cycle();
+  EXPECT_EQ(arm.state->drive_state, kOn);
 }
 
 TEST(DriveErrorTest, EveryErrorHoldsTheOthersAndIsNotTalkedOver) {

@@ -177,6 +177,34 @@ TEST(RecoveryTest, SwitchingOffAfterAFaultChecksEverythingAnew) {
   EXPECT_EQ(arm.motors[1].error, 1);
 }
 
+// Held by the others it was moved further than any motor turns in the cycles that are bridged.
+TEST(RecoveryTest, ADriveThatWasLostAndComesBackElsewhereIsHeardAgain) {
+  FakeArm arm(test_robot(2));
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[0].silent = true;
+  for (int i = 0; i < 20; ++i) arm.cycle_with(kRequestOn);
+  ASSERT_EQ(arm.state->drive_state, kFallback);
+  arm.motors[0].silent = false;
+  arm.set_angle(0, 0.5);
+  for (int i = 0; i < 100; ++i) arm.cycle_with(kRequestOn);
+  EXPECT_EQ(arm.state->drive_state, kFallback) << "not without an acknowledgement";
+  EXPECT_EQ(arm.state->age_cycles[0], 0);
+  EXPECT_NEAR(arm.state->q[0], 0.5, 4e-4);
+  // From here on it is watched again: nothing turns by 1 rad in a millisecond.
+  arm.set_angle(0, 1.5);
+  arm.cycle_with(kRequestOn);
+  EXPECT_NEAR(arm.state->q[0], 0.5, 4e-4);
+  arm.set_angle(0, 0.5);
+  arm.cycle_with(kRequestOn);
+  arm.cycle_with(kAcknowledge);
+  arm.half_cycle();
+  for (int j = 0; j < 2; ++j) arm.command.tau[j] = arm.state->tau_applied[j];
+  arm.command.request = kRequestOn;
+  EXPECT_EQ(arm.answer_state(), kAccepted);
+  arm.half_cycle();
+  EXPECT_EQ(arm.state->drive_state, kOn);
+}
+
 TEST(RecoveryTest, AfterAFaultTheArmStartsFromTheBeginning) {
   FakeArm arm(test_robot(2));
   ASSERT_TRUE(arm.switch_on());

@@ -134,6 +134,24 @@ TEST(Lab, EveryStateIsAnsweredAndObeyed) {
   EXPECT_EQ(stage.lab.driver_status().commands_missing, 0);
 }
 
+TEST(Lab, TheGateJudgesWhatStandsBeforeIt) {
+  const std::string path = kScenarios + "quick.yaml";
+  const LoadedRobot robot = load_robot(scenario_robot(path));
+  const Scenario scenario = load_scenario(path, robot, &controller::law_catalog());
+  for (const std::size_t copies : {0U, 1U, 2U}) {
+    LabOptions options;
+    options.before_gate = [copies](const joint_command_t& answer, auto* instead) {
+      instead->assign(copies, answer);
+    };
+    Lab lab(robot, scenario, options);
+    constexpr int kCycles = 50;
+    for (int cycle = 0; cycle < kCycles; ++cycle) lab.step();
+    const driver_status_t& status = lab.driver_status();
+    EXPECT_EQ(status.commands_accepted, copies > 0 ? kCycles : 0);
+    EXPECT_EQ(status.commands_refused[driver_status_t::VERDICT_REPLAYED], copies > 1 ? kCycles : 0);
+  }
+}
+
 TEST(Lab, ForceMeetsTheStiffnessAskedFor) {
   Stage stage("push.yaml");  // friction off; 8 N along x from 2.0 s for 1.6 s, against 500 N/m
   stage.run_to(2.0);

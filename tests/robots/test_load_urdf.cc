@@ -82,6 +82,14 @@ TEST(LoadUrdf, PendulumHasItsClosedForm) {
   }
 }
 
+// A bare & is refused where it could become part of a name, not where nobody reads it.
+TEST(LoadUrdf, CommentsMayHoldAnything) {
+  const std::string arm = bare("base") +
+                          joint("j", "revolute", "base", "a", "xyz='0 0 0'", "0 0 1") +
+                          body("a", "1", "xyz='0 0 0'");
+  EXPECT_EQ(load("<!-- links & joints <&> -->" + arm + "<!-- & -->", "base", "a").robot.size(), 1);
+}
+
 TEST(LoadUrdf, InertiaIsTurnedWithItsOrigin) {
   // Seen along the joint axis (x of the link): the tensor turned by a about z has
   // Ixx' = Ixx cos^2 a + Iyy sin^2 a. About an axis through the centre of mass nothing else counts.

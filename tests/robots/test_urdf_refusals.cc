@@ -119,6 +119,8 @@ const Mutation kTree[] = {
      testing::kNoLine},
     {"Doctype", "<robot", "<!DOCTYPE r [<!ENTITY a \"b\">]>\n<robot", "entities (<!...>) are not"},
     {"Xacro", R"(<link name="base"/>)", R"(<xacro:arm_macro name="base"/>)", "expand them first"},
+    {"BareAmpersand", R"(<joint name="slide")", R"(<joint name="sl&ide")", "'&' begins none of"},
+    {"CharacterByNumber", R"(<joint name="slide")", R"(<joint name="sl&#105;de")", "'&' begins"},
     {"ZeroByte", R"(<link name="base"/>)", std::string("<link\0/>", 8), "zero byte"},
 };
 INSTANTIATE_TEST_SUITE_P(Tree, UrdfRefusal, ::testing::ValuesIn(kTree), testing::MutationName());

@@ -197,7 +197,7 @@ TEST(GainTable, EveryFieldHasARow) {
     declared += lcm.compare(start, 4, "    ") == 0 && lcm.compare(start, 9, "    const") != 0 &&
                 lcm.compare(start, 6, "    //") != 0;
   }
-  constexpr int kHead = 5;        // seq, time_ns, client, law, num_joints
+  constexpr int kHead = 6;        // seq, time_ns, controller, client, law, num_joints
   constexpr int kParameters = 2;  // and their number
   EXPECT_EQ(declared, std::ssize(fields) + kHead + kParameters);
   for (std::size_t i = 0; i < fields.size(); ++i) {

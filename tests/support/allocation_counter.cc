@@ -2,6 +2,27 @@
 
 #include <cstddef>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIMBER_SANITIZED_HEAP 1
+// From compiler-rt's sanitizer/allocator_interface.h, which GCC does not install.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(
+    void (*malloc_hook)(const volatile void* pointer, std::size_t size),
+    void (*free_hook)(const volatile void* pointer));
+#endif
+
+namespace {
+thread_local std::int64_t count = 0;
+}
+
+#ifdef LIMBER_SANITIZED_HEAP
+// The heap is the sanitizer's, which calls a hook at every allocation.
+namespace {
+void count_one(const volatile void*, std::size_t) { ++count; }
+void ignore(const volatile void*) {}
+[[maybe_unused]] const int kInstalled =
+    __sanitizer_install_malloc_and_free_hooks(&count_one, &ignore);
+}  // namespace
+#else
 // glibc's own entry points, under the names it exports for replacements of malloc. operator new
 // ends in malloc.
 extern "C" {
@@ -9,14 +30,7 @@ void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* pointer, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
-}
 
-namespace {
-thread_local std::int64_t count = 0;
-}
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-extern "C" {
 void* malloc(std::size_t size) {
   ++count;
   return __libc_malloc(size);

@@ -85,7 +85,6 @@ class Stack:
         self.processes: dict[str, subprocess.Popen] = {}
         self.starts: dict[str, int] = defaultdict(int)
         self.user = Listener(USER_URL)
-        self._requests = 0
 
     def start(self, name: str, *arguments: str, tag: str | None = None) -> subprocess.Popen:
         tag = tag or name
@@ -111,8 +110,9 @@ class Stack:
 
     def request(self, what: int, client: int = CLIENT) -> None:
         message = mode_request_t()
-        self._requests += 1
-        message.seq = self._requests
+        status = self.user.latest("CONTROLLER_STATUS")
+        message.seq = time.monotonic_ns()
+        message.controller = 0 if status is None else status.controller
         message.client = client
         message.request = what
         self.user.lcm.publish("MODE_REQUEST", message.encode())

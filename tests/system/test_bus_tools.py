@@ -4,10 +4,13 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import can
 import pytest
+
+from stack import BIN
 
 DISABLE = bytes.fromhex("FFFFFFFFFFFFFFFD")
 SHOULDER = {"arbitration_id": 1, "is_extended_id": False, "data": DISABLE}
@@ -98,3 +101,32 @@ def test_a_replayed_recording_is_answered(start, tmp_path):
     assert end(recorder) == 0 and end(sim) == 0
     ids = [line.split()[2].split("#")[0] for line in answers.read_text().splitlines()]
     assert sorted(ids) == ["001", "002", "011", "012"]
+
+
+def test_a_driver_does_not_start_beside_another_master(start):
+    _, said = start("sim", "sim", "desktop2r")
+    how = re.search(r'channel="([\d.]+)", port=(\d+)', wait_for(said, "ode at"))
+    stop = threading.Event()
+
+    def command() -> None:
+        with can.Bus(
+            interface="udp_multicast", channel=how[1], port=int(how[2]), hop_limit=0
+        ) as other:
+            while not stop.wait(0.05):
+                other.send(can.Message(**SHOULDER))
+
+    master = threading.Thread(target=command)
+    master.start()
+    try:
+        driver = subprocess.run(
+            [str(BIN / "limber-driver"), "--robot", "desktop2r"],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    finally:
+        stop.set()
+        master.join()
+    assert driver.returncode == 2
+    assert "another program commands shoulder (id 0x1 on virtual:desktop2r)" in driver.stderr

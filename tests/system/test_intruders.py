@@ -15,7 +15,7 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import ARM_URL, Listener
 
 # Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
+pytestmark = [pytest.mark.flaky(reruns=2), pytest.mark.usefixtures("refereed")]
 
 
 def active(stack) -> None:

@@ -9,7 +9,7 @@ from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 
 # Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
+pytestmark = [pytest.mark.flaky(reruns=2), pytest.mark.usefixtures("refereed")]
 DEGREE = np.pi / 180
 FALLING_rad_per_s = (
     0.6  # an undamped openarm shoulder passes this a tenth of a second after its torque is gone

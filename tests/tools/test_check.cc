@@ -39,6 +39,12 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST(Check, AResultThatCannotBeWrittenIsAnError) {
+  EXPECT_EQ(check("robot openarm >/dev/full").status, 3);
+  EXPECT_EQ(check("--help >/dev/full").status, 3);
+  EXPECT_EQ(check("robot openarm | true").status, 0);
+}
+
 TEST(Check, TellsOfAShippedRobot) {
   const Outcome outcome = check("robot openarm");
   EXPECT_EQ(outcome.status, 0);

@@ -6,6 +6,7 @@ of declaration. Types without strings have a fixed size: a thousand messages are
 
 import importlib
 import os
+import struct
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -65,6 +66,23 @@ def user_plane_url() -> str:
 
 def message_class(type_name: str) -> Any:
     return getattr(_types(), type_name)
+
+
+def decode(type_name: str, data: bytes) -> Any:
+    """The message, if `data` is exactly one of this type and version; else ValueError.
+
+    The generated reader takes cut strings, lists of negative length, and bytes behind the end.
+    """
+    cls = message_class(type_name)
+    try:
+        message = cls.decode(data)
+        again = message.encode()
+    except (struct.error, IndexError, OverflowError) as error:
+        raise ValueError(f"not a {type_name}: {error}") from error
+    counts = {size for shape in cls.__dimensions__ for size in shape or () if isinstance(size, str)}
+    if again != data or any(getattr(message, count) < 0 for count in counts):
+        raise ValueError(f"not a {type_name}: lengths that cannot be")
+    return message
 
 
 def constants(type_name: str, prefix: str) -> dict[int, str]:

@@ -8,8 +8,9 @@
 
 #include "common/clock.h"
 #include "common/config_error.h"
-#include "common/lcm_port.h"
+#include "common/lcm_url.h"
 #include "common/program.h"
+#include "common/wait_readable.h"
 #include "tools/record/recorder.h"
 
 namespace {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <limber/controller_status_t.hpp>
 #include <variant>
 
 #include "common/clock.h"
@@ -33,22 +35,33 @@ RequestSender::RequestSender(const LoadedRobot& robot, std::int64_t client)
     : robot_(robot),
       client_(client),
       context_{robot_, &controller::law_catalog(), 0.0, default_gains(robot.robot)},
-      port_(user_plane_url()),
-      seq_(monotonic_ns()) {  // those of an sender before this one are smaller
+      port_(user_plane_url()) {
   port_.subscribe<request_answer_t>(channels::kRequestAnswer, kAnswerQueue,
                                     [this](const request_answer_t& answer) {
                                       if (answer.client == client_ && answer.seq == seq_)
                                         answer_ = answer;
                                     });
+  port_.subscribe<controller_status_t>(
+      channels::kControllerStatus, 1,
+      [this](const controller_status_t& status) { controller_ = status.controller; });
 }
 
-bool RequestSender::wait_for_answer() {
+template <typename Condition>
+bool RequestSender::wait_for(Condition met) {
   const std::int64_t end_ns = monotonic_ns() + kAnswer_ns;
   const std::array descriptors{port_.descriptor()};
-  while (!answer_ && monotonic_ns() < end_ns) {
+  while (!met() && monotonic_ns() < end_ns) {
     if (wait_readable(descriptors, end_ns)) port_.handle_waiting();
   }
-  return answer_.has_value();
+  return met();
+}
+
+std::int64_t RequestSender::running_controller() {
+  port_.handle_waiting();  // a status from before may be of another run
+  controller_.reset();
+  if (!wait_for([this] { return controller_.has_value(); }))
+    throw ConfigError("no controller answers");
+  return *controller_;
 }
 
 void RequestSender::send_entry(const std::string& entry) {
@@ -56,21 +69,23 @@ void RequestSender::send_entry(const std::string& entry) {
   const TimedMessage timed = *read_entry(yaml, &context_);  // laws are known: nothing is left out
   const bool to_controller = !std::holds_alternative<push_t>(timed.message) &&
                              !std::holds_alternative<scenario_event_t>(timed.message);
-  answer_.reset();
-  send(timed.message);
+  send(timed.message, to_controller ? running_controller() : 0);
   if (!to_controller) return;
-  if (!wait_for_answer()) throw ConfigError("no controller answers");
+  if (!wait_for([this] { return answer_.has_value(); })) throw ConfigError("no controller answers");
   if (answer_->accepted == 0) {
     throw ConfigError("refused by the controller: " + answer_->reason);
   }
 }
 
-void RequestSender::send(const ScenarioMessage& message) {
-  ++seq_;
-  const auto publish = [this](const char* channel, auto copy) {
+void RequestSender::send(const ScenarioMessage& message, std::int64_t controller) {
+  answer_.reset();
+  // Greater than that of any sender with this client's number before.
+  seq_ = std::max(seq_ + 1, monotonic_ns());
+  const auto publish = [&](const char* channel, auto copy) {
     copy.time_ns = monotonic_ns();
     if constexpr (requires { copy.seq; }) copy.seq = seq_;
     if constexpr (requires { copy.client; }) copy.client = client_;
+    if constexpr (requires { copy.controller; }) copy.controller = controller;
     if (!port_.publish(channel, copy)) throw ConfigError("the message could not be sent");
   };
   std::visit(Overloaded{

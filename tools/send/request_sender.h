@@ -24,14 +24,18 @@ class RequestSender {
   void send_entry(const std::string& entry);
 
  private:
-  void send(const ScenarioMessage& message);
-  bool wait_for_answer();
+  /// Number of the controller that runs now. Throws ConfigError if none does.
+  std::int64_t running_controller();
+  void send(const ScenarioMessage& message, std::int64_t controller);
+  template <typename Condition>
+  bool wait_for(Condition met);
 
   const LoadedRobot& robot_;
   std::int64_t client_;
   EntryContext context_;
   LcmPort port_;
   std::int64_t seq_ = 0;
+  std::optional<std::int64_t> controller_;
   std::optional<request_answer_t> answer_;
 };
 

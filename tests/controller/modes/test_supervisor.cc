@@ -16,13 +16,22 @@ namespace {
 // The whole table once more, as pictures of rows: what each event leads to from
 // Boot, Init, iDle, Hold, Active, Softstop, Fault, Estop; '.': refused or ignored.
 const std::map<Event, std::string> kExpected = {
-    {Event::kRequestIdle, "..DD...."},        {Event::kRequestHold, "..HHSS.."},
-    {Event::kRequestActive, "...AA..."},      {Event::kRequestStop, "BIDHSSFE"},
-    {Event::kRequestAcknowledge, "......DD"}, {Event::kFirstState, "I......."},
-    {Event::kSteadyStates, ".D......"},       {Event::kAtRest, ".....H.."},
-    {Event::kStateLost, ".IIFFF.."},          {Event::kStateInvalid, ".IIFFF.."},
-    {Event::kDriverFault, "...FFF.."},        {Event::kNewSession, ".IIFFF.."},
-    {Event::kTorqueInvalid, "...FFF.."},      {Event::kDriveNotOn, "...F...."},
+    {Event::kRequestIdle, "..DD...."},
+    {Event::kRequestHold, "..HHSS.."},
+    {Event::kRequestActive, "...AA..."},
+    {Event::kRequestStop, "BIDHSSFE"},
+    {Event::kRequestAcknowledge, "......DD"},
+    {Event::kFirstState, "I......."},
+    {Event::kSteadyStates, ".D......"},
+    {Event::kAtRest, ".....H.."},
+    {Event::kStateLost, ".IIFFF.."},
+    {Event::kStateInvalid, ".IIFFF.."},
+    {Event::kDriverFault, "...FFF.."},
+    {Event::kNewSession, ".IIFFF.."},
+    {Event::kTorqueInvalid, "...FFF.."},
+    {Event::kDriveNotOn, "...F...."},
+    {Event::kStrayed, "...F...."},
+    {Event::kEncoderStopped, "...FFF.."},
     {Event::kEstopPressed, "EEEEEEE."},
 };
 

@@ -164,6 +164,58 @@ TEST(Trouble, GoalGoesOnAfterAGapFromWhereItWas) {
   EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
 }
 
+// One message with a number far ahead must not make all true ones look old.
+TEST(Trouble, AForgedNumberFarAheadEndsInAFaultThatCanBeAcknowledged) {
+  Rig rig(arm());
+  rig.to_active();
+  joint_state_t forged = rig.state;
+  forged.seq += 1'000'000;
+  rig.controller.step(forged);
+  EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
+  EXPECT_EQ(rig.controller.status().reason, +Status::REASON_STATE_INVALID);
+  rig.run(0.3);
+  EXPECT_LT(rig.controller.status().states_lost, 10);
+  EXPECT_EQ(rig.request(mode_request_t::REQUEST_ACKNOWLEDGE), nullptr);
+}
+
+TEST(Trouble, NumbersThatGoOnFarAheadAreFollowed) {
+  Rig rig(arm());
+  rig.to_active();
+  rig.state.seq += 5000;  // this process stood still, and its queue was full
+  rig.run(0.3);
+  EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
+  EXPECT_EQ(rig.request(mode_request_t::REQUEST_ACKNOWLEDGE), nullptr);
+}
+
+TEST(Trouble, AfterSilenceAnyNumberIsFollowed) {
+  Rig rig(arm());
+  rig.to_active();
+  joint_state_t forged = rig.state;
+  for (std::int64_t ahead : {2000, 2001, 2002}) {  // now the true ones look old
+    forged.seq = rig.state.seq + ahead;
+    rig.controller.step(forged);
+  }
+  rig.run(0.1);
+  EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
+  rig.controller.on_silence();
+  rig.run(0.2);
+  EXPECT_EQ(rig.request(mode_request_t::REQUEST_ACKNOWLEDGE), nullptr);
+}
+
+TEST(Trouble, TheLeaseOfASilentClientEnds) {
+  Rig rig(arm());
+  rig.to_active();
+  constexpr std::int64_t kOther = testing::kClient + 1;
+  rig.run(11.0);
+  EXPECT_NE(rig.request(mode_request_t::REQUEST_HOLD, kOther), nullptr) << "ACTIVE";
+  EXPECT_EQ(rig.request(mode_request_t::REQUEST_HOLD), nullptr);
+  rig.run(9.9);
+  EXPECT_NE(rig.request(mode_request_t::REQUEST_IDLE, kOther), nullptr);
+  rig.run(0.2);
+  EXPECT_EQ(rig.request(mode_request_t::REQUEST_IDLE, kOther), nullptr);
+  EXPECT_NE(rig.request(mode_request_t::REQUEST_HOLD), nullptr) << "it is the other's now";
+}
+
 // What the drives were sent is what the gate counts from.
 TEST(Trouble, StepsAreCountedFromWhatTheDrivesWereSent) {
   Rig rig(arm());

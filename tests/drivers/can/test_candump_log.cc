@@ -63,7 +63,7 @@ TEST(CandumpLog, RefusesWhatNoBusCarries) {
         "(1.0) can0 123#112", "(1.0) can0 123#112233445566778899", "(1.0) can0 123##",
         "(1.0) can0 123##1112233445566778899",  // nine bytes: no length of FD
         "(1.0) can0 123#11 22", "(1.0) can0 123#R9", "(1.0) can0 FFFFFFFF#", "(nan) can0 123#",
-        "(99999999999999999999) can0 123#"})
+        "(99999999999999999999) can0 123#", "(9223372036.9) can0 123#"})
     EXPECT_FALSE(from_candump(line, &logged)) << line;
 }
 

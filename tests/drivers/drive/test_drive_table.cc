@@ -102,6 +102,13 @@ const std::map<E, std::map<S, S>> kExpected = {
       {S::kOn, S::kDamp},
       {S::kFallback, S::kDamp},
       {S::kDamp, S::kDamp}}},
+    {E::kEmergencyStop,
+     {{S::kOff, S::kFault},
+      {S::kEnabling, S::kFault},
+      {S::kOn, S::kFallback},
+      {S::kFallback, S::kFallback},
+      {S::kDamp, S::kDamp}}},
+    {E::kEmergencyOff, {{S::kFallback, S::kFault}, {S::kDamp, S::kFault}}},
 };
 
 const std::map<E, int> kFaults = {
@@ -121,6 +128,8 @@ const std::map<E, int> kFaults = {
     {E::kFeedbackWrong, joint_state_t::FAULT_FEEDBACK},
     {E::kPositionTrip, joint_state_t::FAULT_POSITION},
     {E::kVelocityTrip, joint_state_t::FAULT_VELOCITY},
+    {E::kEmergencyStop, joint_state_t::FAULT_EMERGENCY_STOP},
+    {E::kEmergencyOff, joint_state_t::FAULT_EMERGENCY_STOP},
 };
 
 /// Events that lead from CONFIGURING to a state.
@@ -236,6 +245,12 @@ TEST(DriveStatesTest, FirstFaultIsKeptUntilAcknowledged) {
   EXPECT_EQ(machine.state(), S::kDamp);
   EXPECT_FALSE(machine.acknowledged());
   EXPECT_EQ(machine.fault(), joint_state_t::FAULT_POSITION + 0);
+}
+
+TEST(DriveStatesTest, NothingIsAcknowledgedBeforeItHappened) {
+  const DriveStateMachine machine;
+  EXPECT_FALSE(machine.acknowledged());
+  EXPECT_EQ(machine.fault_joint(), -1);
 }
 
 TEST(DriveStatesTest, IgnoredEventsLeaveNoFault) {

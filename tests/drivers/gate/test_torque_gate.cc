@@ -410,6 +410,24 @@ TEST_F(TorqueGateTest, StrangersAndDuplicatesDoNotTripTheHolder) {
   }
 }
 
+// They are missing answers, which ControllerWatch bridges and counts.
+TEST_F(TorqueGateTest, LateAnswersDoNotTripTheHolder) {
+  TorqueGate gate(limits_);
+  ASSERT_EQ(gate.judge(good_, situation_), kAccepted);
+  joint_command_t late = good_;
+  situation_.state_seq += 20;
+  for (int i = 0; i < 9; ++i) {
+    ++late.state_seq;
+    EXPECT_EQ(gate.judge(late, situation_), Status::VERDICT_STALE + 0);
+    EXPECT_FALSE(gate.refused_too_often());
+  }
+  late.state_seq = situation_.state_seq + 1;  // never published: that is no late answer
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_EQ(gate.judge(late, situation_), Status::VERDICT_STALE + 0);
+    EXPECT_EQ(gate.refused_too_often(), i == 3);
+  }
+}
+
 TEST(EventWindowTest, CountsTheNthWithinTheSpan) {
   EventWindow<3> window;
   EXPECT_FALSE(window.add(0, 10));

@@ -254,12 +254,12 @@ TEST(TipSensorFault, IsTakenOnlyWhereThereIsASensorAndOnlySilence) {
   event.joint = scenario_event_t::NODE_TIP_SENSOR;
   event.duration_s = 0.5;
   NodeFault fault;
-  EXPECT_FALSE(read_fault(event, 2, false, &fault));
-  ASSERT_TRUE(read_fault(event, 2, true, &fault));
+  EXPECT_FALSE(read_fault(event, {2, false, true}, &fault));
+  ASSERT_TRUE(read_fault(event, {2, true, false}, &fault));
   EXPECT_EQ(fault.joint, int{scenario_event_t::NODE_TIP_SENSOR});
   EXPECT_EQ(fault.duration_ns, 500'000'000);
   event.fault = scenario_event_t::FAULT_FROZEN_ENCODER;
-  EXPECT_FALSE(read_fault(event, 2, true, &fault));
+  EXPECT_FALSE(read_fault(event, {2, true, false}, &fault));
 }
 
 TEST(TipSensorNode, FallsSilentForATime) {

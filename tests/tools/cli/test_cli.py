@@ -1,5 +1,6 @@
 """Whatever a user mistypes: exit code 2, one line that says what is right, never a traceback."""
 
+import os
 import subprocess
 import sys
 
@@ -184,3 +185,21 @@ def test_doctor_tells_level_and_cure(limber):
     assert "multicast" in done.stdout and "SocketCAN" in done.stdout
     for line in done.stdout.splitlines():
         assert line.split()[0] in ("ok", "warn", "fail", "cure:"), line
+
+
+def test_a_terminal_without_unicode_is_no_error():
+    """The tables of results have a character that ASCII does not have."""
+    environment = {**os.environ, "PYTHONUTF8": "0", "LC_ALL": "C"}
+    command = [sys.executable, "-c", PRINT_UNICODE]
+    done = subprocess.run(command, env=environment, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert b"300 ? 3" in done.stdout
+
+
+PRINT_UNICODE = """
+from limber.cli import main, options
+main.app.command("unicode")(lambda: options.console.print("300 \\u00b1 3"))
+import sys
+sys.argv = ["limber", "unicode"]
+main.main()
+"""

@@ -1,5 +1,6 @@
 """Commands that check this machine and limber itself."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -7,6 +8,7 @@ import typer
 from limber.cli.options import console
 from limber.dev import selftest
 from limber.errors import OK, OUT_OF_TOLERANCE, RUN_FAILED
+from limber.paths import ROOT
 
 app = typer.Typer()
 
@@ -45,31 +47,98 @@ def test(
 
 @app.command()
 def docs() -> None:
-    """Write the tables in the docs that come from programs: gains, and faults on the bus."""
-    from limber.dev import faults_doc, gains_doc
+    """Write the tables in the docs that come from programs: gains, faults on the bus, fuzzing.
 
-    for table in (gains_doc.TABLE, faults_doc.TABLE):
+    The fault matrix takes minutes: `limber faults report` writes it.
+    """
+    from limber.dev import faults_doc, fuzz, gains_doc
+
+    for table in (gains_doc.TABLE, faults_doc.TABLE, fuzz.TABLE):
         console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
 
 
 @app.command()
-def faults(
-    fault: Annotated[
-        str | None, typer.Argument(help="One fault by its name; all if there is none.")
+def mutation(
+    where: Annotated[
+        list[str] | None,
+        typer.Argument(help="Areas of tests/mutation/targets.yaml, or files; all if none."),
     ] = None,
-    phases: Annotated[
-        int, typer.Option(min=1, max=100, help="Phases of the motion at which it begins.")
-    ] = 3,
+    sample: Annotated[
+        int | None, typer.Option(min=1, help="So many of the mutants, drawn at random.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of what is drawn, and of the order.")] = 1,
+    seconds: Annotated[
+        float | None, typer.Option(min=0, help="No mutant is begun later; the build not counted.")
+    ] = None,
 ) -> None:
-    """Inject faults into a simulated arm of each family of drives; show what the driver does."""
-    from rich.table import Table
+    """Put faults into the code, one at a time, and see which ones no test notices."""
+    from limber.dev.mutation import campaign, report
 
-    from limber.dev import faults_doc
+    result = campaign.run(where or [], sample, seed, seconds, console.print)
+    report.show(result, console)
+    raise typer.Exit(OK if result.passed() else OUT_OF_TOLERANCE)
 
-    table = Table(*faults_doc.HEAD, show_lines=True)
-    for row in faults_doc.reactions(fault, phases):
-        table.add_row(*faults_doc.cells(row))
-    console.print(table)
+
+@app.command()
+def coverage(
+    write: Annotated[bool, typer.Option("--write", help="Keep the figures of this run.")] = False,
+) -> None:
+    """Count which lines and branches of gate, tables and supervisor their unit tests reach."""
+    from limber.dev import coverage as module
+    from limber.tables import table
+
+    figures = module.measure()
+    shown = table("<file", ">lines %", ">branches %", "~")
+    for each in figures:
+        note = f"fell from {each.before}" if each.fell else "rose" if each.rose else ""
+        shown.add_row(each.file, f"{each.lines:.1f}", f"{each.branches:.1f}", note)
+    console.print(shown)
+    if write:
+        module.write(figures)
+    elif any(each.rose for each in figures):
+        console.print("some rose: limber coverage --write keeps them")
+    raise typer.Exit(OUT_OF_TOLERANCE if not write and any(e.fell for e in figures) else OK)
+
+
+@app.command()
+def fuzz(
+    target: Annotated[str | None, typer.Argument(help="One target; all if there is none.")] = None,
+    inputs: Annotated[int, typer.Option(min=0, help="libFuzzer: inputs a target.")] = 0,
+    minutes: Annotated[float, typer.Option(min=0, help="libFuzzer: minutes a target.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the mutations that are replayed.")] = 1,
+) -> None:
+    """Feed garbled bytes to everything that reads some: kept inputs and mutations of them, or, with
+    --inputs or --minutes, whatever libFuzzer (clang) finds."""
+    from limber.dev import fuzz as module
+
+    names = module.targets(target)
+    if inputs or minutes:
+        passed = module.search(names, console, inputs, minutes)
+    else:
+        passed = module.replay(names, console, seed=seed)
+    raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
+
+
+@app.command()
+def soak(
+    robot: Annotated[str, typer.Option(help="The arm: name or folder.")] = "planar2r",
+    hours: Annotated[float, typer.Option(min=1e-4, help="Of arm time.")] = 24,
+    seconds: Annotated[float, typer.Option(min=0, help="At most so much wall time; 0: any.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of everything random.")] = 1,
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="The real processes, in real time.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the report.")] = None,
+) -> None:
+    """Use a simulated arm for hours, at random and with injected faults; nothing may happen without
+    a cause. With --realtime: the real processes undisturbed, and how late their cycles start."""
+    from limber.dev import realtime_soak
+    from limber.dev import soak as module
+
+    folder = out or ROOT / "out" / "soak"
+    if realtime:
+        raise typer.Exit(realtime_soak.run(robot, hours, seed, folder, console))
+    raise typer.Exit(module.run(robot, hours, seconds, seed, folder, console))
 
 
 @app.command()

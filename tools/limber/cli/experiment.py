@@ -1,5 +1,6 @@
 """`limber experiment`: list them, run them, write the report."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -35,12 +36,16 @@ def run_experiments(
     out: Out = DEFAULT_OUT,
     fast: Annotated[bool, typer.Option("--fast", help="Only those that take seconds.")] = False,
     jobs: Annotated[int, typer.Option(min=1, max=64, help="Number of experiments at a time.")] = 2,
+    referee: Annotated[
+        bool, typer.Option("--referee", help="Judge the CAN frames of every run, too.")
+    ] = False,
     root: Root = None,
 ) -> None:
     """Run experiments; each leaves result.json and picture.png. Exit code 1 if a check fails."""
     from limber.errors import InputError
     from limber.experiments.batch import run_many
     from limber.experiments.catalog import catalog, choose
+    from limber.experiments.context import REFEREE
     from limber.experiments.run_one import run_one, summary
     from limber.paths import output_folder
 
@@ -48,6 +53,8 @@ def run_experiments(
     if not chosen:
         raise InputError("--fast leaves none of them; omit it")
     output_folder(out)
+    if referee:
+        os.environ[REFEREE] = "1"
     if len(chosen) > 1:
         raise typer.Exit(run_many(chosen, out, jobs, console))
     checks = run_one(chosen[0], out, console)

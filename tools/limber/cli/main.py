@@ -1,5 +1,6 @@
 """The `limber` program: puts the groups of commands together and reports errors in one line."""
 
+import io
 import os
 import sys
 from typing import Annotated, NoReturn
@@ -8,7 +9,7 @@ import typer
 from typer.exceptions import TyperException
 
 from limber import __version__
-from limber.cli import can, dev, experiment, identify, live, log, run
+from limber.cli import can, dev, experiment, faults, identify, live, log, referee, run
 from limber.cli.options import console
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
 
@@ -20,10 +21,11 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for group in (run, live, log, dev):
+for group in (run, live, log, referee, dev):
     app.add_typer(group.app)
 app.add_typer(can.app, name="can")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(faults.app, name="faults")
 app.add_typer(identify.app, name="identify")
 
 
@@ -43,6 +45,8 @@ def fail(message: str, code: int) -> NoReturn:
 
 def main() -> NoReturn:
     """Exit codes: 0 ok, 1 result out of tolerance, 2 wrong input, 3 run failed."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a terminal that does not know ± gets a ?
+        sys.stdout.reconfigure(errors="replace")
     if os.environ.get("LIMBER_DEBUG") == "1":
         sys.exit(_call())
     try:

@@ -23,7 +23,7 @@ PROGRAMS = tuple(
     f"limber-{name}"
     for name in (
         *("driver", "controller", "sim", "lab", "check"),
-        *("eval", "record", "send", "can", "faults"),
+        *("eval", "record", "send", "can", "faults", "soak"),
     )
 )
 

@@ -13,10 +13,9 @@ COUNTERS = ("lost", "late", "invalid", "foreign")
 
 
 def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]:
-    """Injects all faults, or one: a row each, as limber-faults prints them."""
+    """Injects the faults of the bus, or one of any place: a row each, as limber-faults prints."""
     command = [str(program("limber-faults")), "--phases", str(phases)]
-    if fault is not None:
-        command.append(fault)
+    command += ["--place", "bus"] if fault is None else [fault]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)["faults"]
 

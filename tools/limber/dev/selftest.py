@@ -13,6 +13,7 @@ from limber.errors import InputError, RunError
 from limber.live import network
 from limber.paths import ROOT
 
+JOBS = os.cpu_count() or 1
 PYTEST = [sys.executable, "-m", "pytest"]
 CTEST = ["ctest", "--test-dir", str(ROOT / "build" / "dev"), "--output-on-failure"]
 
@@ -24,14 +25,23 @@ def parts(name: str | None = None) -> list[str]:
     return list(PARTS) if name is None else [name]
 
 
-def _system() -> list[str]:
+def _private() -> list[str]:
     prefix = [] if network.is_private() else network.private_command()
     if prefix is None:
         raise RunError(
             "the system tests need a private network, which this machine does not permit: "
             "run as root, or allow unprivileged user namespaces"
         )
-    return [*prefix, *PYTEST, "tests/system"]
+    return prefix
+
+
+def _threads() -> list[str]:
+    """Driver and recorder under thread sanitizer, beside the plain controller and arm."""
+    return [*_private(), *PYTEST, "tests/threads"]
+
+
+def _limber(*words: str) -> list[str]:
+    return [sys.executable, "-m", "limber", *words]
 
 
 def _format() -> list[str]:
@@ -41,10 +51,25 @@ def _format() -> list[str]:
 
 # Name -> its command
 PARTS: dict[str, Callable[[], list[str]]] = {
-    "ctest": lambda: [*CTEST, "-LE", "vcan", "-j", str(os.cpu_count() or 1)],
-    "pytest": lambda: [*PYTEST, "tests/tools"],
+    "ctest": lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)],
+    # The other C++ unit tests, built with sanitizers only
+    "sanitizers": lambda: [
+        "env",
+        f"CTEST_PARALLEL_LEVEL={JOBS}",
+        "cmake",
+        "--workflow",
+        "--preset",
+        "asan",
+    ],
+    "fuzz": lambda: _limber("fuzz"),
+    "threads": _threads,
+    "soak": lambda: _limber("soak", "--hours", "0.12"),
+    "pytest": lambda: [*PYTEST, "tests/tools", "tests/fuzz"],
+    # All mutants of the state tables; of gate, supervisors and watches survivors are open
+    "mutation": lambda: _limber("mutation", "tables", "--seconds", "60"),
+    "coverage": lambda: _limber("coverage"),
     "eval": lambda: [*PYTEST, "tests/eval"],
-    "system": _system,
+    "system": lambda: [*_private(), *PYTEST, "tests/system"],
     "tutorial": lambda: [*PYTEST, "tests/tutorial"],
     # SocketCAN in a guest kernel that has vcan; one guest at a time
     "vcan": lambda: [*CTEST, "-L", "vcan", "--no-tests=error"],

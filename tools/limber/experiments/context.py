@@ -1,5 +1,6 @@
 """What an experiment gets: a folder, a lab, the laws, a seeded generator, a picture."""
 
+import os
 import zlib
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from limber.experiments.evaluate import case
 from limber.log.reader import Log
 from limber.model.scenario import active_with
 from limber.paths import output_folder
+from limber.referee.judge import require_no_breach
 from limber.run import runner
 from limber.run.commands import load_checked
 
@@ -24,6 +26,7 @@ from limber.run.commands import load_checked
 __all__ = ["Comparison", "Context", "at_least", "at_most", "case", "ideal_and_bus", "near_zero"]
 
 PICTURE = "picture.png"
+REFEREE = "LIMBER_REFEREE"  # 1: the frames of every run are judged
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,11 @@ class Context:
             path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
         self.progress(f"lab: {name}")
         folder = output_folder(self.out / name)
-        result = runner.lab(load_checked(path), folder, Console(quiet=True))
+        judged = os.environ.get(REFEREE) == "1"
+        result = runner.lab(load_checked(path), folder, Console(quiet=True), record_can=judged)
+        if judged:
+            require_no_breach(result.can_log, str(folder))
+            result.can_log.unlink()
         return Log(result.log)
 
     def run_law(

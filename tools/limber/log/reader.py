@@ -126,12 +126,11 @@ class Log:
             raise InputError(
                 f"channel '{channel}' is not one of limber's: " + ", ".join(messages.channels())
             )
-        cls = messages.message_class(type_name)
         decoded = []
         for data in self.raw(channel):
             try:
-                decoded.append(cls.decode(data))
-            except (ValueError, struct.error):
+                decoded.append(messages.decode(type_name, data))
+            except ValueError:
                 continue  # another type on this channel; counted by undecodable()
         return decoded
 

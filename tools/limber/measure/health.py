@@ -5,6 +5,7 @@ import numpy as np
 from limber import messages
 from limber.log.reader import Log
 from limber.measure.results import Result, at_most
+from limber.measure.sound import damaged
 from limber.model.scenario import Scenario
 
 
@@ -16,7 +17,13 @@ def health_results(log: Log, scenario: Scenario, recorder_lost: dict[str, int]) 
     if len(driver):
         results.extend(_driver(driver[-1], scenario))
     results.append(_faults(state, log.read("CONTROLLER_STATUS"), scenario))
-    return results
+    return results + _unsound(log)
+
+
+def _unsound(log: Log) -> list[Result]:
+    """A damaged log, or a simulation that has diverged: such a run never passes."""
+    count = sum(damaged(log.read(channel)) for channel in ("SIM_TRUTH", "CONTROLLER_STATUS"))
+    return [at_most("messages with impossible numbers", count, "", 0)] if count else []
 
 
 def _lost(log: Log, recorder_lost: dict[str, int], skipped: set[str]) -> Result:

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from limber.log.reader import Log, time_s
 from limber.measure import statics
 from limber.measure.results import Result, close_to
+from limber.measure.sound import sound
 from limber.model.scenario import Push, Scenario
 
 BEFORE_S = 0.2  # rest that is averaged before a push
@@ -68,7 +69,7 @@ class MeasuredPush:
 
 def measure_pushes(log: Log, scenario: Scenario) -> list[MeasuredPush]:
     """All pushes of the tip that the log covers and that a law resists with a stiffness."""
-    truth, status = log.read("SIM_TRUTH"), log.read("CONTROLLER_STATUS")
+    truth, status = sound(log.read("SIM_TRUTH")), sound(log.read("CONTROLLER_STATUS"))
     if not len(truth):
         return []
     pushes = [push for push in scenario.pushes if not push.link]

@@ -1,6 +1,7 @@
 """The results of a run: named numbers with expected value, tolerance and verdict."""
 
 import json
+import math
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -54,7 +55,7 @@ class Summary:
             "pass": self.passed,
             "results": [_as_json(result) for result in self.results],
         }
-        path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
     def table(self, title: str) -> Table:
         table = tables.table("<", ">measured", ">expected", "<", "~", title=title)
@@ -67,7 +68,11 @@ class Summary:
 
 
 def _as_json(result: Result) -> dict[str, Any]:
-    content = asdict(result)
+    """JSON has no NaN and no infinity: they are null."""
+    content = {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value
+        for key, value in asdict(result).items()
+    }
     content["pass"] = content.pop("passed")
     if not content["note"]:
         del content["note"]

@@ -9,13 +9,14 @@ from limber.measure.contact import contact_results
 from limber.measure.health import health_results
 from limber.measure.pushes import MeasuredPush, matrix_results, measure_pushes, push_results
 from limber.measure.results import Summary
+from limber.measure.sound import sound
 from limber.model.scenario import Scenario
 
 
 def measure(
     log: Log, scenario: Scenario, mode: str, recorder_lost: dict[str, int] | None = None
 ) -> tuple[Summary, list[MeasuredPush]]:
-    truth = log.read("SIM_TRUTH")
+    truth = sound(log.read("SIM_TRUTH"))
     pushes = measure_pushes(log, scenario)
     tolerances = scenario.tolerances
     results = health_results(log, scenario, recorder_lost or {})

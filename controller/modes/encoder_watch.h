@@ -1,0 +1,61 @@
+// Has an encoder stopped counting while its joint moves?
+#pragma once
+
+#include <array>
+#include <limber/joint_state_t.hpp>
+
+#include "common/joints.h"
+#include "common/types.h"
+#include "robots/loader/robot.h"
+
+namespace limber::controller {
+
+/// A reading that does not change by a single bit is normal at rest, also under torque: friction or
+/// a wall holds the joint. It is not if what the torque beyond gravity has grown by since the
+/// reading changed last would have moved the free joint by kExpected (what it was then balanced a
+/// load),
+///
+///   integral integral (|tau - g - (tau - g)_then| - tau_friction) / M_ii dt^2  >=  kExpected
+///
+/// and the arm moves meanwhile: another joint by kOthers at least, as it does when this one swings
+/// unseen, and does not when the whole arm leans against something. Below tau_friction, the joint's
+/// friction in robot.yaml or kFrictionShare of its torque limit, whichever is more, nothing is
+/// found. A wrist that hangs on to nothing may turn without moving another joint: not found either.
+class EncoderWatch {
+ public:
+  static constexpr double kExpected = 0.05;  ///< rad (m for prismatic joints)
+  static constexpr double kOthers = 0.01;    ///< likewise
+  static constexpr double kFrictionShare = 0.05;
+
+  /// For set-up.
+  explicit EncoderWatch(const Robot& robot);
+
+  // May be called in the cycle.
+
+  /// Forgets what was seen.
+  void reset() noexcept;
+  /// Once a cycle with drives that follow: the joint whose encoder has stopped, -1: none. `gravity`
+  /// and `M`: of the model, N m and kg m^2; `dt_s`: since the last call.
+  int stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
+              double dt_s) noexcept;
+
+ private:
+  struct Joint {
+    double friction_Nm = 0.0;
+    double theta = 0.0;  ///< the reading, since it changed last
+    double q = 0.0;
+    double theta_dot = 0.0;
+    double v = 0.0;
+    double load_Nm = 0.0;                     ///< tau - g then
+    double expected_speed = 0.0;              ///< of the free joint since then, rad/s
+    double expected_angle = 0.0;              ///< likewise, rad
+    std::array<double, kMaxJoints> others{};  ///< theta of all joints then
+    bool known = false;
+  };
+  static bool unchanged(const Joint& joint, const joint_state_t& state, int i) noexcept;
+  static bool others_moved(const Joint& joint, const joint_state_t& state, int i) noexcept;
+
+  std::array<Joint, kMaxJoints> joints_;
+};
+
+}  // namespace limber::controller

@@ -1,0 +1,62 @@
+// Which LCM addresses are taken: nothing that leaves this machine unless it is wanted.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "common/config_error.h"
+#include "common/lcm_url.h"
+
+namespace limber::test_lcm_url {
+namespace {
+
+std::string refusal(const std::string& url) {
+  try {
+    checked_lcm_url(url);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LcmUrl, GetsALargeReceiveBuffer) {
+  EXPECT_EQ(checked_lcm_url("udpm://"), "udpm://?recv_buf_size=2097152");
+  EXPECT_EQ(checked_lcm_url("udpm://239.1.2.3:7000?ttl=0"),
+            "udpm://239.1.2.3:7000?ttl=0&recv_buf_size=2097152");
+  EXPECT_EQ(checked_lcm_url("udpm://239.1.2.3:7000?"),
+            "udpm://239.1.2.3:7000?recv_buf_size=2097152");
+  EXPECT_EQ(checked_lcm_url("udpm://?recv_buf_size=4096"), "udpm://?recv_buf_size=4096");
+}
+
+TEST(LcmUrl, MayNotLeaveTheMachine) {
+  for (const char* options :
+       {"ttl=1", "ttl=01", "ttl=00", "ttl=0&ttl=3", "ttl=3&ttl=0", "ttl=", "ttl=-1", "ttl=0x0",
+        "ttl= 0", "ttl=256", "ttl", "TTL=1", "recv_buf_size=1&ttl=2", "transmit_only=true"}) {
+    const std::string url = std::string("udpm://239.255.76.67:7667?") + options;
+    EXPECT_NE(refusal(url).find(url), std::string::npos) << options << ": " << refusal(url);
+  }
+  EXPECT_EQ(refusal("udpm://239.255.76.67:7667?ttl=0"), "");
+}
+
+TEST(LcmUrl, OnlyMulticast) {
+  for (const char* url : {"file:///tmp/log", "tcpq://", "memq://", "udpm:/", "", "239.255.76.67:1"})
+    EXPECT_NE(refusal(url).find("udpm://"), std::string::npos) << url;
+}
+
+TEST(LcmUrl, MayLeaveTheMachineIfThatIsWanted) {
+  setenv("LIMBER_ALLOW_REMOTE", "1", 1);
+  EXPECT_EQ(refusal("udpm://?ttl=1"), "");
+  EXPECT_NE(refusal("udpm://?ttl=1&ttl=1"), "");
+  EXPECT_NE(refusal("udpm://?ttl=300"), "");
+  setenv("LIMBER_ALLOW_REMOTE", "yes", 1);
+  EXPECT_NE(refusal("udpm://?ttl=1"), "");
+  unsetenv("LIMBER_ALLOW_REMOTE");
+}
+
+TEST(LcmUrl, LoopbackIsNoNetwork) {
+  EXPECT_EQ(network_interface_of("udpm://127.0.0.1:7667"), "");
+  EXPECT_EQ(network_interface_of("udpm://no-address"), "");
+}
+
+}  // namespace
+}  // namespace limber::test_lcm_url

@@ -1,0 +1,106 @@
+// One drive through its states: what it forgets, what it counts, and what it begins afresh.
+#include <gtest/gtest.h>
+
+#include "drivers/drive/drive.h"
+#include "tests/drivers/drive/damiao_reply.h"
+
+namespace limber::test_one_drive {
+namespace {
+
+using testing::DamiaoReply;
+using testing::kEnabled;
+using State = DriveState;
+
+constexpr double kTorqueCount = 20.0 / 4095.0;
+
+/// Two cycles are bridged, 1000 cycles a second.
+class OneDrive : public ::testing::Test {
+ protected:
+  void cycle(State state, const std::vector<CanFrame>& frames) {
+    drive.begin_cycle();
+    drive.next_frame(state, 0.0, true);
+    for (const CanFrame& frame : frames) drive.receive(state, frame);
+    drive.close_cycle(state, number, 1e-3 * static_cast<double>(number));
+    ++number;
+  }
+  void cycles(int count, State state, const DamiaoReply& reply) {
+    for (int i = 0; i < count; ++i) cycle(state, {reply.frame()});
+  }
+  /// N m, of a torque command's field.
+  static double torque_of(const CanFrame& frame) {
+    return testing::raw_command(frame).t * kTorqueCount - 10.0;
+  }
+
+  Drive drive{testing::test_robot(1).joints[0], true, 1000.0, 2};
+  std::int64_t number = 0;
+  DamiaoReply standing{kEnabled, 0.0, 0.0, 0.0};
+  DamiaoReply pulling{kEnabled, 0.0, 0.0, 9.0};
+};
+
+// 500 N m/s at 1 kHz are 0.5 N m a cycle.
+TEST_F(OneDrive, FallbackGoesAtTheJointsTorqueRate) {
+  cycles(1, State::kOn, standing);
+  drive.enter(State::kFallback, 6.0, 0.0);
+  EXPECT_NEAR(torque_of(drive.next_frame(State::kFallback, 0.0, true)), 5.5, kTorqueCount);
+  EXPECT_NEAR(torque_of(drive.next_frame(State::kFallback, 0.0, true)), 5.0, kTorqueCount);
+}
+
+TEST_F(OneDrive, FeedbackIsWatchedWhileThereIsPowerAndForgottenWithIt) {
+  for (State powered : {State::kOn, State::kFallback, State::kDamp}) {
+    cycles(150, powered, pulling);
+    EXPECT_EQ(drive.contradiction(), Contradiction::kTorque) << static_cast<int>(powered);
+    cycles(1, State::kOff, pulling);
+    EXPECT_EQ(drive.contradiction(), Contradiction::kNone) << static_cast<int>(powered);
+  }
+  cycles(200, State::kFault, pulling);
+  EXPECT_EQ(drive.contradiction(), Contradiction::kNone);
+}
+
+// 5 b = 10 cycles with a doubled reply within a second; several in one cycle count once.
+TEST_F(OneDrive, RepliesThatAreDoubledInTenCyclesAreTooMany) {
+  const CanFrame frame = standing.frame();
+  cycles(1, State::kOn, standing);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(drive.often_invalid()) << i;
+    cycle(State::kOn, {frame, frame, frame, frame});
+  }
+  EXPECT_TRUE(drive.often_invalid());
+  EXPECT_EQ(drive.replies_invalid(), 30);
+  drive.acknowledge();
+  for (int i = 0; i < 9; ++i) cycle(State::kOn, {frame, frame});
+  EXPECT_FALSE(drive.often_invalid()) << "counted afresh";
+  cycle(State::kOn, {frame, frame});
+  EXPECT_TRUE(drive.often_invalid());
+}
+
+TEST_F(OneDrive, ALateReplyIsNoLoss) {
+  cycles(3, State::kOn, standing);
+  for (int i = 0; i < 20; ++i) {
+    cycle(State::kOn, {});
+    drive.begin_cycle();
+    drive.receive_late(State::kOn, standing.frame());
+    drive.receive(State::kOn, standing.frame());
+    drive.close_cycle(State::kOn, number++, 0.0);
+  }
+  EXPECT_FALSE(drive.lost());
+  EXPECT_EQ(drive.replies_late(), 20);
+  EXPECT_EQ(drive.replies_lost(), 0);
+}
+
+TEST_F(OneDrive, ALateReplyToAnAnsweredCycleTakesNothingBack) {
+  cycle(State::kOn, {});
+  cycles(2, State::kOn, standing);
+  ASSERT_EQ(drive.replies_lost(), 1);
+  drive.begin_cycle();
+  drive.receive_late(State::kOn, standing.frame());
+  EXPECT_EQ(drive.replies_lost(), 1);
+}
+
+TEST_F(OneDrive, TemperaturesFitTheirField) {
+  cycles(1, State::kOn, standing);
+  EXPECT_EQ(drive.warning().temperature_degC, 35);
+  EXPECT_FALSE(drive.warning().any());
+}
+
+}  // namespace
+}  // namespace limber::test_one_drive

@@ -1,0 +1,68 @@
+// Drives that are not where robot.yaml has them: whatever passes the start is stopped before it has
+// moved far.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "lab/lab.h"
+
+namespace limber::test_wrong_arm {
+namespace {
+
+// Noticed after 0.03 rad; then the drives hold with hold_kp, against the weight that the wrong
+// model feeds forward.
+constexpr double kMost_rad = 0.1;
+
+/// Two seconds in HOLD: the greatest motion of a joint since the drives came on.
+double motion(const LoadedRobot& believed, const LoadedRobot& real) {
+  Scenario scenario;
+  scenario.name = "wrong arm";
+  mode_request_t hold{};
+  hold.client = kScenarioClient;
+  hold.request = mode_request_t::REQUEST_HOLD;
+  scenario.timeline.push_back({300'000'000, hold});
+  Lab lab(believed, scenario, LabOptions{&real, {}, {}});
+  sim_truth_t start{};
+  double most = 0.0;
+  for (int cycle = 0; cycle < 2500; ++cycle) {
+    lab.step();
+    if (cycle == 0) start = lab.truth();
+    for (int i = 0; i < start.num_joints; ++i)
+      most = std::max(most, std::abs(lab.truth().q[i] - start.q[i]));
+  }
+  return most;
+}
+
+LoadedRobot openarm() { return load_robot("openarm"); }
+
+TEST(WrongArm, AsDescribedItHolds) {
+  const LoadedRobot robot = openarm();
+  EXPECT_LT(motion(robot, robot), 0.01);
+}
+
+TEST(WrongArm, ATurnedSignDoesNotMoveIt) {
+  const LoadedRobot robot = openarm();
+  for (std::size_t i = 0; i < robot.robot.joints.size(); ++i) {
+    LoadedRobot real = openarm();
+    real.robot.joints[i].drive.sign *= -1.0;
+    EXPECT_LT(motion(robot, real), kMost_rad) << robot.robot.joints[i].name;
+  }
+}
+
+TEST(WrongArm, SwappedNeighboursDoNotMoveIt) {
+  const LoadedRobot robot = openarm();
+  for (std::size_t i = 0; i + 1 < robot.robot.joints.size(); ++i) {
+    LoadedRobot real = openarm();
+    DriveConfig& a = real.robot.joints[i].drive;
+    DriveConfig& b = real.robot.joints[i + 1].drive;
+    std::swap(a.command_id, b.command_id);
+    std::swap(a.reply_id, b.reply_id);
+    EXPECT_LT(motion(robot, real), kMost_rad) << robot.robot.joints[i].name << " and the next";
+  }
+}
+
+}  // namespace
+}  // namespace limber::test_wrong_arm

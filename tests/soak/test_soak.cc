@@ -1,0 +1,54 @@
+// The soak works, is the same every time, and sees what it is there to see.
+#include <gtest/gtest.h>
+
+#include "soak/soak.h"
+#include "soak/soak_report.h"
+
+namespace limber::test_soak {
+namespace {
+
+const LoadedRobot& planar2r() {
+  static const LoadedRobot robot = load_robot(LIMBER_SOURCE_DIR "/robots/planar2r");
+  return robot;
+}
+
+soak::SoakResult minutes(double arm_minutes, std::uint64_t seed, const LoadedRobot& robot) {
+  soak::Soak soak(robot, seed);
+  return soak.run(60.0 * arm_minutes, [] { return true; });
+}
+
+TEST(Soak, TwoMinutesOfRandomUseHaveNoTripWithoutACause) {
+  const soak::SoakResult result = minutes(2.0, 3, planar2r());
+  EXPECT_TRUE(result.violations.empty()) << result.violations.front();
+  EXPECT_EQ(result.cycles, 120'000);
+  for (const std::int64_t count : result.actions) EXPECT_GT(count, 0);
+  EXPECT_GT(result.recoveries, 0);
+}
+
+TEST(Soak, TheSameSeedDoesTheSame) {
+  const soak::SoakResult first = minutes(0.5, 5, planar2r());
+  const soak::SoakResult second = minutes(0.5, 5, planar2r());
+  EXPECT_EQ(first.actions, second.actions);
+  EXPECT_EQ(first.trips, second.trips);
+  EXPECT_NE(first.actions, minutes(0.5, 6, planar2r()).actions);
+}
+
+// An arm whose speed limit any goal exceeds trips without a fault: the soak must say so.
+TEST(Soak, ATripThatNobodyInjectedIsAViolation) {
+  LoadedRobot slow = planar2r();
+  for (JointConfig& joint : slow.robot.joints) joint.velocity_limit = 1e-3;
+  const soak::SoakResult result = minutes(2.0, 3, slow);
+  ASSERT_EQ(result.violations.size(), 1U);
+  EXPECT_NE(result.violations[0].find("without a cause"), std::string::npos)
+      << result.violations[0];
+}
+
+TEST(Soak, StopsWhenItIsTold) {
+  soak::Soak soak(planar2r(), 1);
+  int asked = 0;
+  soak.run(3600.0, [&] { return ++asked < 3; });
+  EXPECT_EQ(soak.result().cycles, 3000);
+}
+
+}  // namespace
+}  // namespace limber::test_soak

@@ -1,0 +1,191 @@
+"""Faults of processes, planes and the start (faults/matrix.yaml), injected into the real processes.
+
+The referee judges what was on the bus meanwhile: every test here takes `refereed`.
+"""
+
+import resource
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.lcmtypes.joint_state_t import joint_state_t as State
+from stack import BIN, ROOT, Stack
+
+# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
+pytestmark = pytest.mark.flaky(reruns=2)
+DEGREE = np.pi / 180
+FREEZE_s = 0.4  # longer than any watchdog waits, 50 ms being bridged on virtual buses
+
+
+def active(stack: Stack) -> None:
+    stack.start_all()
+    stack.bring_to(Status.MODE_ACTIVE)
+    time.sleep(0.8)  # let the fade-in of the law pass
+
+
+def freeze(stack: Stack, tag: str, seconds: float = FREEZE_s) -> None:
+    stack.processes[tag].send_signal(signal.SIGSTOP)
+    time.sleep(seconds)
+    stack.processes[tag].send_signal(signal.SIGCONT)
+
+
+def positions(stack: Stack) -> np.ndarray:
+    truth = stack.truth
+    return np.array(truth.q[: truth.num_joints])
+
+
+def speed_since(stack: Stack, index: int) -> float:
+    truths = stack.user.since("SIM_TRUTH", index)
+    return max(np.abs(truth.v[: truth.num_joints]).max() for truth in truths)
+
+
+def test_a_controller_that_freezes_is_not_followed_again(refereed):
+    active(refereed)
+    before = positions(refereed)
+    freeze(refereed, "controller")
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_HOLD, 5, "the drives to hold")
+    time.sleep(0.5)
+    assert refereed.state.drive_state == State.DRIVE_HOLD, "thawed, it asks for nothing"
+    assert refereed.state.fault == State.FAULT_CONTROLLER_LOST
+    assert refereed.mode == Status.MODE_FAULT
+    assert np.abs(positions(refereed) - before).max() < 3 * DEGREE
+    refereed.acknowledge()
+    refereed.bring_to(Status.MODE_HOLD)
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 5, "the drives to obey")
+
+
+def test_a_driver_that_freezes_sends_no_old_commands(refereed):
+    active(refereed)
+    index = refereed.user.count("SIM_TRUTH")
+    freeze(refereed, "driver")
+    thawed = refereed.user.count("SIM_TRUTH")
+    refereed.until(lambda: refereed.state.drive_state != State.DRIVE_ON, 5, "the driver to notice")
+    time.sleep(0.5)
+    assert refereed.mode == Status.MODE_FAULT
+    assert speed_since(refereed, index) < 2.0, "on shorted phases the arm sinks slowly"
+    # What the motors make now is braking: it takes energy out of the arm.
+    for truth in refereed.user.since("SIM_TRUTH", thawed)[50:]:
+        power_W = np.array(truth.tau_motor) * np.array(truth.theta_dot)
+        assert power_W.max() < 0.5, "a torque that drives the arm"
+
+
+def test_an_arm_that_comes_back_elsewhere_stays_there(refereed):
+    active(refereed)
+    home = positions(refereed)
+    refereed.kill("sim")
+    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 5, "FAULT")
+    elsewhere = home + np.array([0.2, 0.1, -0.2, 0.2, 0.1, -0.1, 0.2])
+    refereed.start("sim", "--start-q", *map(str, elsewhere))
+    time.sleep(1.0)
+    assert np.abs(positions(refereed) - elsewhere).max() < 1 * DEGREE, "it lies in its stand"
+    refereed.acknowledge()
+    refereed.bring_to(Status.MODE_HOLD)
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+    time.sleep(1.0)
+    assert np.abs(positions(refereed) - elsewhere).max() < 6 * DEGREE, "not to the old goal"
+
+
+def test_a_recorder_that_hangs_is_not_noticed(refereed, tmp_path):
+    recorder = subprocess.Popen([BIN / "limber-record", "--out", tmp_path / "run.lcmlog"])
+    try:
+        active(refereed)
+        recorder.send_signal(signal.SIGSTOP)
+        time.sleep(2.0)
+        assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
+        recorder.kill()
+        time.sleep(0.5)
+        assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
+        assert refereed.mode == Status.MODE_ACTIVE
+    finally:
+        recorder.kill()
+        recorder.wait()
+
+
+def test_a_simulator_that_stalls_is_a_fault(refereed):
+    active(refereed)
+    freeze(refereed, "sim")
+    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 5, "FAULT")
+    assert refereed.state.fault == State.FAULT_REPLY_LOST
+    assert refereed.state.drive_state != State.DRIVE_ON
+    refereed.acknowledge()
+    refereed.bring_to(Status.MODE_HOLD)
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+
+
+def test_a_flood_of_telemetry_stops_no_arm(refereed):
+    active(refereed)
+    before = positions(refereed)
+    end = time.monotonic() + 3.0
+    sent = 0
+    while time.monotonic() < end:
+        for _ in range(10):
+            refereed.user.lcm.publish("FOREIGN", b"x" * 200)
+            sent += 1
+        time.sleep(0.002)
+    assert sent > 1000
+    assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
+    assert refereed.mode == Status.MODE_ACTIVE
+    assert np.abs(positions(refereed) - before).max() < 1 * DEGREE
+
+
+def test_replayed_requests_enable_nothing(refereed):
+    """An old log, played to the user plane of a stack that has been started anew."""
+    active(refereed)
+    old = list(refereed.user.raw["MODE_REQUEST"])
+    assert old, "the requests that brought the arm up"
+    for tag in list(refereed.processes):
+        refereed.kill(tag)
+    refereed.start_all()
+    refereed.until(lambda: refereed.mode == Status.MODE_IDLE, 10, "IDLE")
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_OFF, 5, "drives off")
+    for _ in range(20):
+        for data in old:
+            refereed.user.lcm.publish("MODE_REQUEST", data)
+        time.sleep(0.1)
+    assert refereed.state.drive_state == State.DRIVE_OFF
+
+
+def test_a_network_that_goes_down_is_a_fault(refereed):
+    active(refereed)
+    before = positions(refereed)
+    _ip("link", "set", "lo", "down")
+    time.sleep(FREEZE_s)
+    _ip("link", "set", "lo", "up")
+    _ip("route", "replace", "224.0.0.0/4", "dev", "lo")
+    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 10, "FAULT")
+    assert refereed.state.drive_state != State.DRIVE_ON
+    assert np.abs(positions(refereed) - before).max() < 30 * DEGREE, "it sank on shorted phases"
+    refereed.acknowledge()
+    refereed.bring_to(Status.MODE_HOLD)
+    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+
+
+def _ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True)
+
+
+def start_with_descriptors(count: int) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [BIN / "limber-driver", "--robot", ROOT / "robots" / "openarm"],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (count, count)),
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=False,
+    )
+
+
+def test_without_descriptors_the_driver_does_not_start():
+    done = start_with_descriptors(16)
+    assert done.returncode == 2
+    assert "open files" in done.stderr
+
+
+def test_with_hardly_any_descriptors_the_driver_says_so():
+    done = start_with_descriptors(10)
+    assert done.returncode > 0, f"ended by signal {-done.returncode}"
+    assert done.stderr.strip()

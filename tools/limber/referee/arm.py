@@ -1,0 +1,169 @@
+"""What robot.yaml and its URDF say of each motor: where it is on the bus, and its limits."""
+
+import math
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from limber.errors import InputError
+from limber.model.robot import load_robot, read_yaml
+
+TURN_rad = 2.0 * math.pi
+PERMILLE_MOST = 32.767  # of the rated torque, in 16 bits
+
+
+@dataclass(frozen=True)
+class Motor:
+    """One drive. Units are rad, rad/s and N m at the joint; m, m/s, N of a prismatic one.
+
+    `position_*` and `velocity` limit the joint; of a joint with two motors they are None, unless a
+    link encoder tells the joint's angle.
+    """
+
+    name: str
+    protocol: str
+    interface: str
+    fd: bool
+    number: int  # `id` of robot.yaml
+    reply_id: int | None
+    sign: float
+    offset: float
+    torque_Nm: float
+    torque_step_Nm: float  # a cycle
+    velocity: float | None
+    position: tuple[float, float] | None
+    kp: float  # what the driver holds with
+    kd: float
+    keys: dict[str, Any] = field(repr=False)  # of the motor's type
+    counts_per_turn: float = 1.0
+    link_counts_per_turn: float | None = None
+    torque_sensor: bool = False
+
+
+@dataclass(frozen=True)
+class Arm:
+    name: str
+    period_ns: int
+    motors: list[Motor]
+
+
+def read_arm(name_or_path: str, addresses: dict[str, str] | None = None) -> Arm:
+    """`addresses`: of buses by their names, instead of robot.yaml's, such as socketcan:can0.
+
+    Raises InputError; `limber check` explains a robot.yaml that is wrong.
+    """
+    robot = load_robot(name_or_path)
+    file = robot.folder / "robot.yaml"
+    content = read_yaml(file)
+    try:
+        buses = _buses(content, addresses or {}, file)
+        limits = _urdf_limits(robot.urdf)
+        motors = [
+            motor
+            for joint in robot.joints
+            for motor in _motors(
+                joint.name,
+                (joint.low, joint.high),
+                limits.get(joint.name, (math.inf, math.inf)),
+                content,
+                buses,
+            )
+        ]
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{file}: {error} is missing or wrong; see `limber check`") from error
+    return Arm(robot.name, round(1e9 / robot.rate_hz), motors)
+
+
+def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> dict[str, Any]:
+    buses = {bus["name"]: dict(bus) for bus in content["buses"]}
+    for name, address in addresses.items():
+        if name not in buses:
+            raise InputError(f"{file}: no bus '{name}'; its buses are {', '.join(buses)}")
+        buses[name]["can"] = address
+    return buses
+
+
+def _urdf_limits(urdf: Path) -> dict[str, tuple[float, float]]:
+    """Velocity and effort of each joint."""
+    found = {}
+    for joint in ElementTree.parse(urdf).getroot().findall("joint"):
+        limit = joint.find("limit")
+        if limit is not None:
+            found[joint.get("name")] = (float(limit.get("velocity")), float(limit.get("effort")))
+    return found
+
+
+def _motors(
+    name: str,
+    position: tuple[float, float],
+    urdf: tuple[float, float],
+    content: dict[str, Any],
+    buses: dict[str, Any],
+) -> list[Motor]:
+    joint = content["joints"][name]
+    first = _motor(name, joint, joint, position, urdf, content, buses)
+    if "antagonist" not in joint:
+        return [first]
+    other = {"motor": joint["motor"], "bus": joint["bus"], **joint["antagonist"]}
+    second = _motor(f"{name} (antagonist)", other, joint, position, urdf, content, buses)
+    return [first, second]
+
+
+def _motor(
+    name: str,
+    place: dict[str, Any],
+    joint: dict[str, Any],
+    position: tuple[float, float],
+    urdf: tuple[float, float],
+    content: dict[str, Any],
+    buses: dict[str, Any],
+) -> Motor:
+    kind = content["motors"][place["motor"]]
+    bus = buses[place["bus"]]
+    two = "antagonist" in joint
+    link = joint.get("link_encoder") if joint is place else None
+    mit = kind.get("mit_range", {})
+    field_Nm = mit.get("torque_Nm", PERMILLE_MOST * kind.get("rated_torque_Nm", math.inf))
+    own_Nm = min(kind["peak_torque_Nm"], field_Nm)
+    velocity, effort = urdf
+    joint_Nm = min(effort, own_Nm, _of(joint, "torque_limit", math.inf))
+    rate = _of(joint, "torque_rate_limit", min(joint_Nm / 0.02, 1000.0))
+    step_Nm = rate / content["rate_hz"]
+    hold = joint.get("hold", {})
+    judged = link is not None or not two
+    velocity = min(velocity, mit.get("velocity_rad_per_s", math.inf))
+    return Motor(
+        name=name,
+        protocol=kind["protocol"],
+        interface=bus["can"].partition(":")[2],
+        fd=bool(bus.get("fd", False)),
+        number=int(place["id"]),
+        reply_id=place.get("reply_id"),
+        sign=float(place.get("sign", 1)),
+        offset=_of(place, "offset", 0.0),
+        torque_Nm=own_Nm if two else joint_Nm,
+        # Torque may step by one limit and preload by two; a motor makes half of each.
+        torque_step_Nm=1.5 * step_Nm if two else step_Nm,
+        velocity=min(velocity, _of(joint, "velocity_limit", math.inf)) if judged else None,
+        position=position if judged else None,
+        kp=_of(hold, "kp", 0.0),
+        kd=_of(hold, "kd", 0.0),
+        keys=kind,
+        counts_per_turn=_counts(kind),
+        link_counts_per_turn=2.0 ** link["bits"] if link else None,
+        torque_sensor=bool(joint.get("torque_sensor")) and joint is place,
+    )
+
+
+def _counts(kind: dict[str, Any]) -> float:
+    return float(kind.get("counts_per_turn") or 2.0 ** kind.get("encoder_bits", 0))
+
+
+def _of(mapping: dict[str, Any], word: str, otherwise: float) -> float:
+    """The value of the key that begins with `word` and goes on with a unit."""
+    for key, value in mapping.items():
+        rest = key.removeprefix(word + "_")
+        if rest != key and rest.split("_")[0] in ("rad", "m", "Nm", "N", "Nms", "Ns"):
+            return float(value)
+    return otherwise
