@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
 
+#include "common/arm_plane/arm_plane.h"
 #include "common/lcm_port.h"
 #include "common/realtime.h"
 #include "controller/arm_controller.h"
@@ -52,8 +53,8 @@ class ControllerProcess {
   RequestGuard guard_;
   ControllerProcessOptions options_;
   LcmPort user_;
-  RealtimeGrant grant_;  // between the planes, see the constructor
-  LcmPort arm_;
+  RealtimeGrant grant_;  // after the user plane, see the constructor
+  ArmPlane arm_;
   joint_state_t newest_{};
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;
