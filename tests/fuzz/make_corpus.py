@@ -168,13 +168,21 @@ def behind_fingerprint(data: bytes) -> bytes:
 def message_inputs(logs: list[Path]) -> None:
     names = sorted(path.stem for path in (ROOT / "lcmtypes").glob("*.lcm"))
     for number, name in enumerate(names):
-        keep("messages", name, bytes([number]) + behind_fingerprint(messages.message_class(name)().encode()))
+        keep(
+            "messages",
+            name,
+            bytes([number]) + behind_fingerprint(messages.message_class(name)().encode()),
+        )
     for log in logs:
         for channel, data in last_of_each_channel(log):
             row = messages.channels().get(channel)
             if row:
                 kind = names.index(row.type_name)
-                keep("messages", f"{row.type_name}-{log.stem}", bytes([kind]) + behind_fingerprint(data))
+                keep(
+                    "messages",
+                    f"{row.type_name}-{log.stem}",
+                    bytes([kind]) + behind_fingerprint(data),
+                )
     half = struct.pack(">d", 0.5)
     nan = struct.pack(">d", float("nan"))
     tau = 36  # of joint_command_t, behind its fingerprint
