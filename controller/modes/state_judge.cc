@@ -46,7 +46,7 @@ JointFlags equipment_of(const Robot& robot) {
 }
 
 bool StateJudge::goes_on_from_doubted(std::int64_t seq) const noexcept {
-  return seq > doubted_seq_ && seq - doubted_seq_ <= kMostMissed;
+  return doubted_seq_ && seq > *doubted_seq_ && seq - *doubted_seq_ <= kMostMissed;
 }
 
 StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
@@ -67,7 +67,7 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   judgement.missed = std::min(missed, kMostMissed);
   session_ = state.session;
   seq_ = state.seq;
-  doubted_seq_ = kNoDoubt;
+  doubted_seq_.reset();
   ++received_;
   lost_ += judgement.missed;
 

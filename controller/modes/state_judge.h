@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
-#include <limits>
+#include <optional>
 
 #include "common/joints.h"
 #include "robots/loader/robot.h"
@@ -49,8 +49,6 @@ class StateJudge {
   static constexpr std::int64_t kMostMissed = 1000;
 
  private:
-  /// Nothing goes on from the greatest number.
-  static constexpr std::int64_t kNoDoubt = std::numeric_limits<std::int64_t>::max();
   bool goes_on_from_doubted(std::int64_t seq) const noexcept;
 
   int joints_;
@@ -58,7 +56,7 @@ class StateJudge {
   JointFlags flags_;
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
-  std::int64_t doubted_seq_ = kNoDoubt;
+  std::optional<std::int64_t> doubted_seq_;
   std::int64_t received_ = 0;
   std::int64_t lost_ = 0;
 };

@@ -22,10 +22,10 @@ class Bench {
     state_.num_joints = kJoints;
     next();
   }
-  /// The joint that is found in a state `dt_s` later.
-  int next(double dt_s = kLong_s) {
+  /// The joint that is found in a state `dt_s` later; `gravity`: of joint 1, N m.
+  int next(double dt_s = kLong_s, double gravity = 0.0) {
     const MatrixJ M = MatrixJ::Identity(kJoints, kJoints) * kInertia;
-    return watch_.stopped(state_, VectorJ::Zero(kJoints), M, dt_s);
+    return watch_.stopped(state_, VectorJ::Unit(kJoints, 1) * gravity, M, dt_s);
   }
   joint_state_t& state() { return state_; }
 
@@ -66,6 +66,14 @@ TEST(EncoderWatchEdges, FrictionIsTheGreaterOfBothKindsPlusTheLinks) {
     joint.friction.static_Nm = 5.0;
     joint.link_friction.coulomb_Nm = 2.0;
   });
+}
+
+TEST(EncoderWatchEdges, ATorqueThatCarriesTheWeightMovesNothing) {
+  Bench bench;
+  bench.state().theta[0] = 1.0;
+  bench.state().tau_applied[1] = 8.0;
+  EXPECT_EQ(bench.next(1.0, 8.0), -1);
+  EXPECT_EQ(bench.next(1.0, -1.0), 1) << "it would rise now";
 }
 
 TEST(EncoderWatchEdges, TwoMotorsHaveItTwice) {
@@ -128,6 +136,10 @@ TEST(EncoderWatchEdges, AnotherJointMovesByMoreThanAHundredth) {
 }
 
 TEST(EncoderWatchEdges, FiveHundredthsAreExpectedAtLeast) {
+  Bench exact([](JointConfig& joint) { joint.torque_limit_Nm = 0.0; });
+  exact.state().theta[0] = 1.0;
+  exact.state().tau_applied[1] = kInertia * 0.05;
+  EXPECT_EQ(exact.next(), 1) << "0.05 rad in a second";
   for (const double sign : {1.0, -1.0}) {
     Bench bench;
     bench.state().theta[0] = 1.0;

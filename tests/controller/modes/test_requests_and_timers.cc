@@ -45,6 +45,17 @@ TEST_F(RequestsAndTimers, AHundredGoodStatesInARow) {
   EXPECT_EQ(supervisor_.mode(), Mode::kIdle);
 }
 
+TEST_F(RequestsAndTimers, AfterALongSilenceTheNumbersMayBeginAgain) {
+  states(50, State::DRIVE_OFF);
+  seq_ = -1;
+  states(1, State::DRIVE_ON);
+  EXPECT_FALSE(supervisor_.drives_on()) << "an old number";
+  seq_ = -1;
+  supervisor_.forget_sequence();
+  states(1, State::DRIVE_ON);
+  EXPECT_TRUE(supervisor_.drives_on());
+}
+
 TEST_F(RequestsAndTimers, ARepeatedStateChangesNothing) {
   states(1, State::DRIVE_OFF);
   joint_state_t again = state(State::DRIVE_OFF);

@@ -64,6 +64,15 @@ TEST(StartWatchEdges, AStartThatIsNoNumberIsNoPlaceToStay) {
   EXPECT_EQ(strayed(0, std::nan(""), 0.0), 0);
 }
 
+TEST(StartWatchEdges, JointsBeyondTheArmsAreNobodys) {
+  StartWatch watch(two_joints());
+  joint_state_t state{};
+  state.num_joints = 2;
+  watch.begin(state);
+  state.theta[2] = 5.0;
+  EXPECT_EQ(watch.strayed(state), -1);
+}
+
 TEST(StartWatchEdges, OneSecondFromItsBeginning) {
   StartWatch watch(two_joints());
   joint_state_t state{};

@@ -27,6 +27,7 @@ class StateNumbers : public ::testing::Test {
     const std::int64_t lost = judge_.lost();
     const StateJudgement judgement = judge(seq);
     EXPECT_FALSE(judgement.usable || judgement.fresh || judgement.repeated) << seq;
+    EXPECT_EQ(judgement.missed, 0) << seq;
     EXPECT_EQ(judge_.received(), received) << seq;
     EXPECT_EQ(judge_.lost(), lost) << seq;
   }
