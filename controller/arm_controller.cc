@@ -4,6 +4,7 @@
 
 #include "common/clock.h"
 #include "common/config_error.h"
+#include "common/overloaded.h"
 #include "controller/status_writer.h"
 #include "lcmtypes/channels.h"
 
@@ -52,6 +53,7 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
 
 const joint_command_t& ArmController::step(const joint_state_t& state) noexcept {
   const std::int64_t started_ns = options_.measure_time ? monotonic_ns() : 0;
+  outcomes_.clear();
   const StateJudgement judgement = supervisor_.on_state(state);
   if (judgement.repeated) return answer_;
   if (judgement.new_session && timeline_) timeline_->rewind();
@@ -94,6 +96,16 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);
 }
 
+void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) {
+  timeline_.emplace(timeline);
+  outcomes_.reserve(timeline->size());
+}
+
+template <typename Request>
+void ArmController::note(std::int8_t kind, const Request& request, Refusal refusal) noexcept {
+  outcomes_.push_back({kind, request.client, request.seq, refusal});
+}
+
 void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
   if (!timeline_) return;
   while (const TimedMessage* next = timeline_->peek(time_ns)) {
@@ -103,10 +115,16 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
         time_ns - next->time_ns < kStartPatience_ns) {
       return;
     }
-    const ScenarioMessage* message = timeline_->due(time_ns);
-    if (const auto* request = std::get_if<mode_request_t>(message)) on_mode(*request);
-    if (const auto* goal = std::get_if<compliance_goal_t>(message)) on_goal(*goal);
-    if (const auto* gains = std::get_if<compliance_gains_t>(message)) on_gains(*gains);
+    std::visit(
+        Overloaded{
+            [&](const mode_request_t& m) { note(request_answer_t::KIND_MODE, m, on_mode(m)); },
+            [&](const compliance_goal_t& m) { note(request_answer_t::KIND_GOAL, m, on_goal(m)); },
+            [&](const compliance_gains_t& m) {
+              note(request_answer_t::KIND_GAINS, m, on_gains(m));
+            },
+            [](const auto&) {},  // the simulator's
+        },
+        *timeline_->due(time_ns));
   }
 }
 
@@ -155,30 +173,31 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
 }
 
-const char* ArmController::counted(const char* refusal) noexcept {
-  if (refusal != nullptr) ++status_.requests_refused;
+Refusal ArmController::counted(Refusal refusal) noexcept {
+  if (refusal) ++status_.requests_refused;
   return refusal;
 }
 
-const char* ArmController::on_mode(const mode_request_t& request) noexcept {
+Refusal ArmController::on_mode(const mode_request_t& request) noexcept {
   return counted(supervisor_.on_mode(request));
 }
 
-const char* ArmController::on_goal(const compliance_goal_t& goal) noexcept {
-  if (const char* reason = supervisor_.check_client(goal.client)) return counted(reason);
-  if (supervisor_.mode() != Mode::kActive) return counted("goals are accepted in ACTIVE only");
-  if (const char* reason = cycle_.set_goal(goal, activity_of(supervisor_))) return counted(reason);
+Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
+  if (const Refusal refusal = supervisor_.check_client(goal.client)) return counted(refusal);
+  if (supervisor_.mode() != Mode::kActive)
+    return counted({request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"});
+  if (const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_)))
+    return counted(refusal);
   supervisor_.take_lease(goal.client);
-  return nullptr;
+  return {};
 }
 
-const char* ArmController::on_gains(const compliance_gains_t& gains) noexcept {
-  if (const char* reason = supervisor_.check_client(gains.client)) return counted(reason);
-  if (const char* reason = cycle_.set_gains(gains, activity_of(supervisor_))) {
-    return counted(reason);
-  }
+Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
+  if (const Refusal refusal = supervisor_.check_client(gains.client)) return counted(refusal);
+  if (const Refusal refusal = cycle_.set_gains(gains, activity_of(supervisor_)))
+    return counted(refusal);
   supervisor_.take_lease(gains.client);
-  return nullptr;
+  return {};
 }
 
 void ArmController::on_silence() noexcept {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/problem_text.h"
 #include "drivers/bus_load.h"
 #include "drivers/can/lockstep_frame.h"
 #include "drivers/driver_setup.h"
@@ -214,16 +215,8 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
   if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
   const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
-  switch (detail & 0xFFU) {
-    case driver_status_t::BUS_OFF:
-      return name + " is bus-off; check wiring, termination and bit rate";
-    case driver_status_t::BUS_LINK_DOWN:
-      return name + ": the interface is down or gone; was the adapter unplugged?";
-    default:
-      return name +
-             ": commands wait in the transmit queue, or find it full (ENOBUFS); does any motor "
-             "acknowledge frames?";
-  }
+  const Problem* problem = find_problem(problems::kBus, detail & 0xFFU);
+  return problem == nullptr ? "" : name + ": " + problem->what + "; " + problem->remedy;
 }
 
 // --- status --------------------------------------------------------------------------------------

@@ -50,12 +50,6 @@ std::vector<RunLock> lock_buses(const Robot& robot) {
   return locks;
 }
 
-std::vector<std::string> joint_names(const Robot& robot) {
-  std::vector<std::string> names;
-  for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
-  return names;
-}
-
 RealtimeGrant request_realtime(const DriverProcessOptions& options) {
   if (options.lockstep || options.realtime_priority == 0) return {};
   return ask_for_realtime(options.realtime_priority);
@@ -75,7 +69,7 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
       robot_(load(options)),
       bridged_cycles_(bridged_cycles(options, &robot_)),
       locks_(lock_buses(robot_)),
-      reporter_(joint_names(robot_)),
+      reporter_(robot_.joint_names()),
       user_plane_(user_plane_url(), LcmPort::Use::kPublishOnly),
       grant_(request_realtime(options)),
       port_(robot_, ArmDriverOptions{options.session, options.lockstep, bridged_cycles_},

@@ -53,7 +53,7 @@ class StateReporter {
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(fault)) << 8 |
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(joint)) << 16;
   }
-  void report(std::uint64_t packed) const;
+  void report(std::uint64_t packed, int known_fault) const;
   void report_changes(std::uint64_t reported, std::uint64_t noted) const;
 
   std::vector<std::string> joints_;

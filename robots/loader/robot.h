@@ -149,6 +149,11 @@ struct Robot {
   std::optional<EmergencyStopConfig> emergency_stop;
 
   int size() const { return static_cast<int>(joints.size()); }
+  std::vector<std::string> joint_names() const {
+    std::vector<std::string> names;
+    for (const JointConfig& joint : joints) names.push_back(joint.name);
+    return names;
+  }
   int motors() const {
     int count = 0;
     for (const JointConfig& joint : joints) count += joint.motors();

@@ -46,7 +46,9 @@ def measure_again(folder: Path, console: Console) -> int:
     """From the copies of robot and scenario beside the log."""
     header = load_header(folder)
     scenario = load_scenario(existing_file(folder / "scenario.yaml", "scenario"), robot=folder)
-    finished = FinishedRun(folder, header.get("mode", "unknown"))
+    finished = FinishedRun(
+        folder, header.get("mode", "unknown"), header.get("stopped_early", False)
+    )
     finished.recorder = {"lost": header.get("recorder_lost", {})}
     return report(finished, scenario, console)
 
@@ -55,14 +57,24 @@ def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
     """Measures the log, writes summary.json and prints it; returns the exit code."""
     summary, _ = summarize(finished, scenario)
     console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
+    show_faults(summary, console)
     console.print(f"log and summary: {finished.folder}", soft_wrap=True)
     return OK if summary.passed else OUT_OF_TOLERANCE
+
+
+def show_faults(summary: Summary, console: Console) -> None:
+    """The story of each."""
+    for fault in summary.faults:
+        title, *lines = fault.lines()
+        console.print(title, style="bold red", markup=False, highlight=False, soft_wrap=True)
+        for line in lines:
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:
     log = Log(finished.log)
     lost = finished.recorder.get("lost", {})
-    summary, pushes = measure(log, scenario, finished.mode, lost)
+    summary, pushes = measure(log, scenario, finished.mode, lost, finished.stopped_early)
     if len(log.read("JOINT_STATE")) == 0:
         raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
     summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}

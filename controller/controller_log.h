@@ -1,0 +1,34 @@
+// What the controller's process and the lab log: changes of the mode, refused requests.
+#pragma once
+
+#include <limber/controller_status_t.hpp>
+#include <limber/request_answer_t.hpp>
+#include <string>
+#include <vector>
+
+#include "controller/arm_controller.h"
+
+namespace limber {
+
+/// A request's outcome as REQUEST_ANSWER; `time_ns`: arm time. Allocates.
+request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns);
+
+/// After a cycle's answer has gone out, never before. Lines that a user has to see at once begin
+/// with "warning: ". Allocates where something is logged.
+class ControllerLog {
+ public:
+  /// `joints`: names for messages.
+  explicit ControllerLog(std::vector<std::string> joints) : joints_(std::move(joints)) {}
+
+  /// A line if the mode, or the cause of its last change, is another one than before.
+  void note(const controller_status_t& status);
+  /// A line if the request was refused.
+  static void note(const request_answer_t& answer);
+
+ private:
+  std::vector<std::string> joints_;
+  std::int8_t mode_ = controller_status_t::MODE_BOOT;
+  std::int8_t reason_ = controller_status_t::REASON_NONE;
+};
+
+}  // namespace limber
