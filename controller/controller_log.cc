@@ -41,6 +41,9 @@ void ControllerLog::note(const controller_status_t& status) {
   mode_ = status.mode;
   reason_ = status.reason;
   const char* mode = name_in(kModeNames, mode_);
+  const Problem* problem = find_problem(problems::kController, reason_);
+  if (caused && mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
+    keep(black_box_, problem->code);
   if (!caused) {
     spdlog::info("mode {}", mode);
   } else if (reason_ == controller_status_t::REASON_STOP_REQUESTED) {
