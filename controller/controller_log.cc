@@ -27,6 +27,7 @@ request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns) 
   answer.client = outcome.client;
   answer.seq = outcome.seq;
   answer.kind = outcome.kind;
+  answer.what = outcome.what;
   answer.accepted = outcome.refusal ? 0 : 1;
   answer.code = outcome.refusal.code;
   answer.reason = outcome.refusal ? outcome.refusal.reason : "";

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/arm_controller.h"
+#include "controller/request_outcome.h"
 
 namespace limber {
 
