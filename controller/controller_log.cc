@@ -41,14 +41,15 @@ void ControllerLog::note(const controller_status_t& status) {
   const std::string where = joint < joints_.size() ? joints_[joint] : "";
   mode_ = status.mode;
   reason_ = status.reason;
-  const char* mode = name_in(kModeNames, mode_);
-  if (!caused) {
-    spdlog::info("mode {}", mode);
-  } else if (reason_ == controller_status_t::REASON_STOP_REQUESTED) {
-    spdlog::info("mode {}: a stop was requested", mode);
+  const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
+  if (!caused) return spdlog::info(mode);
+  const std::string line = mode + ": " + problem_text(problems::kController, reason_, where, "");
+  // Somebody knows of it already: who stopped the arm, or who reads what the driver told.
+  if (reason_ == controller_status_t::REASON_STOP_REQUESTED ||
+      reason_ == controller_status_t::REASON_DRIVER_FAULT) {
+    spdlog::info(line);
   } else {
-    spdlog::warn("warning: mode {}: {}", mode,
-                 problem_text(problems::kController, reason_, where, ""));
+    spdlog::warn("warning: {}", line);
   }
 }
 
