@@ -93,6 +93,7 @@ def test_buses_stops_sensors_and_the_gate(tmp_path):
     driver["time_ns"] = np.arange(10) * 100 * MS
     driver["bus_state"][3:5, 1] = Driver.BUS_OFF
     driver["commands_refused"][6:, Driver.VERDICT_RATE] = 4
+    driver["commands_refused"][:, Driver.VERDICT_STALE] = 2
     state = states()
     state["emergency_stop"][:] = State.STOP_RELEASED
     state["emergency_stop"][700:] = State.STOP_PRESSED
@@ -103,7 +104,11 @@ def test_buses_stops_sensors_and_the_gate(tmp_path):
     ]
     told = [(at, words[:2]) for at, words in found]
     assert (0.3, ["bus 2", "bus.OFF"]) in told and (0.5, ["bus 2", "good again"]) in told
-    assert (0.6, ["gate.RATE", "4 commands refused"]) in told
+    refused = [(at, words) for at, words in told if words[0].startswith("gate.")]
+    assert refused == [
+        (0.0, ["gate.STALE", "2 commands refused"]),
+        (0.6, ["gate.RATE", "4 commands refused"]),
+    ]
     assert (0.7, ["stop.PRESSED", "the emergency stop is pressed"]) in told
     assert [at for at, words in told if words[0] == "sensor.ERROR"] == [0.1]
     assert not [words for _, words in told if words[0].startswith("bus 1")]

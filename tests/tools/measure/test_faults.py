@@ -117,6 +117,7 @@ def test_a_fault_that_was_acknowledged_is_over(tmp_path, run):
 def test_a_controllers_fault_is_told_with_its_own_number(tmp_path, run):
     state, status = state_of(), status_of()
     state["drive_state"][:300] = State.DRIVE_OFF
+    state["theta"][:, 0] = np.where(np.arange(len(state)) < 250, 0.5, 0.0)  # it sank meanwhile
     state["theta"][700:, 0] = 0.104
     status["mode"][140:] = Status.MODE_FAULT
     status["reason"][140:], status["reason_joint"][140:] = Status.REASON_STRAYED, 0
@@ -124,6 +125,14 @@ def test_a_controllers_fault_is_told_with_its_own_number(tmp_path, run):
     (fault,) = find_faults(log, run.robot, end_s=SECONDS)
     assert fault.problem.code == "controller.STRAYED"
     assert fault.title.endswith("shoulder: moved by 0.104 rad since the drives came on")
+
+
+def test_what_somebody_requested_is_no_fault(tmp_path, run):
+    state = state_of()
+    state["fault"][1000:2000] = State.FAULT_REQUESTED
+    state["drive_state"][1000:2000] = State.DRIVE_HOLD
+    log = log_of(tmp_path / "log", JOINT_STATE=state, CONTROLLER_STATUS=status_of())
+    assert find_faults(log, run.robot, end_s=SECONDS) == []
 
 
 def stopped_at(state: np.ndarray, status: np.ndarray, row: int) -> None:
@@ -195,8 +204,9 @@ def test_only_what_is_numbered_can_be_lost(tmp_path):
     two = records("controller_status_t", 8, controller=[1, 2] * 4, seq=[5, 900] * 4)
     two["seq"] += np.arange(8) // 2
     answers = [answer(1, 1, time_ns=time) for time in (10, 5 * 10**9)]
-    log = log_of(tmp_path / "log", answers, CONTROLLER_STATUS=two)
+    modes = records("mode_request_t", 2, seq=[10, 5 * 10**9])
+    log = log_of(tmp_path / "log", answers, CONTROLLER_STATUS=two, MODE_REQUEST=modes)
     assert log.lost("CONTROLLER_STATUS") == 0
-    assert log.lost("REQUEST_ANSWER") == 0
+    assert log.lost("REQUEST_ANSWER") == log.lost("MODE_REQUEST") == 0
     gap = log_of(tmp_path / "gap", CONTROLLER_STATUS=np.delete(two, [2, 5]))
     assert gap.lost("CONTROLLER_STATUS") == 2
