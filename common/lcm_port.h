@@ -18,11 +18,14 @@
 
 namespace limber {
 
+/// Opens `url`, see checked_lcm_url(). Throws ConfigError: too few descriptors (LCM would end the
+/// process), no multicast route. Set-up only.
+std::unique_ptr<lcm::LCM> open_lcm(const std::string& url);
+
 class LcmPort {
  public:
   enum class Use { kBothWays, kPublishOnly };
-  /// Opens `url`, see checked_lcm_url(). Throws ConfigError, without a multicast route with the two
-  /// commands that help. LCM's receiving thread starts here, with the priority of the caller; a
+  /// See open_lcm(). LCM's receiving thread starts here, with the priority of the caller; a
   /// port for publishing alone has none, and must not subscribe.
   explicit LcmPort(const std::string& url, Use use = Use::kBothWays);
 

@@ -44,7 +44,8 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
       cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
       start_watch_(robot.robot),
-      encoder_watch_(robot.robot) {
+      encoder_watch_(robot.robot),
+      energy_watch_(robot.robot) {
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -79,16 +80,20 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
 
 void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexcept {
   const bool engaged = supervisor_.engaged();
-  if (!engaged) encoder_watch_.reset();
+  if (!engaged) {
+    encoder_watch_.reset();
+    energy_watch_.reset();
+  }
   if (engaged && !was_engaged_) start_watch_.begin(state);
   if (supervisor_.mode() != Mode::kHold) start_watch_.end();
   was_engaged_ = engaged;
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
-  const int joint =
-      encoder_watch_.stopped(state, cycle_.gravity(), cycle_.trace().terms.M_total, dt_s);
-  if (joint >= 0) supervisor_.raise(Event::kEncoderStopped, joint);
+  const MatrixJ& M = cycle_.trace().terms.M_total;
+  if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
+    supervisor_.raise(Event::kEncoderStopped, joint);
+  if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);
 }
 
 void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) {
@@ -154,6 +159,7 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.reason_joint = static_cast<std::int8_t>(supervisor_.reason_joint());
   status_.states_received = supervisor_.states().received();
   status_.states_lost = supervisor_.states().lost();
+  status_.unexplained_energy_J = energy_watch_.unexplained_J();
   controller::write_status(cycle_.trace(), &status_);
   if (!options_.measure_time) return;
   status_.cycle_ns = monotonic_ns() - started_ns;

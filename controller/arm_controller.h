@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "controller/modes/encoder_watch.h"
+#include "controller/modes/energy_watch.h"
 #include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
 #include "controller/request_outcome.h"
@@ -83,6 +84,7 @@ class ArmController {
   controller::TorqueCycle cycle_;
   controller::StartWatch start_watch_;
   controller::EncoderWatch encoder_watch_;
+  controller::EnergyWatch energy_watch_;
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline

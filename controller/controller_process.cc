@@ -12,7 +12,6 @@ namespace limber {
 namespace {
 
 // Lock step keeps everything, realtime only needs the newest; the rest is counted as lost.
-constexpr int kStateQueue = 64;
 constexpr int kRequestQueue = 32;
 // Then the next state is looked for: no flood of requests keeps it waiting.
 constexpr int kRequestsAtOnce = 2;
@@ -51,12 +50,11 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       guard_(controller->status().controller),
       log_(options.joints),
       options_(options),
-      // LCM starts a thread for each plane. The user plane's, which anybody may flood, keeps normal
-      // priority; the arm plane's inherits ours.
+      // LCM starts a thread for the user plane, which anybody may flood: it keeps normal priority.
       user_(user_plane_url()),
       grant_(request_realtime(options)),
-      arm_(arm_plane_url()) {
-  arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
+      arm_(arm_plane_url(), ArmPlaneEnd::kController) {
+  arm_.subscribe<joint_state_t>(channels::kJointState,
                                 [this](const joint_state_t& state) { on_state(state); });
   require_local(user_plane_url(), options.moves_motors);
   require_local(arm_plane_url(), options.moves_motors);

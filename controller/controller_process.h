@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/arm_plane/arm_plane.h"
 #include "common/lcm_port.h"
 #include "common/realtime.h"
 #include "controller/arm_controller.h"
@@ -57,8 +58,8 @@ class ControllerProcess {
   ControllerLog log_;
   ControllerProcessOptions options_;
   LcmPort user_;
-  RealtimeGrant grant_;  // between the planes, see the constructor
-  LcmPort arm_;
+  RealtimeGrant grant_;  // after the user plane, see the constructor
+  ArmPlane arm_;
   joint_state_t newest_{};
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;

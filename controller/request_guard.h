@@ -25,8 +25,8 @@ class RequestGuard {
 
  private:
   struct Client {
-    std::int64_t client = 0;
-    std::int64_t newest_seq = 0;
+    std::int64_t client;
+    std::int64_t newest_seq;
   };
 
   std::int64_t controller_;

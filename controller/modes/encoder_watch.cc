@@ -6,28 +6,26 @@
 namespace limber::controller {
 
 EncoderWatch::EncoderWatch(const Robot& robot) {
-  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const JointConfig& joint = robot.joints[i];
+  for (const JointConfig& joint : robot.joints) {
     const double known =
         std::max(joint.friction.coulomb_Nm, joint.friction.static_Nm) * joint.motors() +
         std::max(joint.link_friction.coulomb_Nm, joint.link_friction.static_Nm);
-    joints_[i].friction_Nm = std::max(known, kFrictionShare * joint.torque_limit_Nm);
+    joints_.push_back({std::max(known, kFrictionShare * joint.torque_limit_Nm), std::nullopt});
   }
 }
 
 void EncoderWatch::reset() noexcept {
-  for (Joint& joint : joints_) joint.known = false;
+  for (Joint& joint : joints_) joint.rest.reset();
 }
 
-bool EncoderWatch::unchanged(const Joint& joint, const joint_state_t& state, int i) noexcept {
-  return joint.known && state.theta[i] == joint.theta && state.q[i] == joint.q &&
-         state.theta_dot[i] == joint.theta_dot && state.v[i] == joint.v;
+bool EncoderWatch::Rest::continues(const joint_state_t& state, int i) const noexcept {
+  return state.theta[i] == theta && state.q[i] == q && state.theta_dot[i] == theta_dot &&
+         state.v[i] == v;
 }
 
-bool EncoderWatch::others_moved(const Joint& joint, const joint_state_t& state, int i) noexcept {
+bool EncoderWatch::Rest::arm_moved(const joint_state_t& state) const noexcept {
   for (int k = 0; k < state.num_joints; ++k) {
-    if (k != i && std::abs(state.theta[k] - joint.others[static_cast<std::size_t>(k)]) > kOthers)
-      return true;
+    if (std::abs(state.theta[k] - thetas[static_cast<std::size_t>(k)]) > kOthers) return true;
   }
   return false;
 }
@@ -35,23 +33,17 @@ bool EncoderWatch::others_moved(const Joint& joint, const joint_state_t& state, 
 int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
                           double dt_s) noexcept {
   for (int i = 0; i < state.num_joints; ++i) {
-    Joint& joint = joints_[static_cast<std::size_t>(i)];
-    if (!unchanged(joint, state, i)) {
-      joint.theta = state.theta[i];
-      joint.q = state.q[i];
-      joint.theta_dot = state.theta_dot[i];
-      joint.v = state.v[i];
-      joint.load_Nm = state.tau_applied[i] - gravity[i];
-      joint.expected_speed = joint.expected_angle = 0.0;
-      std::copy_n(state.theta, kMaxJoints, joint.others.begin());
-      joint.known = true;
-      continue;
+    auto& [friction_Nm, rest] = joints_[static_cast<std::size_t>(i)];
+    const double load_Nm = state.tau_applied[i] - gravity[i];
+    if (!rest || !rest->continues(state, i)) {
+      rest = {state.theta[i], state.q[i], state.theta_dot[i],
+              state.v[i],     load_Nm,    std::to_array(state.theta)};
     }
-    const double tau = state.tau_applied[i] - gravity[i] - joint.load_Nm;
-    const double excess = std::copysign(std::max(0.0, std::abs(tau) - joint.friction_Nm), tau);
-    joint.expected_speed += excess / M(i, i) * dt_s;
-    joint.expected_angle += joint.expected_speed * dt_s;
-    if (std::abs(joint.expected_angle) >= kExpected && others_moved(joint, state, i)) return i;
+    const double tau = load_Nm - rest->load_Nm;
+    const double excess = std::copysign(std::max(0.0, std::abs(tau) - friction_Nm), tau);
+    rest->expected_speed += excess / M(i, i) * dt_s;
+    rest->expected_angle += rest->expected_speed * dt_s;
+    if (std::abs(rest->expected_angle) >= kExpected && rest->arm_moved(state)) return i;
   }
   return -1;
 }

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <limber/joint_state_t.hpp>
+#include <optional>
+#include <vector>
 
 #include "common/joints.h"
 #include "common/types.h"
@@ -40,22 +42,26 @@ class EncoderWatch {
               double dt_s) noexcept;
 
  private:
-  struct Joint {
-    double friction_Nm = 0.0;
-    double theta = 0.0;  ///< the reading, since it changed last
-    double q = 0.0;
-    double theta_dot = 0.0;
-    double v = 0.0;
-    double load_Nm = 0.0;                     ///< tau - g then
-    double expected_speed = 0.0;              ///< of the free joint since then, rad/s
-    double expected_angle = 0.0;              ///< likewise, rad
-    std::array<double, kMaxJoints> others{};  ///< theta of all joints then
-    bool known = false;
-  };
-  static bool unchanged(const Joint& joint, const joint_state_t& state, int i) noexcept;
-  static bool others_moved(const Joint& joint, const joint_state_t& state, int i) noexcept;
+  /// Since a joint's reading changed last.
+  struct Rest {
+    bool continues(const joint_state_t& state, int i) const noexcept;
+    bool arm_moved(const joint_state_t& state) const noexcept;
 
-  std::array<Joint, kMaxJoints> joints_;
+    double theta;  ///< the reading
+    double q;
+    double theta_dot;
+    double v;
+    double load_Nm;                         ///< tau - g then
+    std::array<double, kMaxJoints> thetas;  ///< of all joints then
+    double expected_speed = 0.0;            ///< of the free joint since then, rad/s
+    double expected_angle = 0.0;            ///< likewise, rad
+  };
+  struct Joint {
+    double friction_Nm;
+    std::optional<Rest> rest;
+  };
+
+  std::vector<Joint> joints_;
 };
 
 }  // namespace limber::controller

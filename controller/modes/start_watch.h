@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
+#include <optional>
 
 #include "common/joints.h"
 #include "robots/loader/robot.h"
@@ -50,14 +51,16 @@ class StartWatch {
       joint.most = (joint.elastic || !free ? kMostPushed : kMost) + kStopping_s * fastest;
     }
     start_ns_ = state.time_ns;
-    watching_ = true;
   }
-  void end() noexcept { watching_ = false; }
+  void end() noexcept { start_ns_.reset(); }
 
   /// The joint that has moved away; -1: none.
   int strayed(const joint_state_t& state) noexcept {
-    if (state.time_ns - start_ns_ > kWatched_ns) end();
-    for (int i = 0; watching_ && i < state.num_joints; ++i) {
+    if (!start_ns_ || state.time_ns - *start_ns_ > kWatched_ns) {
+      end();
+      return -1;
+    }
+    for (int i = 0; i < state.num_joints; ++i) {
       const Joint& joint = joints_[static_cast<std::size_t>(i)];
       if (!(std::abs(state.theta[i] - joint.start) <= joint.most)) return i;
     }
@@ -66,15 +69,14 @@ class StartWatch {
 
  private:
   struct Joint {
-    bool elastic = false;
-    double least_free = 0.0;
-    double most_free = 0.0;
-    double start = 0.0;
-    double most = kMost;
+    bool elastic;
+    double least_free;
+    double most_free;
+    double start;  ///< from begin() on, as `most`
+    double most;
   };
   std::array<Joint, kMaxJoints> joints_{};
-  std::int64_t start_ns_ = 0;
-  bool watching_ = false;
+  std::optional<std::int64_t> start_ns_;
 };
 
 }  // namespace limber::controller

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace limber::controller {
 namespace {
@@ -11,7 +10,7 @@ constexpr std::int64_t kShortestPeriod_ns = 10'000;
 constexpr std::int64_t kLongestPeriod_ns = 100'000'000;
 
 bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noexcept {
-  if (state.num_joints != joints || joints > kMaxJoints || state.time_ns < 0) return false;
+  if (state.num_joints != joints || state.time_ns < 0) return false;
   if (state.period_ns < kShortestPeriod_ns || state.period_ns > kLongestPeriod_ns) return false;
   if (state.drive_state < joint_state_t::DRIVE_CONFIGURING ||
       state.drive_state > joint_state_t::DRIVE_FAULT) {
@@ -46,6 +45,10 @@ JointFlags equipment_of(const Robot& robot) {
   return flags;
 }
 
+bool StateJudge::goes_on_from_doubted(std::int64_t seq) const noexcept {
+  return doubted_seq_ && seq > *doubted_seq_ && seq - *doubted_seq_ <= kMostMissed;
+}
+
 StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   StateJudgement judgement;
   if (state.session == 0 || state.seq < 0) return judgement;
@@ -53,20 +56,20 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
     judgement.repeated = true;
     return judgement;
   }
-  const std::int64_t jump = state.seq - seq_;
-  if (state.session == session_ && seq_ >= 0 && jump > kMostMissed) {
-    const std::int64_t from_doubted = state.seq - doubted_seq_;
-    const bool goes_on = doubted_seq_ >= 0 && from_doubted > 0 && from_doubted <= kMostMissed;
-    doubted_seq_ = goes_on ? -1 : state.seq;
-    if (!goes_on) return judgement;
+  const bool known = state.session == session_ && seq_ >= 0;
+  const std::int64_t missed = known ? state.seq - seq_ - 1 : 0;
+  if (missed >= kMostMissed && !goes_on_from_doubted(state.seq)) {
+    doubted_seq_ = state.seq;
+    return judgement;
   }
   judgement.first = session_ == 0;
   judgement.new_session = !judgement.first && state.session != session_;
-  if (state.session == session_ && seq_ >= 0) judgement.missed = std::min(jump - 1, kMostMissed);
+  judgement.missed = std::min(missed, kMostMissed);
   session_ = state.session;
   seq_ = state.seq;
+  doubted_seq_.reset();
   ++received_;
-  lost_ += std::min(judgement.missed, std::numeric_limits<std::int64_t>::max() - lost_);
+  lost_ += judgement.missed;
 
   judgement.usable = usable(state, joints_, flags_);
   if (!judgement.usable) return judgement;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
+#include <optional>
 
 #include "common/joints.h"
 #include "robots/loader/robot.h"
@@ -31,9 +32,9 @@ struct StateJudgement {
 /// Follows the stream by session and number. All members may be called in the cycle.
 class StateJudge {
  public:
-  /// `flags`: the JOINT_* bits of kEquipment that each joint has; a state that says otherwise is of
-  /// another arm. So many cycles in a row without a state, or without a joint's answer, are
-  /// bridged.
+  /// `joints`: at most kMaxJoints. `flags`: the JOINT_* bits of kEquipment that each joint has; a
+  /// state that says otherwise is of another arm. So many cycles in a row without a state, or
+  /// without a joint's answer, are bridged.
   StateJudge(int joints, int bridged_cycles, const JointFlags& flags = {})
       : joints_(joints), bridged_(bridged_cycles), flags_(flags) {}
   StateJudgement judge(const joint_state_t& state) noexcept;
@@ -48,12 +49,14 @@ class StateJudge {
   static constexpr std::int64_t kMostMissed = 1000;
 
  private:
+  bool goes_on_from_doubted(std::int64_t seq) const noexcept;
+
   int joints_;
   int bridged_;
   JointFlags flags_;
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
-  std::int64_t doubted_seq_ = -1;
+  std::optional<std::int64_t> doubted_seq_;
   std::int64_t received_ = 0;
   std::int64_t lost_ = 0;
 };

@@ -1,27 +1,23 @@
 #include "controller/modes/supervisor.h"
 
 #include <limber/joint_command_t.hpp>
+#include <optional>
 
 namespace limber::controller {
 namespace {
 
-Refusal event_of(const mode_request_t& request, Event* event) noexcept {
-  switch (request.request) {
+std::optional<Event> event_of(std::int8_t request) noexcept {
+  switch (request) {
     case mode_request_t::REQUEST_IDLE:
-      *event = Event::kRequestIdle;
-      return {};
+      return Event::kRequestIdle;
     case mode_request_t::REQUEST_HOLD:
-      *event = Event::kRequestHold;
-      return {};
+      return Event::kRequestHold;
     case mode_request_t::REQUEST_ACTIVE:
-      *event = Event::kRequestActive;
-      return {};
+      return Event::kRequestActive;
     case mode_request_t::REQUEST_ACKNOWLEDGE:
-      *event = Event::kRequestAcknowledge;
-      return {};
+      return Event::kRequestAcknowledge;
     default:
-      return {request_answer_t::REFUSED_MALFORMED,
-              "the request is none of idle, hold, active, stop, acknowledge, release"};
+      return std::nullopt;
   }
 }
 
@@ -45,29 +41,24 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   if (drive_state_ != joint_state_t::DRIVE_FAULT) acknowledged_ = false;
   count_steady(judgement);
   watch_drives();
-  if (mode_ == Mode::kSoftStop && time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);
+  if (time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);  // of SOFT_STOP alone
   return judgement;
 }
 
 void Supervisor::count_steady(const StateJudgement& judgement) noexcept {
   const bool good = judgement.fresh && judgement.missed == 0;
-  if (!good) {
-    steady_ = 0;
-  } else if (steady_ < kSteadyStates) {
-    ++steady_;
-  }
-  if (steady_ == kSteadyStates) raise(Event::kSteadyStates);
+  steady_ = good ? steady_ + 1 : 0;
+  if (steady_ >= kSteadyStates) raise(Event::kSteadyStates);
 }
 
 void Supervisor::watch_drives() noexcept {
   if (!powered_mode()) return;
-  const bool on = drive_state_ == joint_state_t::DRIVE_ON;
-  if (engaged_ && !on) {
-    raise(Event::kDriverFault);
-  } else if (!engaged_ && !on && time_ns_ - entered_ns_ > kDrivesOnWithin_ns) {
-    raise(Event::kDriveNotOn);
-  } else if (on) {
+  if (drives_on()) {
     engaged_ = true;
+  } else if (engaged_) {
+    raise(Event::kDriverFault);
+  } else if (time_ns_ - entered_ns_ > kDrivesOnWithin_ns) {
+    raise(Event::kDriveNotOn);
   }
 }
 
@@ -83,8 +74,10 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
     return {};
   }
   if (const Refusal refusal = check_client(request.client)) return refusal;
-  Event event{};
-  if (const Refusal refusal = event_of(request, &event)) return refusal;
+  const std::optional<Event> event = event_of(request.request);
+  if (!event)
+    return {request_answer_t::REFUSED_MALFORMED,
+            "the request is none of idle, hold, active, stop, acknowledge, release"};
   if (event == Event::kRequestAcknowledge && steady_ < kSteadyStates) {
     return {request_answer_t::REFUSED_CAUSE_REMAINS,
             "the cause is not gone: the states are not steady yet"};
@@ -94,11 +87,11 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
             "the emergency stop is pressed, or its input is silent"};
   if (event == Event::kRequestActive && !engaged_)
     return {request_answer_t::REFUSED_MODE, "ACTIVE is entered from HOLD, drives on"};
-  if (!raise(event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
+  if (!raise(*event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
   if (event == Event::kRequestAcknowledge) {
     reason_ = controller_status_t::REASON_NONE;
     reason_joint_ = -1;
-    acknowledged_ = true;
+    acknowledged_ = drive_state_ == joint_state_t::DRIVE_FAULT;
   }
   if (event == Event::kRequestIdle) idle_requested_ = true;
   take_lease(request.client);
@@ -149,24 +142,20 @@ bool Supervisor::powered_mode() const noexcept {
 }
 
 std::int8_t Supervisor::drive_request() const noexcept {
-  const bool on = drive_state_ == joint_state_t::DRIVE_ON;
-  const bool enabling = drive_state_ == joint_state_t::DRIVE_ENABLING;
-  const bool holding =
-      drive_state_ == joint_state_t::DRIVE_HOLD || drive_state_ == joint_state_t::DRIVE_DAMP;
+  const bool powered = drives_on() || drive_state_ == joint_state_t::DRIVE_ENABLING;
   if (powered_mode()) {
     if (drive_state_ == joint_state_t::DRIVE_OFF) return joint_command_t::REQUEST_ON;
-    if (holding || drive_state_ == joint_state_t::DRIVE_FAULT) {
+    if (drives_hold() || drive_state_ == joint_state_t::DRIVE_FAULT) {
       return joint_command_t::REQUEST_ACKNOWLEDGE;
     }
     return joint_command_t::REQUEST_KEEP;
   }
   // The same fault, acknowledged once: the drives' start-up is repeated before they are wanted.
-  if (mode_ == Mode::kIdle && acknowledged_ && drive_state_ == joint_state_t::DRIVE_FAULT)
-    return joint_command_t::REQUEST_ACKNOWLEDGE;
+  if (mode_ == Mode::kIdle && acknowledged_) return joint_command_t::REQUEST_ACKNOWLEDGE;
   // Repeated until the drives are off: a single message may be lost.
-  if (idle_requested_ && (on || enabling || holding)) return joint_command_t::REQUEST_OFF;
+  if (idle_requested_ && (powered || drives_hold())) return joint_command_t::REQUEST_OFF;
   // Drives that are on while nobody controls the arm shall hold it themselves.
-  return on || enabling ? joint_command_t::REQUEST_HOLD : joint_command_t::REQUEST_KEEP;
+  return powered ? joint_command_t::REQUEST_HOLD : joint_command_t::REQUEST_KEEP;
 }
 
 }  // namespace limber::controller

@@ -51,9 +51,7 @@ class Supervisor {
   /// A powered mode with the drives on: the torque of the cycle reaches the motors.
   bool engaged() const noexcept { return engaged_; }
   /// Drives that follow torque commands, and nobody who wants them to be off.
-  bool drives_carry() const noexcept {
-    return drive_state_ == joint_state_t::DRIVE_ON && !idle_requested_;
-  }
+  bool drives_carry() const noexcept { return drives_on() && !idle_requested_; }
   bool drives_on() const noexcept { return drive_state_ == joint_state_t::DRIVE_ON; }
   /// Enabled drives that the driver lets hold or brake by themselves.
   bool drives_hold() const noexcept {
@@ -75,7 +73,7 @@ class Supervisor {
   int reason_joint_ = -1;
   std::int64_t lease_ = 0;
   std::int64_t lease_renewed_ns_ = 0;
-  int steady_ = 0;
+  std::int64_t steady_ = 0;    ///< good states in a row
   bool acknowledged_ = false;  ///< a fault that the drives are still in
   bool engaged_ = false;
   bool idle_requested_ = false;

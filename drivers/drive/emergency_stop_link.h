@@ -19,8 +19,8 @@ class EmergencyStopLink {
  public:
   EmergencyStopLink(const EmergencyStopConfig& config, double rate_hz) noexcept
       : config_(config),
-        timeout_cycles_(std::max(1.0, config.timeout_s * rate_hz)),
-        power_off_cycles_(config.power_off_s * rate_hz) {}
+        timeout_cycles_(std::max(whole(config.timeout_s * rate_hz), std::int64_t{1})),
+        power_off_cycles_(whole(config.power_off_s * rate_hz)) {}
 
   bool is_mine(std::size_t bus, const CanFrame& frame) const noexcept {
     return bus == static_cast<std::size_t>(config_.bus) && has_id(frame, config_.id);
@@ -49,9 +49,7 @@ class EmergencyStopLink {
 
   bool stopped() const noexcept { return stopped_cycles_ > 0; }
   /// The drives have held for power_off_s: now they are to be disabled.
-  bool power_is_off() const noexcept {
-    return stopped() && static_cast<double>(stopped_cycles_) > power_off_cycles_;
-  }
+  bool power_is_off() const noexcept { return stopped_cycles_ > power_off_cycles_; }
   /// STOP_* of joint_state_t.
   std::int8_t state() const noexcept {
     if (silent()) return joint_state_t::STOP_SILENT;
@@ -59,11 +57,12 @@ class EmergencyStopLink {
   }
 
  private:
-  bool silent() const noexcept { return static_cast<double>(silent_cycles_) > timeout_cycles_; }
+  static std::int64_t whole(double cycles) noexcept { return static_cast<std::int64_t>(cycles); }
+  bool silent() const noexcept { return silent_cycles_ > timeout_cycles_; }
 
   EmergencyStopConfig config_;
-  double timeout_cycles_;
-  double power_off_cycles_;
+  std::int64_t timeout_cycles_;
+  std::int64_t power_off_cycles_;
   bool pressed_ = false;
   std::int64_t silent_cycles_ = 0;
   std::int64_t stopped_cycles_ = 0;

@@ -1,63 +1,14 @@
 // Who may ask the supervisor for what, and when: the lease, the timers, steadiness.
 #include <gtest/gtest.h>
 
-#include <limber/joint_command_t.hpp>
-#include <string>
-
-#include "controller/modes/supervisor.h"
+#include "tests/controller/modes/supervisor_bench.h"
 
 namespace limber::controller::test_requests_and_timers {
 namespace {
 
-using Request = mode_request_t;
-using Command = joint_command_t;
-using State = joint_state_t;
-using Reasons = controller_status_t;
+using namespace supervisor_bench;
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::int64_t kMine = 1;
-constexpr std::int64_t kOther = 2;
-
-class RequestsAndTimers : public ::testing::Test {
- protected:
-  joint_state_t state(std::int8_t drive_state) {
-    joint_state_t made{};
-    made.seq = ++seq_;
-    made.session = session_;
-    made.time_ns = seq_ * kPeriod_ns + late_ns_;
-    made.period_ns = kPeriod_ns;
-    made.num_joints = 1;
-    made.drive_state = drive_state;
-    made.joint_flags[0] = State::JOINT_FRESH;
-    return made;
-  }
-  void states(std::int64_t count, std::int8_t drive_state) {
-    for (std::int64_t i = 0; i < count; ++i) supervisor_.on_state(state(drive_state));
-  }
-  static Request made(std::int8_t what, std::int64_t client = kMine) {
-    Request request{};
-    request.client = client;
-    request.request = what;
-    return request;
-  }
-  /// "" if it was obeyed.
-  std::string ask(std::int8_t what, std::int64_t client = kMine) {
-    const char* reason = supervisor_.on_mode(made(what, client));
-    return reason == nullptr ? "" : reason;
-  }
-  void to_hold() {
-    states(Supervisor::kSteadyStates, State::DRIVE_OFF);
-    ASSERT_EQ(ask(Request::REQUEST_HOLD), "");
-    states(1, State::DRIVE_ON);
-    ASSERT_TRUE(supervisor_.engaged());
-  }
-  int drive_request() const { return supervisor_.drive_request(); }
-
-  Supervisor supervisor_{1, 2};
-  std::int64_t seq_ = -1;
-  std::int64_t session_ = 5;
-  std::int64_t late_ns_ = 0;
-};
+class RequestsAndTimers : public SupervisorBench {};
 
 TEST_F(RequestsAndTimers, BeforeTheFirstState) {
   EXPECT_EQ(supervisor_.mode(), Mode::kBoot);
@@ -92,6 +43,17 @@ TEST_F(RequestsAndTimers, AHundredGoodStatesInARow) {
   EXPECT_EQ(supervisor_.mode(), Mode::kInit) << "counted afresh in a new session";
   states(1, State::DRIVE_OFF);
   EXPECT_EQ(supervisor_.mode(), Mode::kIdle);
+}
+
+TEST_F(RequestsAndTimers, AfterALongSilenceTheNumbersMayBeginAgain) {
+  states(50, State::DRIVE_OFF);
+  seq_ = -1;
+  states(1, State::DRIVE_ON);
+  EXPECT_FALSE(supervisor_.drives_on()) << "an old number";
+  seq_ = -1;
+  supervisor_.forget_sequence();
+  states(1, State::DRIVE_ON);
+  EXPECT_TRUE(supervisor_.drives_on());
 }
 
 TEST_F(RequestsAndTimers, ARepeatedStateChangesNothing) {

@@ -69,6 +69,35 @@ TEST_F(EmergencyStopTest, AStopThatWasBegunIsCompleted) {
   EXPECT_FALSE(link_.stopped()) << "released, and the power has been off";
 }
 
+TEST_F(EmergencyStopTest, SilenceIsCountedFromTheLastFrame) {
+  for (int i = 0; i < 15; ++i) link_.close_cycle();
+  cycle(frame(0x04));
+  for (int i = 1; i < 20; ++i) link_.close_cycle();
+  EXPECT_EQ(link_.state(), kReleased);
+  link_.close_cycle();
+  EXPECT_EQ(link_.state(), kSilent);
+}
+
+// Half a cycle at 100 Hz: a frame that is awaited for a cycle is not missing yet.
+TEST(EmergencyStop, ASlowCycleIsWaitedForOnce) {
+  EmergencyStopLink link({1, 0x185, 1, 0x04, 0x04, 0.005, 0.0}, 100.0);
+  EXPECT_FALSE(link.power_is_off()) << "also where it goes at once";
+  link.close_cycle();
+  EXPECT_FALSE(link.stopped());
+  link.close_cycle();
+  EXPECT_EQ(link.state(), kSilent);
+  EXPECT_TRUE(link.power_is_off());
+}
+
+TEST_F(EmergencyStopTest, OnlyItsBusNeedsItsFrames) {
+  std::vector<CanFilter> filters;
+  link_.add_receive_filters(0, &filters);
+  EXPECT_TRUE(filters.empty());
+  link_.add_receive_filters(1, &filters);
+  ASSERT_EQ(filters.size(), 1u);
+  EXPECT_EQ(filters[0].id, 0x185u);
+}
+
 TEST_F(EmergencyStopTest, WhilePressedThePowerStaysOff) {
   for (int i = 0; i < 51; ++i) cycle(frame(0x00));
   for (int i = 0; i < 500; ++i) {

@@ -124,6 +124,21 @@ TEST(GateEdges, RefusedTooOftenUntilTheNextCommand) {
   EXPECT_FALSE(gate.refused_too_often());
 }
 
+// Only an answer that is too old is late; a wrong one to the state before is a wrong one.
+TEST(GateEdges, WrongAnswersToTheStateBeforeAreRefusedTooOften) {
+  Arm arm(1);
+  TorqueGate gate(arm.limits);
+  ASSERT_EQ(gate.judge(arm.command, arm.situation), kAccepted);
+  arm.situation.state_seq = 3;
+  arm.command.state_seq = 2;
+  arm.command.tau[0] = 11.0;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(gate.refused_too_often());
+    EXPECT_EQ(gate.judge(arm.command, arm.situation), +Status::VERDICT_TORQUE);
+  }
+  EXPECT_TRUE(gate.refused_too_often());
+}
+
 TEST(GateEdges, NobodysCommandsAreNotTheHoldersWhenThereIsNone) {
   Arm arm(1);
   TorqueGate gate(arm.limits);

@@ -65,8 +65,10 @@ PARTS: dict[str, Callable[[], list[str]]] = {
     "threads": _threads,
     "soak": lambda: _limber("soak", "--hours", "0.12"),
     "pytest": lambda: [*PYTEST, "tests/tools", "tests/fuzz"],
-    # All mutants of the state tables; of gate, supervisors and watches survivors are open
-    "mutation": lambda: _limber("mutation", "tables", "--seconds", "60"),
+    # What decides whether the arm moves; the other areas take longer
+    "mutation": lambda: _limber(
+        "mutation", "gate", "tables", "supervisors", "watches", "--seconds", "90"
+    ),
     "coverage": lambda: _limber("coverage"),
     "eval": lambda: [*PYTEST, "tests/eval"],
     "system": lambda: [*_private(), *PYTEST, "tests/system"],

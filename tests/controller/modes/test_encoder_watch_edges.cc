@@ -1,0 +1,156 @@
+// A stopped encoder: what counts as friction, as a change of the reading, and as motion elsewhere.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "controller/modes/encoder_watch.h"
+
+namespace limber::controller::test_encoder_watch_edges {
+namespace {
+
+constexpr int kJoints = 3;
+constexpr double kLimit_Nm = 40.0;
+constexpr double kInertia = 2.0;
+constexpr double kLong_s = 1.0;
+
+/// The watch of joint 1: a first state at rest without torque, then others of kLong_s each.
+class Bench {
+ public:
+  explicit Bench(const std::function<void(JointConfig&)>& change = [](JointConfig&) {})
+      : watch_(robot(change)) {
+    state_.num_joints = kJoints;
+    next();
+  }
+  /// The joint that is found in a state `dt_s` later; `gravity`: of joint 1, N m.
+  int next(double dt_s = kLong_s, double gravity = 0.0) {
+    const MatrixJ M = MatrixJ::Identity(kJoints, kJoints) * kInertia;
+    return watch_.stopped(state_, VectorJ::Unit(kJoints, 1) * gravity, M, dt_s);
+  }
+  joint_state_t& state() { return state_; }
+
+ private:
+  static Robot robot(const std::function<void(JointConfig&)>& change) {
+    Robot robot;
+    robot.joints.resize(kJoints);
+    for (JointConfig& joint : robot.joints) joint.torque_limit_Nm = kLimit_Nm;
+    change(robot.joints[1]);
+    return robot;
+  }
+
+  EncoderWatch watch_;
+  joint_state_t state_{};
+};
+
+/// Friction that hides a torque of `holds` but not one a little greater.
+void expect_friction(double holds, const std::function<void(JointConfig&)>& change) {
+  for (const double sign : {1.0, -1.0}) {
+    Bench bench(change);
+    bench.state().theta[0] = 1.0;
+    bench.state().tau_applied[1] = sign * (holds - 0.01);
+    EXPECT_EQ(bench.next(1e3), -1) << holds;
+    bench.state().tau_applied[1] = sign * (holds + 0.01);
+    EXPECT_EQ(bench.next(1e3), 1) << holds;  // 0.01 N m / 2 kg m^2 (1000 s)^2
+  }
+}
+
+TEST(EncoderWatchEdges, FrictionIsTheGreaterOfBothKindsPlusTheLinks) {
+  expect_friction(7.0, [](JointConfig& joint) {
+    joint.friction.coulomb_Nm = 4.0;
+    joint.friction.static_Nm = 3.0;
+    joint.link_friction.coulomb_Nm = 1.0;
+    joint.link_friction.static_Nm = 3.0;
+  });
+  expect_friction(7.0, [](JointConfig& joint) {
+    joint.friction.coulomb_Nm = 1.0;
+    joint.friction.static_Nm = 5.0;
+    joint.link_friction.coulomb_Nm = 2.0;
+  });
+}
+
+TEST(EncoderWatchEdges, ATorqueThatCarriesTheWeightMovesNothing) {
+  Bench bench;
+  bench.state().theta[0] = 1.0;
+  bench.state().tau_applied[1] = 8.0;
+  EXPECT_EQ(bench.next(1.0, 8.0), -1);
+  EXPECT_EQ(bench.next(1.0, -1.0), 1) << "it would rise now";
+}
+
+TEST(EncoderWatchEdges, TwoMotorsHaveItTwice) {
+  expect_friction(9.0, [](JointConfig& joint) {
+    joint.has_antagonist = true;
+    joint.friction.coulomb_Nm = 4.0;
+    joint.link_friction.coulomb_Nm = 1.0;
+  });
+}
+
+TEST(EncoderWatchEdges, ATwentiethOfTheTorqueLimitAtLeast) {
+  expect_friction(2.0, [](JointConfig& joint) { joint.friction.coulomb_Nm = 1.9; });
+  expect_friction(2.1, [](JointConfig& joint) { joint.friction.coulomb_Nm = 2.1; });
+}
+
+// Half a radian is expected at once; each reading of a drive's four shows that the encoder counts.
+TEST(EncoderWatchEdges, AnyReadingThatChangesBeginsAfresh) {
+  const auto found_after = [](const std::function<void(joint_state_t&)>& change) {
+    Bench bench;
+    bench.state().tau_applied[1] = 3.0;  // 1 N m beyond friction: 0.5 rad in 1 s
+    bench.state().theta[0] = 1.0;
+    change(bench.state());
+    return bench.next();
+  };
+  EXPECT_EQ(found_after([](joint_state_t&) {}), 1);
+  constexpr double kBit = 1e-300;
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.theta[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.q[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.theta_dot[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.v[1] = kBit; }), -1);
+}
+
+TEST(EncoderWatchEdges, AfreshMeansFromTheNewReadingAndItsLoad) {
+  Bench bench;
+  joint_state_t& state = bench.state();
+  state.tau_applied[1] = 3.0;
+  state.theta[0] = 0.011;
+  EXPECT_EQ(bench.next(0.3), -1);  // 0.5 rad/s^2 (0.3 s)^2 = 0.045 rad
+  state.theta[1] = state.q[1] = state.theta_dot[1] = state.v[1] = 1e-6;
+  EXPECT_EQ(bench.next(0.3), -1);
+  EXPECT_EQ(bench.next(1e3), -1) << "3 N m are balanced since then";
+  state.tau_applied[1] = 6.0;  // 1 N m beyond load and friction
+  EXPECT_EQ(bench.next(0.3), -1) << "neither angle nor speed is left from before";
+  EXPECT_EQ(bench.next(0.3), -1) << "0.135 rad are expected, but no other joint has moved since";
+  state.theta[2] = -0.011;
+  EXPECT_EQ(bench.next(1e-6), 1);
+}
+
+TEST(EncoderWatchEdges, AnotherJointMovesByMoreThanAHundredth) {
+  for (const int other : {0, 2}) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      bench.state().tau_applied[1] = 3.0;
+      bench.state().theta[other] = sign * 0.01;
+      EXPECT_EQ(bench.next(), -1);
+      bench.state().theta[other] = sign * std::nextafter(0.01, 1.0);
+      EXPECT_EQ(bench.next(), 1);
+    }
+  }
+}
+
+TEST(EncoderWatchEdges, FiveHundredthsAreExpectedAtLeast) {
+  Bench exact([](JointConfig& joint) { joint.torque_limit_Nm = 0.0; });
+  exact.state().theta[0] = 1.0;
+  exact.state().tau_applied[1] = kInertia * 0.05;
+  EXPECT_EQ(exact.next(), 1) << "0.05 rad in a second";
+  for (const double sign : {1.0, -1.0}) {
+    Bench bench;
+    bench.state().theta[0] = 1.0;
+    bench.state().tau_applied[1] = sign * (2.0 + 2.0 * kInertia);  // 2 rad/s^2
+    EXPECT_EQ(bench.next(0.158), -1);                              // 0.0499 rad
+    Bench later;
+    later.state().theta[0] = 1.0;
+    later.state().tau_applied[1] = sign * (2.0 + 2.0 * kInertia);
+    EXPECT_EQ(later.next(0.1585), 1);  // 0.0502 rad
+  }
+}
+
+}  // namespace
+}  // namespace limber::controller::test_encoder_watch_edges
