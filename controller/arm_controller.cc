@@ -101,11 +101,6 @@ void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) {
   outcomes_.reserve(timeline->size());
 }
 
-template <typename Request>
-void ArmController::note(std::int8_t kind, const Request& request, Refusal refusal) noexcept {
-  outcomes_.push_back({kind, request.client, request.seq, refusal});
-}
-
 void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
   if (!timeline_) return;
   while (const TimedMessage* next = timeline_->peek(time_ns)) {
@@ -117,11 +112,9 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
     }
     std::visit(
         Overloaded{
-            [&](const mode_request_t& m) { note(request_answer_t::KIND_MODE, m, on_mode(m)); },
-            [&](const compliance_goal_t& m) { note(request_answer_t::KIND_GOAL, m, on_goal(m)); },
-            [&](const compliance_gains_t& m) {
-              note(request_answer_t::KIND_GAINS, m, on_gains(m));
-            },
+            [&](const mode_request_t& m) { outcomes_.push_back(outcome_of(m, on_mode(m))); },
+            [&](const compliance_goal_t& m) { outcomes_.push_back(outcome_of(m, on_goal(m))); },
+            [&](const compliance_gains_t& m) { outcomes_.push_back(outcome_of(m, on_gains(m))); },
             [](const auto&) {},  // the simulator's
         },
         *timeline_->due(time_ns));

@@ -18,7 +18,7 @@
 #include "controller/modes/energy_watch.h"
 #include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
-#include "controller/refusal.h"
+#include "controller/request_outcome.h"
 #include "controller/torque_cycle.h"
 #include "robots/loader/load_robot.h"
 #include "scenarios/loader/scenario.h"
@@ -33,14 +33,6 @@ struct ArmControllerOptions {
   bool measure_time = true;  ///< false in lock step: no clock is read
   /// Every bus is simulated, whatever robot.yaml says, as in the lab. False: by robot.yaml.
   bool simulated = false;
-};
-
-/// A request of the timeline was taken or refused.
-struct RequestOutcome {
-  std::int8_t kind = request_answer_t::KIND_MODE;
-  std::int64_t client = 0;
-  std::int64_t seq = 0;
-  Refusal refusal;
 };
 
 class ArmController {
@@ -81,8 +73,6 @@ class ArmController {
 
  private:
   void apply_timeline(std::int64_t time_ns) noexcept;
-  template <typename Request>
-  void note(std::int8_t kind, const Request& request, Refusal refusal) noexcept;
   void watch_motion(const joint_state_t& state, double dt_s) noexcept;
   controller::Standby standby() const noexcept;
   void write_answer(const joint_state_t& state) noexcept;

@@ -27,6 +27,7 @@ request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns) 
   answer.client = outcome.client;
   answer.seq = outcome.seq;
   answer.kind = outcome.kind;
+  answer.what = outcome.what;
   answer.accepted = outcome.refusal ? 0 : 1;
   answer.code = outcome.refusal.code;
   answer.reason = outcome.refusal ? outcome.refusal.reason : "";
@@ -40,17 +41,18 @@ void ControllerLog::note(const controller_status_t& status) {
   const std::string where = joint < joints_.size() ? joints_[joint] : "";
   mode_ = status.mode;
   reason_ = status.reason;
-  const char* mode = name_in(kModeNames, mode_);
+  const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
+  if (!caused) return spdlog::info(mode);
   const Problem* problem = find_problem(problems::kController, reason_);
-  if (caused && mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
+  if (mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
     keep(black_box_, problem->code);
-  if (!caused) {
-    spdlog::info("mode {}", mode);
-  } else if (reason_ == controller_status_t::REASON_STOP_REQUESTED) {
-    spdlog::info("mode {}: a stop was requested", mode);
+  const std::string line = mode + ": " + problem_text(problems::kController, reason_, where, "");
+  // Somebody knows of it already: who stopped the arm, or who reads what the driver told.
+  if (reason_ == controller_status_t::REASON_STOP_REQUESTED ||
+      reason_ == controller_status_t::REASON_DRIVER_FAULT) {
+    spdlog::info(line);
   } else {
-    spdlog::warn("warning: mode {}: {}", mode,
-                 problem_text(problems::kController, reason_, where, ""));
+    spdlog::warn("warning: {}", line);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/black_box/black_box.h"
-#include "controller/arm_controller.h"
+#include "controller/request_outcome.h"
 
 namespace limber {
 

@@ -61,15 +61,15 @@ ControllerProcess::ControllerProcess(ArmController* controller,
   user_.set_black_box(black_box_.get());
   require_local(user_plane_url(), options.moves_motors);
   require_local(arm_plane_url(), options.moves_motors);
-  subscribe<mode_request_t>(channels::kModeRequest, request_answer_t::KIND_MODE);
-  subscribe<compliance_goal_t>(channels::kComplianceGoal, request_answer_t::KIND_GOAL);
-  subscribe<compliance_gains_t>(channels::kComplianceGains, request_answer_t::KIND_GAINS);
+  subscribe<mode_request_t>(channels::kModeRequest);
+  subscribe<compliance_goal_t>(channels::kComplianceGoal);
+  subscribe<compliance_gains_t>(channels::kComplianceGains);
 }
 
 template <typename Request>
-void ControllerProcess::subscribe(const char* channel, std::int8_t kind) {
+void ControllerProcess::subscribe(const char* channel) {
   user_.subscribe<Request>(channel, kRequestQueue,
-                           [this, kind](const Request& request) { take(request, kind); });
+                           [this](const Request& request) { take(request); });
 }
 
 void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
@@ -144,9 +144,8 @@ Refusal ControllerProcess::judge(const Request& request) noexcept {
 }
 
 template <typename Request>
-void ControllerProcess::take(const Request& request, std::int8_t kind) noexcept {
-  publish_answer({kind, request.client, request.seq, judge(request)},
-                 controller_->status().time_ns);
+void ControllerProcess::take(const Request& request) noexcept {
+  publish_answer(outcome_of(request, judge(request)), controller_->status().time_ns);
 }
 
 void ControllerProcess::publish_answer(const RequestOutcome& outcome,

@@ -49,9 +49,9 @@ class ControllerProcess {
   Refusal judge(const Request& request) noexcept;
   /// Judges a request and publishes REQUEST_ANSWER; a refusal also goes to the log.
   template <typename Request>
-  void take(const Request& request, std::int8_t kind) noexcept;
+  void take(const Request& request) noexcept;
   template <typename Request>
-  void subscribe(const char* channel, std::int8_t kind);
+  void subscribe(const char* channel);
   void publish_status() noexcept;
   void publish_answer(const RequestOutcome& outcome, std::int64_t time_ns) noexcept;
 

@@ -76,6 +76,7 @@ TEST(RefusalCodes, ATimelinesOutcomesAreThoseOfItsCycle) {
   goal.client = kScenarioClient;
   goal.seq = 3;
   goal.num_joints = 7;
+  goal.kind = compliance_goal_t::GOAL_OFFSET;
   const std::vector<TimedMessage> timeline{
       {200'000'000, hold}, {200'000'000, push_t{}}, {200'000'000, goal}};
   Rig rig(limber::testing::random_arm(7, 5, true));
@@ -94,6 +95,7 @@ TEST(RefusalCodes, ATimelinesOutcomesAreThoseOfItsCycle) {
     EXPECT_EQ(answer.client, kScenarioClient);
     EXPECT_EQ(answer.seq, 3);
     EXPECT_EQ(answer.kind, +Refused::KIND_GOAL);
+    EXPECT_EQ(answer.what, +compliance_goal_t::GOAL_OFFSET);
     EXPECT_EQ(answer.accepted, 0);
     EXPECT_EQ(answer.code, +Refused::REFUSED_MODE);
     EXPECT_EQ(answer.reason, "goals are accepted in ACTIVE only");

@@ -27,6 +27,8 @@ _SCALARS = {
     "double": ">f8",
 }
 FINGERPRINT = "_fingerprint"
+SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
+CLIENTS = {SCENARIO_CLIENT: "scenario", 0x48414E44: "limber send"}
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ class View:
         if status is not None:
             mode = messages.constants("controller_status_t", "MODE_")[int(status["mode"])]
             law = int(status["law"])
-            limits = messages.bit_names("controller_status_t", "LIMIT_", int(status["limits"]))
+            limits = [p.code for p in problems.problems_of_bits("limit", status["limits"])]
             reason = problems.problem("controller", status["reason"])
             table.add_row("mode", Text(mode, style=GOOD if mode in ("HOLD", "ACTIVE") else WARN))
             table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
@@ -151,8 +151,7 @@ class View:
         table = tables.table("<joint", ">position", "<", *numbers, "<", padding=(0, 1))
         for i in range(int(state["num_joints"])):
             q = float(state["q"][i])
-            flags = messages.bit_names("joint_state_t", "JOINT_", int(state["joint_flags"][i]))
-            wrong = [flag for flag in flags if flag in ("DRIVE_ERROR", "OUT_OF_RANGE", "WARNING")]
+            wrong = problems.problems_of_bits("joint", state["joint_flags"][i])
             age = int(state["age_cycles"][i])
             table.add_row(
                 self._joint_name(i),
@@ -163,7 +162,7 @@ class View:
                 f"{float(state['tau_applied'][i]):+.2f}",
                 f"{float(state['temperature_degC'][i]):.0f}",
                 Text(f"{age}", style=BAD if age > 1 else ""),
-                Text(" ".join(wrong), style=BAD),
+                Text(" ".join(problem.code for problem in wrong), style=BAD),
             )
         return table
 

@@ -12,8 +12,6 @@ from limber.measure.sound import damaged
 from limber.model.scenario import Scenario
 from limber.problems import problem
 
-SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
-
 
 def health_results(
     log: Log, scenario: Scenario, recorder_lost: dict[str, int], faults: list[Fault]
@@ -92,7 +90,7 @@ def _requests(log: Log, status: np.ndarray) -> Result:
     """Those of the scenario are judged: nobody else was told of them."""
     kinds = messages.constants("request_answer_t", "KIND_")
     answers = [answer for answer in log.decode("REQUEST_ANSWER") if not answer.accepted]
-    own = [answer for answer in answers if answer.client == SCENARIO_CLIENT]
+    own = [answer for answer in answers if answer.client == messages.SCENARIO_CLIENT]
     notes = [_refusal(answer, kinds) for answer in own]
     if len(answers) > len(own):
         notes.append(f"{len(answers) - len(own)} of other clients, who were told")

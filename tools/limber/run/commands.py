@@ -24,8 +24,15 @@ def next_folder(name: str) -> Path:
     return Path("out") / f"{name}-{number}"
 
 
-def run(path: Path, options: RunOptions, console: Console) -> int:
+def _load(path: Path, console: Console) -> Scenario:
     scenario = load_checked(path)
+    for line in scenario.refused:
+        console.print(line, style="yellow", markup=False, highlight=False, soft_wrap=True)
+    return scenario
+
+
+def run(path: Path, options: RunOptions, console: Console) -> int:
+    scenario = _load(path, console)
     addresses = buses.addresses(scenario.robot, options.buses)
     buses.warn_of_motion(addresses, options.with_simulator, console)
     if buses.real(addresses):
@@ -37,7 +44,7 @@ def run(path: Path, options: RunOptions, console: Console) -> int:
 
 
 def lab(path: Path, out: Path | None, record_can: bool, console: Console) -> int:
-    scenario = load_checked(path)
+    scenario = _load(path, console)
     folder = output_folder(out or next_folder(scenario.name))
     return report(runner.lab(scenario, folder, console, record_can), scenario, console)
 
