@@ -82,24 +82,24 @@ void expect_all(const Gains& gains, double value) {
 }
 
 TEST(GainRamp, EverythingFollowsTheCosine) {
-  Gains from = all(1.0);
+  Gains from = all(2.0);
   from.settings.damping = from.settings.joint_damping = DampingDesign::kGiven;
-  Gains to = all(2.0);
+  Gains to = all(4.0);
   to.settings = from.settings;
   GainRamp ramp(from);
   EXPECT_FALSE(ramp.moving());
   ramp.advance(1.0);
-  expect_all(ramp.now(), 1.0);
+  expect_all(ramp.now(), 2.0);
   ramp.start(to, 0.3);
   EXPECT_TRUE(ramp.moving());
-  expect_all(ramp.now(), 1.0);
+  expect_all(ramp.now(), 2.0);
   ramp.advance(0.1);
-  expect_all(ramp.now(), 1.5 - 0.5 * std::cos(std::numbers::pi / 3.0));
+  expect_all(ramp.now(), 3.0 - std::cos(std::numbers::pi / 3.0));
   ramp.advance(0.1);
-  expect_all(ramp.now(), 1.5 - 0.5 * std::cos(2.0 * std::numbers::pi / 3.0));
+  expect_all(ramp.now(), 3.0 - std::cos(2.0 * std::numbers::pi / 3.0));
   ramp.advance(0.2);
   EXPECT_FALSE(ramp.moving());
-  expect_all(ramp.now(), 2.0);
+  expect_all(ramp.now(), 4.0);
 }
 
 TEST(GainRamp, ANewRampStartsWhereTheParametersAre) {

@@ -149,8 +149,8 @@ TEST(GainsCheck, SymmetricUpToRounding) {
       m.D_x[0][5] = difference;
     });
   };
-  EXPECT_EQ(D(0.9e-4F), "");
-  EXPECT_EQ(D(1.1e-4F), "D_x is not symmetric");
+  EXPECT_EQ(D(0.95e-4F), "");
+  EXPECT_EQ(D(1.05e-4F), "D_x is not symmetric");
 }
 
 // [k, c; c, k] has the eigenvalues k - c and k + c.

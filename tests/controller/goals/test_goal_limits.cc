@@ -153,6 +153,7 @@ TEST_F(GoalLimitsTest, APoseIsFiniteWithAUnitQuaternionWithinTenMetres) {
     EXPECT_EQ(why([=](Goal& g) { g.p_BD[i] = kNan; }), "the pose is not finite");
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(why([=](Goal& g) { g.quat_BD[i] = kInf; }), "the pose is not finite");
+  EXPECT_EQ(why([](Goal& g) { g.offset[0] = kNan; }), "") << "of another kind of goal";
   const auto norm = [this](double norm) {
     return why([=](Goal& g) {
       g.quat_BD[0] = 0.6 * norm;

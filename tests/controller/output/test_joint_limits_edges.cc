@@ -67,6 +67,7 @@ TEST_F(JointLimitsEdges, WhatCarriesTheWeightIsNotScaled) {
   robot_.power_limit_W = 5.0;
   state_.v << 4.0;  // the weight alone takes 12 W
   EXPECT_EQ(shaped(6.0), 3.0);
+  EXPECT_EQ(shaped(3.1), 3.0);
   EXPECT_EQ(shaped(3.0), 3.0);
   EXPECT_EQ(acted_, 0) << "nothing moves it";
   EXPECT_EQ(shaped(2.9), 2.9) << "it brakes";
@@ -77,6 +78,7 @@ TEST_F(JointLimitsEdges, AtTheVelocityLimitTheWeightIsStillCarried) {
   EXPECT_EQ(shaped(3.0), 3.0);
   EXPECT_EQ(acted_, 0) << "nothing to scale";
   EXPECT_NEAR(shaped(5.0), 4.0, 1e-12);
+  EXPECT_NEAR(shaped(3.05), 3.025, 1e-12);
   EXPECT_EQ(acted_, +Status::LIMIT_VELOCITY);
   state_.v << 0.0;
   EXPECT_EQ(shaped(5.0), 5.0);

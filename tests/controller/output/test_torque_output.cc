@@ -124,6 +124,7 @@ TEST_F(TorqueOutputTest, StepsAreCountedFromWhatTheDrivesApply) {
 }
 
 TEST_F(TorqueOutputTest, StandbyGoesThereAtOnceOrInSteps) {
+  EXPECT_EQ(Standby{}.torque, Standby::Torque::kZero) << "where nothing is chosen";
   stand_by(6.0, {});
   EXPECT_EQ(torque(), 6.0);
   EXPECT_EQ(limits_, 0);

@@ -179,6 +179,12 @@ TEST_F(DamiaoFamilyTest, AnswersWithAnotherIdAreAstray) {
   EXPECT_FALSE(astray("000#117FFF7FF7FF1E23"));
 }
 
+TEST_F(DamiaoFamilyTest, EachFrameIsAnsweredAtOnce) {
+  CanFrame frame;
+  EXPECT_FALSE(family_->needs_bus_frame(&frame));
+  EXPECT_EQ(family_->patience_cycles(), 1);
+}
+
 TEST_F(DamiaoFamilyTest, AnAnswerIsPresence) {
   EXPECT_TRUE(family_->is_presence(parse("011#0100330A01000000")));
   EXPECT_FALSE(family_->is_presence(parse("012#0100330A01000000")));
@@ -233,6 +239,11 @@ TEST_F(DamiaoStartUp, RangesAgreeToATenThousandth) {
   EXPECT_NEAR(above.found, 12.5013, 1e-6);
   EXPECT_EQ(check(0, range(21, 12.4987F)).answer, Answer::kWrong);
   EXPECT_EQ(check(2, range(23, 10.0F)).answer, Answer::kRight);
+  JointConfig fast = joint();
+  fast.drive.range.velocity_rad_per_s = 10000.0;
+  family_ = make_drive_family(fast, false, 1e-3);
+  EXPECT_EQ(check(1, range(22, 10001.0F)).answer, Answer::kRight);
+  EXPECT_EQ(check(1, range(22, 10001.1F)).answer, Answer::kWrong);
   EXPECT_EQ(check(2, range(22, 10.0F)).answer, Answer::kNone) << "another register";
 }
 

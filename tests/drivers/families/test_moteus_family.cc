@@ -103,6 +103,17 @@ TEST_F(MoteusFamilyTest, ACommandInTurnsAndShares) {
   EXPECT_EQ(sent.torque_Nm, 8.0);
 }
 
+TEST_F(MoteusFamilyTest, WhatIsNotFiniteIsNoCommand) {
+  for (double DriveCommand::*field :
+       {&DriveCommand::angle_rad, &DriveCommand::speed_rad_per_s, &DriveCommand::kp_Nm_per_rad,
+        &DriveCommand::kd_Nms_per_rad, &DriveCommand::torque_Nm}) {
+    CanFrame frame;
+    DriveCommand command;
+    command.*field = kInf;
+    EXPECT_FALSE(family_->command(command, {}, &frame, &command));
+  }
+}
+
 TEST_F(MoteusFamilyTest, ItIsEnabledByACommandOfNothing) {
   DriveMemory memory;
   memory.seen.angle_rad = 1.0;
@@ -162,6 +173,7 @@ TEST_F(MoteusFamilyTest, FramesForItsNumberAndPrefixAreForeign) {
   CanFrame error = with_id(0x28005, true);
   error.error = true;
   EXPECT_FALSE(family_->is_foreign_command(error));
+  EXPECT_FALSE(family_->is_astray(with_id(0x600, false))) << "its answers have its number";
 }
 
 TEST_F(MoteusFamilyTest, FiltersLetItsNumberAndAllsPass) {
@@ -238,6 +250,14 @@ TEST_F(MoteusFamilyTest, TheDrivesRangeHoldsTheJoints) {
   EXPECT_EQ(asked(5, "0.318309\r\n"), Answer::kRight);
   EXPECT_EQ(asked(5, "0.318308\r\n"), Answer::kWrong);
   EXPECT_EQ(asked(5, "1\r\n"), Answer::kRight);
+  JointConfig half = joint();
+  half.position_min = -0.25 * kTurn;
+  half.position_max = 0.25 * kTurn;
+  family_ = family_of(half);
+  EXPECT_EQ(asked(4, "-0.249999\r\n"), Answer::kRight);
+  EXPECT_EQ(asked(4, "-0.24999895\r\n"), Answer::kWrong);
+  EXPECT_EQ(asked(5, "0.249999\r\n"), Answer::kRight);
+  EXPECT_EQ(asked(5, "0.24999895\r\n"), Answer::kWrong);
 }
 
 TEST_F(MoteusFamilyTest, LinesComeInPiecesBehindOthers) {
@@ -250,6 +270,28 @@ TEST_F(MoteusFamilyTest, LinesComeInPiecesBehindOthers) {
   EXPECT_EQ(check(9, said("415926536\r")), Answer::kRight) << "kd: 5 N m s/rad * 2 pi";
   ASSERT_EQ(check(8, said("")), Answer::kRight);
   EXPECT_EQ(check(9, said("31.4 N m s\n")), Answer::kNotYet) << "no number alone";
+}
+
+TEST_F(MoteusFamilyTest, AnyLineThatEndsInOkAnswersTheFirstQuestion) {
+  ASSERT_EQ(check(2, said("")), Answer::kRight);
+  EXPECT_EQ(check(3, said("ERR unknown\r\n12\r\n")), Answer::kNotYet);
+  EXPECT_EQ(check(3, said("12 OK\r\n")), Answer::kRight);
+}
+
+TEST_F(MoteusFamilyTest, HalfALineIsForgottenBeforeTheNextQuestion) {
+  ASSERT_EQ(check(4, said("")), Answer::kRight);
+  EXPECT_EQ(check(5, said("31")), Answer::kNotYet);
+  EXPECT_EQ(asked(1, "3141.592654\r\n"), Answer::kRight);
+}
+
+TEST_F(MoteusFamilyTest, TextBesideAStateIsText) {
+  ASSERT_EQ(check(2, said("")), Answer::kRight);
+  CanFrame both = said("OK\r\n");
+  const CanFrame other = state(0, 0);
+  std::copy_n(other.data.begin(), 26, both.data.begin() + 7);
+  std::fill(both.data.begin() + 33, both.data.end(), 0x50);
+  both.length = 48;
+  EXPECT_EQ(check(3, both), Answer::kRight);
 }
 
 TEST_F(MoteusFamilyTest, ALineThatIsLongerThanAnyAnswerIsPassedOver) {
