@@ -21,6 +21,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/arm_plane/arm_plane.h"
 #include "common/clock.h"
 #include "common/latency_histogram.h"
 #include "common/lcm_port.h"
@@ -93,7 +94,8 @@ constexpr int kPongPort = 7702;
 /// Plays the driver for one controller: answers every request at once, the arm never moves.
 class FakeDriver {
  public:
-  explicit FakeDriver(const LoadedRobot& robot) : arm_(arm_plane_url()), user_(user_plane_url()) {
+  explicit FakeDriver(const LoadedRobot& robot)
+      : arm_(arm_plane_url(), ArmPlaneEnd::kDriver), user_(user_plane_url()) {
     state_.session = 1;
     state_.period_ns = 1'000'000;
     state_.num_joints = static_cast<std::int8_t>(robot.robot.size());
@@ -102,11 +104,9 @@ class FakeDriver {
       state_.q[i] = state_.theta[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
       state_.joint_flags[i] = +joint_state_t::JOINT_FRESH | +joint_state_t::JOINT_ENABLED;
     }
-    arm_.subscribe<joint_command_t>(channels::kJointTorque, 10,
-                                    [this](const joint_command_t& torque) {
-                                      if (torque.state_seq == state_.seq)
-                                        answer_ = torque, answered_ = true;
-                                    });
+    arm_.subscribe<joint_command_t>(channels::kJointTorque, [this](const joint_command_t& torque) {
+      if (torque.state_seq == state_.seq) answer_ = torque, answered_ = true;
+    });
     user_.subscribe<controller_status_t>(
         channels::kControllerStatus, 10,
         [this](const controller_status_t& status) { mode_ = status.mode; });
@@ -150,7 +150,7 @@ class FakeDriver {
   const joint_state_t& state() const { return state_; }
 
  private:
-  LcmPort arm_;
+  ArmPlane arm_;
   LcmPort user_;
   joint_state_t state_{};
   joint_command_t answer_{};

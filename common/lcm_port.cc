@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/config_error.h"
+#include "common/multicast_socket.h"
 
 namespace limber {
 
@@ -19,16 +20,19 @@ void require_descriptors() {
                     " open files, it needs " + std::to_string(kEnough) + "; set ulimit -n");
 }
 
-const std::string& with_descriptors(const std::string& url) {
-  require_descriptors();
-  return url;
-}
-
 }  // namespace
 
-LcmPort::LcmPort(const std::string& url, Use use)
-    : lcm_(std::make_unique<lcm::LCM>(checked_lcm_url(with_descriptors(url)))) {
-  if (!lcm_->good()) throw ConfigError(no_multicast_route(url));
+std::unique_ptr<lcm::LCM> open_lcm(const std::string& url) {
+  require_descriptors();
+  auto lcm = std::make_unique<lcm::LCM>(checked_lcm_url(url));
+  if (lcm->good()) return lcm;
+  throw ConfigError(url +
+                    ": LCM could not start. Without a network it needs a multicast route on this "
+                    "machine:\n  " +
+                    kMulticastRouteCommands);
+}
+
+LcmPort::LcmPort(const std::string& url, Use use) : lcm_(open_lcm(url)) {
   if (use == Use::kBothWays) descriptor_ = lcm_->getFileno();
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/clock.h"
 #include "common/config_error.h"
+#include "common/overloaded.h"
 #include "controller/status_writer.h"
 #include "lcmtypes/channels.h"
 
@@ -43,7 +44,8 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
       cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
       start_watch_(robot.robot),
-      encoder_watch_(robot.robot) {
+      encoder_watch_(robot.robot),
+      energy_watch_(robot.robot) {
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -51,6 +53,7 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
 
 const joint_command_t& ArmController::step(const joint_state_t& state) noexcept {
   const std::int64_t started_ns = options_.measure_time ? monotonic_ns() : 0;
+  outcomes_.clear();
   const StateJudgement judgement = supervisor_.on_state(state);
   if (judgement.repeated) return answer_;
   if (judgement.new_session && timeline_) timeline_->rewind();
@@ -77,16 +80,25 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
 
 void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexcept {
   const bool engaged = supervisor_.engaged();
-  if (!engaged) encoder_watch_.reset();
+  if (!engaged) {
+    encoder_watch_.reset();
+    energy_watch_.reset();
+  }
   if (engaged && !was_engaged_) start_watch_.begin(state);
   if (supervisor_.mode() != Mode::kHold) start_watch_.end();
   was_engaged_ = engaged;
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
-  const int joint =
-      encoder_watch_.stopped(state, cycle_.gravity(), cycle_.trace().terms.M_total, dt_s);
-  if (joint >= 0) supervisor_.raise(Event::kEncoderStopped, joint);
+  const MatrixJ& M = cycle_.trace().terms.M_total;
+  if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
+    supervisor_.raise(Event::kEncoderStopped, joint);
+  if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);
+}
+
+void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) {
+  timeline_.emplace(timeline);
+  outcomes_.reserve(timeline->size());
 }
 
 void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
@@ -98,10 +110,14 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
         time_ns - next->time_ns < kStartPatience_ns) {
       return;
     }
-    const ScenarioMessage* message = timeline_->due(time_ns);
-    if (const auto* request = std::get_if<mode_request_t>(message)) on_mode(*request);
-    if (const auto* goal = std::get_if<compliance_goal_t>(message)) on_goal(*goal);
-    if (const auto* gains = std::get_if<compliance_gains_t>(message)) on_gains(*gains);
+    std::visit(
+        Overloaded{
+            [&](const mode_request_t& m) { outcomes_.push_back(outcome_of(m, on_mode(m))); },
+            [&](const compliance_goal_t& m) { outcomes_.push_back(outcome_of(m, on_goal(m))); },
+            [&](const compliance_gains_t& m) { outcomes_.push_back(outcome_of(m, on_gains(m))); },
+            [](const auto&) {},  // the simulator's
+        },
+        *timeline_->due(time_ns));
   }
 }
 
@@ -143,36 +159,38 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.reason_joint = static_cast<std::int8_t>(supervisor_.reason_joint());
   status_.states_received = supervisor_.states().received();
   status_.states_lost = supervisor_.states().lost();
+  status_.unexplained_energy_J = energy_watch_.unexplained_J();
   controller::write_status(cycle_.trace(), &status_);
   if (!options_.measure_time) return;
   status_.cycle_ns = monotonic_ns() - started_ns;
   status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
 }
 
-const char* ArmController::counted(const char* refusal) noexcept {
-  if (refusal != nullptr) ++status_.requests_refused;
+Refusal ArmController::counted(Refusal refusal) noexcept {
+  if (refusal) ++status_.requests_refused;
   return refusal;
 }
 
-const char* ArmController::on_mode(const mode_request_t& request) noexcept {
+Refusal ArmController::on_mode(const mode_request_t& request) noexcept {
   return counted(supervisor_.on_mode(request));
 }
 
-const char* ArmController::on_goal(const compliance_goal_t& goal) noexcept {
-  if (const char* reason = supervisor_.check_client(goal.client)) return counted(reason);
-  if (supervisor_.mode() != Mode::kActive) return counted("goals are accepted in ACTIVE only");
-  if (const char* reason = cycle_.set_goal(goal, activity_of(supervisor_))) return counted(reason);
+Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
+  if (const Refusal refusal = supervisor_.check_client(goal.client)) return counted(refusal);
+  if (supervisor_.mode() != Mode::kActive)
+    return counted({request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"});
+  if (const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_)))
+    return counted(refusal);
   supervisor_.take_lease(goal.client);
-  return nullptr;
+  return {};
 }
 
-const char* ArmController::on_gains(const compliance_gains_t& gains) noexcept {
-  if (const char* reason = supervisor_.check_client(gains.client)) return counted(reason);
-  if (const char* reason = cycle_.set_gains(gains, activity_of(supervisor_))) {
-    return counted(reason);
-  }
+Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
+  if (const Refusal refusal = supervisor_.check_client(gains.client)) return counted(refusal);
+  if (const Refusal refusal = cycle_.set_gains(gains, activity_of(supervisor_)))
+    return counted(refusal);
   supervisor_.take_lease(gains.client);
-  return nullptr;
+  return {};
 }
 
 void ArmController::on_silence() noexcept {

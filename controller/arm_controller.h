@@ -10,12 +10,15 @@
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "controller/modes/encoder_watch.h"
+#include "controller/modes/energy_watch.h"
 #include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
+#include "controller/request_outcome.h"
 #include "controller/torque_cycle.h"
 #include "robots/loader/load_robot.h"
 #include "scenarios/loader/scenario.h"
@@ -44,16 +47,18 @@ class ArmController {
 
   /// Messages of the timeline that are due are applied in step(), before the law runs. `hold` and
   /// `active`, and all that follows them, wait up to 5 s for controller and drives to be ready.
-  void set_timeline(const std::vector<TimedMessage>* timeline) noexcept {
-    timeline_.emplace(timeline);
-  }
+  /// Set-up only.
+  void set_timeline(const std::vector<TimedMessage>* timeline);
+
+  /// What became of the timeline's requests in the last step().
+  std::span<const RequestOutcome> timeline_outcomes() const noexcept { return outcomes_; }
 
   // Requests from outside, between cycles. A refused one changes nothing and is counted; the return
-  // is the reason (nullptr: accepted). Goals and gains act from the next step(), without a torque
+  // is the reason (nothing: accepted). Goals and gains act from the next step(), without a torque
   // jump.
-  const char* on_mode(const mode_request_t& request) noexcept;
-  const char* on_goal(const compliance_goal_t& goal) noexcept;
-  const char* on_gains(const compliance_gains_t& gains) noexcept;
+  Refusal on_mode(const mode_request_t& request) noexcept;
+  Refusal on_goal(const compliance_goal_t& goal) noexcept;
+  Refusal on_gains(const compliance_gains_t& gains) noexcept;
 
   /// A request was refused before it came here.
   void count_refusal() noexcept { ++status_.requests_refused; }
@@ -72,15 +77,17 @@ class ArmController {
   controller::Standby standby() const noexcept;
   void write_answer(const joint_state_t& state) noexcept;
   void write_status(std::int64_t started_ns) noexcept;
-  const char* counted(const char* refusal) noexcept;
+  Refusal counted(Refusal refusal) noexcept;
 
   ArmControllerOptions options_;
   controller::Supervisor supervisor_;
   controller::TorqueCycle cycle_;
   controller::StartWatch start_watch_;
   controller::EncoderWatch encoder_watch_;
+  controller::EnergyWatch energy_watch_;
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
+  std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline
   double period_s_ = 0.0;
   joint_command_t answer_{};
   controller_status_t status_{};

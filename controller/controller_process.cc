@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
-#include <limber/request_answer_t.hpp>
 #include <limits>
 
 #include "common/clock.h"
@@ -13,19 +12,18 @@ namespace limber {
 namespace {
 
 // Lock step keeps everything, realtime only needs the newest; the rest is counted as lost.
-constexpr int kStateQueue = 64;
 constexpr int kRequestQueue = 32;
 // Then the next state is looked for: no flood of requests keeps it waiting.
 constexpr int kRequestsAtOnce = 2;
 constexpr std::int64_t kLogInterval_ns = 200'000'000;
 
-const char* decide(ArmController* controller, const mode_request_t& request) noexcept {
+Refusal decide(ArmController* controller, const mode_request_t& request) noexcept {
   return controller->on_mode(request);
 }
-const char* decide(ArmController* controller, const compliance_goal_t& goal) noexcept {
+Refusal decide(ArmController* controller, const compliance_goal_t& goal) noexcept {
   return controller->on_goal(goal);
 }
-const char* decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
+Refusal decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
   return controller->on_gains(gains);
 }
 
@@ -51,24 +49,27 @@ ControllerProcess::ControllerProcess(ArmController* controller,
     : controller_(controller),
       guard_(controller->status().controller),
       options_(options),
-      // LCM starts a thread for each plane. The user plane's, which anybody may flood, keeps normal
-      // priority; the arm plane's inherits ours.
+      black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.lockstep)),
+      log_(options.joints, black_box_.get()),
+      // LCM starts a thread for the user plane, which anybody may flood: it keeps normal priority.
       user_(user_plane_url()),
       grant_(request_realtime(options)),
-      arm_(arm_plane_url()) {
-  arm_.subscribe<joint_state_t>(channels::kJointState, kStateQueue,
+      arm_(arm_plane_url(), ArmPlaneEnd::kController) {
+  arm_.subscribe<joint_state_t>(channels::kJointState,
                                 [this](const joint_state_t& state) { on_state(state); });
+  arm_.set_black_box(black_box_.get());
+  user_.set_black_box(black_box_.get());
   require_local(user_plane_url(), options.moves_motors);
   require_local(arm_plane_url(), options.moves_motors);
-  subscribe<mode_request_t>(channels::kModeRequest, "mode request refused");
-  subscribe<compliance_goal_t>(channels::kComplianceGoal, "goal refused");
-  subscribe<compliance_gains_t>(channels::kComplianceGains, "gains refused");
+  subscribe<mode_request_t>(channels::kModeRequest);
+  subscribe<compliance_goal_t>(channels::kComplianceGoal);
+  subscribe<compliance_gains_t>(channels::kComplianceGains);
 }
 
 template <typename Request>
-void ControllerProcess::subscribe(const char* channel, const char* what) {
+void ControllerProcess::subscribe(const char* channel) {
   user_.subscribe<Request>(channel, kRequestQueue,
-                           [this, what](const Request& request) { take(request, what); });
+                           [this](const Request& request) { take(request); });
 }
 
 void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
@@ -111,6 +112,9 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
   answered_session_ = torque.session;
   user_.publish(channels::kJointTorque, torque);
   if (torque.state_seq % channels::kControllerStatusEvery == 0) publish_status();
+  for (const RequestOutcome& outcome : controller_->timeline_outcomes())
+    publish_answer(outcome, state.time_ns);
+  log_.note(controller_->status());
 }
 
 void ControllerProcess::publish_status() noexcept {
@@ -124,39 +128,34 @@ void ControllerProcess::check_silence() noexcept {
   last_state_ns_ = now_ns;
   controller_->on_silence();
   publish_status();
+  log_.note(controller_->status());
 }
 
 template <typename Request>
-const char* ControllerProcess::judge(const Request& request) noexcept {
+Refusal ControllerProcess::judge(const Request& request) noexcept {
   if (!is_stop(request)) {
-    const char* reason = guard_.check(request.controller, request.client, request.seq);
-    if (reason != nullptr) {
+    const Refusal refusal = guard_.check(request.controller, request.client, request.seq);
+    if (refusal) {
       controller_->count_refusal();
-      return reason;
+      return refusal;
     }
   }
   return decide(controller_, request);
 }
 
 template <typename Request>
-void ControllerProcess::take(const Request& request, const char* what) noexcept {
-  const char* reason = judge(request);
-  request_answer_t answer;
-  answer.time_ns = controller_->status().time_ns;
-  answer.client = request.client;
-  answer.seq = request.seq;
-  answer.accepted = reason == nullptr ? 1 : 0;
-  answer.reason = reason == nullptr ? "" : reason;
-  user_.publish(channels::kRequestAnswer, answer);
-  log_refusal(what, reason);
+void ControllerProcess::take(const Request& request) noexcept {
+  publish_answer(outcome_of(request, judge(request)), controller_->status().time_ns);
 }
 
-void ControllerProcess::log_refusal(const char* what, const char* reason) noexcept {
-  if (reason == nullptr) return;
+void ControllerProcess::publish_answer(const RequestOutcome& outcome,
+                                       std::int64_t time_ns) noexcept {
+  const request_answer_t answer = answer_to(outcome, time_ns);
+  user_.publish(channels::kRequestAnswer, answer);
   const std::int64_t now_ns = monotonic_ns();
-  if (now_ns - logged_ns_ < kLogInterval_ns) return;  // all are counted in the status
+  if (!outcome.refusal || now_ns - logged_ns_ < kLogInterval_ns) return;  // all are in the status
   logged_ns_ = now_ns;
-  spdlog::warn("{}: {}", what, reason);
+  ControllerLog::note(answer);
 }
 
 }  // namespace limber

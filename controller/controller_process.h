@@ -4,10 +4,14 @@
 #include <csignal>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
+#include <string>
+#include <vector>
 
+#include "common/arm_plane/arm_plane.h"
 #include "common/lcm_port.h"
 #include "common/realtime.h"
 #include "controller/arm_controller.h"
+#include "controller/controller_log.h"
 #include "controller/request_guard.h"
 
 namespace limber {
@@ -18,6 +22,9 @@ struct ControllerProcessOptions {
   int priority = 0;         ///< SCHED_FIFO priority to request; 0: none
   /// Some bus is no simulated one: requests must not come from the network.
   bool moves_motors = false;
+  std::vector<std::string> joints;  ///< names, for the log
+  std::string robot;                ///< its name, for the black box
+  double rate_hz = 1000.0;          ///< for the black box
 };
 
 class ControllerProcess {
@@ -39,21 +46,23 @@ class ControllerProcess {
   void check_silence() noexcept;
   /// Guard first, then the controller.
   template <typename Request>
-  const char* judge(const Request& request) noexcept;
+  Refusal judge(const Request& request) noexcept;
   /// Judges a request and publishes REQUEST_ANSWER; a refusal also goes to the log.
   template <typename Request>
-  void take(const Request& request, const char* what) noexcept;
+  void take(const Request& request) noexcept;
   template <typename Request>
-  void subscribe(const char* channel, const char* what);
+  void subscribe(const char* channel);
   void publish_status() noexcept;
-  void log_refusal(const char* what, const char* reason) noexcept;
+  void publish_answer(const RequestOutcome& outcome, std::int64_t time_ns) noexcept;
 
   ArmController* controller_;
   RequestGuard guard_;
   ControllerProcessOptions options_;
+  std::unique_ptr<BlackBox> black_box_;
+  ControllerLog log_;
   LcmPort user_;
-  RealtimeGrant grant_;  // between the planes, see the constructor
-  LcmPort arm_;
+  RealtimeGrant grant_;  // after the user plane, see the constructor
+  ArmPlane arm_;
   joint_state_t newest_{};
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;

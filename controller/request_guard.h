@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "controller/refusal.h"
+
 namespace limber {
 
 /// A request names the run of the controller it is meant for and has a number that is greater than
@@ -17,9 +19,9 @@ class RequestGuard {
   /// `controller`: the number of this run, as in CONTROLLER_STATUS.
   explicit RequestGuard(std::int64_t controller) noexcept : controller_(controller) {}
 
-  /// nullptr: new and meant for this run, and noted as the client's last; else why not. Neither
+  /// Nothing: new and meant for this run, and noted as the client's last; else why not. Neither
   /// allocates nor throws.
-  const char* check(std::int64_t controller, std::int64_t client, std::int64_t seq) noexcept;
+  Refusal check(std::int64_t controller, std::int64_t client, std::int64_t seq) noexcept;
 
  private:
   struct Client {

@@ -134,23 +134,25 @@ void TorqueCycle::switch_law(GoalType from, bool from_here) noexcept {
   laws_.instance().start(now);
 }
 
-const char* TorqueCycle::set_goal(const compliance_goal_t& message, Activity activity) noexcept {
+Refusal TorqueCycle::set_goal(const compliance_goal_t& message, Activity activity) noexcept {
   enter(activity);
   const GoalTracker::Set set = goals_.set(message, laws_.running().goal_type);
   if (set.switched) output_.blend_next();
   return set.refusal;
 }
 
-const char* TorqueCycle::set_gains(const compliance_gains_t& message, Activity activity) noexcept {
+Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activity) noexcept {
   enter(activity);
-  if (const char* reason = check_.check(message)) return reason;
+  if (const char* reason = check_.check(message))
+    return {request_answer_t::REFUSED_GAINS_RANGE, reason};
   const int law = message.law.empty() ? laws_.selected() : find_law(message.law);
-  if (law < 0) return "no control law has this name";
+  if (law < 0) return {request_answer_t::REFUSED_MALFORMED, "no control law has this name"};
   const LawEntry& wanted = LawBank::entry(law);
   read_gains(message, &requested_);
-  if (const char* reason = laws_.check(law, requested_)) return reason;
+  if (const char* reason = laws_.check(law, requested_))
+    return {request_answer_t::REFUSED_LAW, reason};
   if (const char* reason = gains_.check_springs(requested_, wanted, goals_.goal(), arm_)) {
-    return reason;
+    return {request_answer_t::REFUSED_SPRINGS, reason};
   }
 
   observers_.set(requested_.settings);
@@ -164,7 +166,7 @@ const char* TorqueCycle::set_gains(const compliance_gains_t& message, Activity a
     laws_.run_selected();
     switch_law(from, wanted.goal_type == GoalType::kNone || from == GoalType::kNone);
   }
-  return nullptr;
+  return {};
 }
 
 bool TorqueCycle::due(Term term) const noexcept {

@@ -24,6 +24,7 @@
 #include "controller/observers/observers.h"
 #include "controller/output/passivity_guard.h"
 #include "controller/output/torque_output.h"
+#include "controller/refusal.h"
 
 namespace limber::controller {
 
@@ -48,9 +49,9 @@ class TorqueCycle {
   /// The next state does not follow on the last one: nothing estimated from the past is kept.
   void restart() noexcept { observers_.restart(); }
 
-  /// nullptr: accepted, else why not; then nothing has changed.
-  const char* set_goal(const compliance_goal_t& message, Activity activity) noexcept;
-  const char* set_gains(const compliance_gains_t& message, Activity activity) noexcept;
+  /// Nothing: accepted, else why not; then nothing has changed.
+  Refusal set_goal(const compliance_goal_t& message, Activity activity) noexcept;
+  Refusal set_gains(const compliance_gains_t& message, Activity activity) noexcept;
 
   /// One cycle of a law, `dt_s` after the last. Where an activity or a law begins, its first torque
   /// is the one present, and fades over. False if the result is not finite: the last torque stays.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/problem_text.h"
 #include "drivers/bus_load.h"
 #include "drivers/can/lockstep_frame.h"
 #include "drivers/driver_setup.h"
@@ -182,6 +183,7 @@ int ArmDriver::accept(const joint_command_t& command) noexcept {
     drives_.set_gravity(command);
     if (!shutting_down_) drives_.follow(command);
   } else if (gate_.refused_too_often()) {
+    refused_for_ = verdict;
     drives_.apply(DriveEvent::kCommandRefused);
   }
   return verdict;
@@ -201,6 +203,8 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
   if (state_.fault == joint_state_t::FAULT_FEEDBACK && state_.fault_joint >= 0)
     return static_cast<std::uint16_t>(
         drives_.joints()[static_cast<std::size_t>(state_.fault_joint)].contradiction());
+  if (state_.fault == joint_state_t::FAULT_COMMAND_REFUSED)
+    return static_cast<std::uint16_t>(refused_for_);
   if (state_.fault != joint_state_t::FAULT_BUS) return 0;
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     if (buses_[b].lost()) return static_cast<std::uint16_t>(b << 8U | buses_[b].state());
@@ -213,17 +217,13 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
     return drives_.status_text(static_cast<std::size_t>(joint), detail);
   if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
-  const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
-  switch (detail & 0xFFU) {
-    case driver_status_t::BUS_OFF:
-      return name + " is bus-off; check wiring, termination and bit rate";
-    case driver_status_t::BUS_LINK_DOWN:
-      return name + ": the interface is down or gone; was the adapter unplugged?";
-    default:
-      return name +
-             ": commands wait in the transmit queue, or find it full (ENOBUFS); does any motor "
-             "acknowledge frames?";
+  if (fault == joint_state_t::FAULT_COMMAND_REFUSED) {
+    const Problem* problem = find_problem(problems::kGate, detail);
+    return problem == nullptr ? "" : std::string(problem->code) + ": " + problem->what;
   }
+  const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
+  const Problem* problem = find_problem(problems::kBus, detail & 0xFFU);
+  return problem == nullptr ? "" : name + ": " + problem->what + "; " + problem->remedy;
 }
 
 // --- status --------------------------------------------------------------------------------------

@@ -95,7 +95,8 @@ class ArmDriver {
     return drives_.warning_text(motor, warning);
   }
   /// What lies behind the fault of the last state: of a drive's error its drive_status, of
-  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*; else 0.
+  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*, of refused
+  /// commands the last VERDICT_*; else 0.
   /// Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
   /// The same in words; "" if nothing is known beyond the fault. Allocates: for messages.
@@ -128,6 +129,7 @@ class ArmDriver {
   std::int64_t cycle_ = -1;
   std::int64_t time_ns_ = 0;
   std::int64_t stamp_ns_ = 0;  ///< start of the cycle, in the clock of the frames' stamps
+  int refused_for_ = driver_status_t::VERDICT_ACCEPTED;  ///< the third command in 0.1 s
   bool shutting_down_ = false;
   joint_state_t state_{};  ///< as published last
 };

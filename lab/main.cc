@@ -1,11 +1,15 @@
 // limber-lab: runs a scenario in one process, in lock step, and leaves the same log the three
 // processes leave.
+#include <spdlog/spdlog.h>
+
 #include <cstdio>
 #include <memory>
 
 #include "common/clock.h"
 #include "common/program.h"
+#include "controller/controller_log.h"
 #include "controller/laws/registry.h"
+#include "drivers/drives_text.h"
 #include "lab/frame_log.h"
 #include "lab/lab.h"
 #include "lab/log_writer.h"
@@ -15,12 +19,38 @@ using namespace limber;
 
 namespace {
 
+// What the processes log, see ArmPort and ControllerProcess.
+class Told {
+ public:
+  explicit Told(const Robot& robot) : joints_(robot.joint_names()), controller_(joints_) {}
+
+  void note(Lab& lab) {
+    const joint_state_t& state = lab.state();
+    controller_.note(lab.controller_status());
+    for (const RequestOutcome& outcome : lab.controller().timeline_outcomes())
+      ControllerLog::note(answer_to(outcome, state.time_ns));
+    if (state.fault == fault_) return;
+    fault_ = state.fault;
+    const auto joint = static_cast<std::size_t>(state.fault_joint);
+    spdlog::info(drives_text(
+        state.drive_state, fault_, joint < joints_.size() ? joints_[joint] : "",
+        lab.driver().fault_text(fault_, state.fault_joint, lab.driver().fault_detail())));
+  }
+
+ private:
+  std::vector<std::string> joints_;
+  ControllerLog controller_;
+  std::int8_t fault_ = joint_state_t::FAULT_NONE;
+};
+
 void log_cycle(Lab& lab, LogWriter& log) {
   const std::int64_t time_ns = lab.state().time_ns;
   const std::int64_t seq = lab.state().seq;
   log.write(time_ns, channels::kJointState, lab.state());
   log.write(time_ns, channels::kSimTruth, lab.truth());
   log.write(time_ns, channels::kJointTorque, lab.torque());
+  for (const RequestOutcome& outcome : lab.controller().timeline_outcomes())
+    log.write(time_ns, channels::kRequestAnswer, answer_to(outcome, time_ns));
   if (seq % channels::kControllerStatusEvery == 0) {
     log.write(time_ns, channels::kControllerStatus, lab.controller_status());
   }
@@ -41,6 +71,7 @@ int run(const Arguments& given) {
   const LoadedRobot robot = load_robot(scenario_robot(path));
   const Scenario scenario = load_scenario(path, robot, &controller::law_catalog());
   Lab lab(robot, scenario);
+  Told told(robot.robot);
   std::unique_ptr<LogWriter> log;
   if (!given.log.empty()) log = std::make_unique<LogWriter>(given.log);
   std::unique_ptr<FrameLog> frames;
@@ -51,6 +82,7 @@ int run(const Arguments& given) {
   std::int64_t told_ns = start_ns;
   while (lab.time_ns() < end_ns) {
     lab.step();
+    told.note(lab);
     if (log) log_cycle(lab, *log);
     if (frames) frames->write_cycle(lab.state().time_ns);
     if (progress && lab.cycles() % 100 == 0 && monotonic_ns() - told_ns > 200'000'000) {

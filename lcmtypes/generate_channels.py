@@ -29,5 +29,14 @@ for key, row in table["channels"].items():
         out.append(
             f"inline constexpr int {const} = {int(row['rate'].removeprefix('cycle/'))};  // cycles"
         )
-out += ["", "}  // namespace limber::channels", ""]
+events = [f'"{key}"' for key, row in table["channels"].items() if row["rate"] == "event"]
+out += [
+    "",
+    "// Their messages have no number that counts them: nobody can tell whether one is missing.",
+    "inline constexpr const char* kUnnumbered[] = {",
+    "    " + ", ".join(events) + "};",
+    "",
+    "}  // namespace limber::channels",
+    "",
+]
 Path(sys.argv[2]).write_text("\n".join(out), encoding="utf-8")

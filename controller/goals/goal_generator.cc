@@ -37,8 +37,8 @@ void GoalGenerator::reset(const Pose& X_BT, const VectorJ& q) noexcept {
   copy();
 }
 
-const char* GoalGenerator::set(const compliance_goal_t& message, GoalType type) noexcept {
-  if (const char* reason = check(message, type)) return reason;
+Refusal GoalGenerator::set(const compliance_goal_t& message, GoalType type) noexcept {
+  if (const Refusal refusal = check(message, type)) return refusal;
   const bool limited = message.duration_s > 0.0;
   const double T = std::max(message.duration_s, GoalLimits::kShortestMotion_s);
   switch (message.kind) {
@@ -51,7 +51,7 @@ const char* GoalGenerator::set(const compliance_goal_t& message, GoalType type) 
     default:
       start_tip(message, T, limited);
   }
-  return nullptr;
+  return {};
 }
 
 // A motion under way goes on along the quintic, which takes it as it is.

@@ -23,13 +23,13 @@ class GoalGenerator {
   /// The goal is where the arm is, at rest; no feed-forward; posture as it is.
   void reset(const Pose& X_BT, const VectorJ& q) noexcept;
 
-  /// nullptr if a law of this kind may follow the goal, else why not.
-  const char* check(const compliance_goal_t& message, GoalType type) const noexcept {
+  /// Nothing if a law of this kind may follow the goal, else why not.
+  Refusal check(const compliance_goal_t& message, GoalType type) const noexcept {
     return limits_.check(message, type, pose_.end(), pose_.moving());
   }
-  /// nullptr: accepted, else why not. GOAL_OFFSET counts from the end of the motion under way; a
+  /// Nothing: accepted, else why not. GOAL_OFFSET counts from the end of the motion under way; a
   /// feed-forward wrench stays until the next goal, which replaces it.
-  const char* set(const compliance_goal_t& message, GoalType type) noexcept;
+  Refusal set(const compliance_goal_t& message, GoalType type) noexcept;
 
   /// True if the goal was last set at the tip, false if at the joints.
   bool at_tip() const noexcept { return at_tip_; }

@@ -5,6 +5,7 @@
 
 #include "controller/laws/law.h"
 #include "controller/model/pose.h"
+#include "controller/refusal.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {
@@ -30,19 +31,18 @@ class GoalLimits {
 
   explicit GoalLimits(const Robot& robot);
 
-  /// nullptr if a law that follows `type` may have the goal, else why not. `end`: where the goal's
+  /// Nothing if a law that follows `type` may have the goal, else why not. `end`: where the goal's
   /// present motion ends, from which offsets count; `moving`: it is under way.
-  const char* check(const compliance_goal_t& message, GoalType type, const Pose& end,
-                    bool moving) const noexcept;
+  Refusal check(const compliance_goal_t& message, GoalType type, const Pose& end,
+                bool moving) const noexcept;
 
   /// Least time between two poses, or two joint positions, s; `limited`: with a duration given.
   double pose_time(const Pose& from, const Pose& to, bool limited) const noexcept;
   double joint_time(const VectorJ& from, const VectorJ& to, bool limited) const noexcept;
 
  private:
-  const char* check_tip(const compliance_goal_t& message, const Pose& end,
-                        bool moving) const noexcept;
-  const char* check_joints(const double* q) const noexcept;
+  Refusal check_tip(const compliance_goal_t& message, const Pose& end, bool moving) const noexcept;
+  Refusal check_joints(const double* q) const noexcept;
 
   VectorJ position_min_;
   VectorJ position_max_;

@@ -45,7 +45,7 @@ void GoalTracker::hand_over(GoalType from, GoalType to, const TaskRows& rows,
 }
 
 GoalTracker::Set GoalTracker::set(const compliance_goal_t& message, GoalType type) noexcept {
-  if (const char* reason = generator_.check(message, type)) return {reason};
+  if (const Refusal refusal = generator_.check(message, type)) return {refusal};
   const bool wrench_alone = message.kind == compliance_goal_t::GOAL_WRENCH;
   const bool to_tip =
       wrench_alone ? generator_.at_tip() : message.kind != compliance_goal_t::GOAL_JOINT;

@@ -28,7 +28,7 @@ class GoalTracker {
   void stop(double duration_s) noexcept { generator_.stop(duration_s); }
 
   struct Set {
-    const char* refusal;    ///< nullptr: accepted
+    Refusal refusal;        ///< nothing: accepted
     bool switched = false;  ///< from the tip to the joints or back: the torque has to be blended
   };
   Set set(const compliance_goal_t& message, GoalType type) noexcept;

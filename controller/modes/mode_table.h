@@ -43,9 +43,10 @@ enum class Event : std::uint8_t {
   kDriveNotOn,      ///< the drives were asked for and did not come
   kStrayed,         ///< held, but it moves away
   kEncoderStopped,  ///< it must be moving, but its encoder does not count
+  kEnergy,          ///< the arm moves with energy that its torques have not given it
   kEstopPressed,
 };
-inline constexpr int kEvents = 17;
+inline constexpr int kEvents = 18;
 
 struct Transition {
   Mode from;

@@ -50,13 +50,13 @@ class StartWatch {
       const bool free = joint.start >= joint.least_free && joint.start <= joint.most_free;
       joint.most = (joint.elastic || !free ? kMostPushed : kMost) + kStopping_s * fastest;
     }
-    end_ns_ = state.time_ns + kWatched_ns;
+    start_ns_ = state.time_ns;
   }
-  void end() noexcept { end_ns_.reset(); }
+  void end() noexcept { start_ns_.reset(); }
 
   /// The joint that has moved away; -1: none.
   int strayed(const joint_state_t& state) noexcept {
-    if (!end_ns_ || state.time_ns > *end_ns_) {
+    if (!start_ns_ || state.time_ns - *start_ns_ > kWatched_ns) {
       end();
       return -1;
     }
@@ -76,7 +76,7 @@ class StartWatch {
     double most;
   };
   std::array<Joint, kMaxJoints> joints_{};
-  std::optional<std::int64_t> end_ns_;
+  std::optional<std::int64_t> start_ns_;
 };
 
 }  // namespace limber::controller

@@ -62,26 +62,32 @@ void Supervisor::watch_drives() noexcept {
   }
 }
 
-const char* Supervisor::on_mode(const mode_request_t& request) noexcept {
+Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
   if (request.request == mode_request_t::REQUEST_STOP) {  // from anybody
     raise(Event::kRequestStop);
-    return nullptr;
+    return {};
   }
   if (request.request == mode_request_t::REQUEST_RELEASE) {
-    if (request.client == 0 || request.client != lease_) return "the lease is not this client's";
+    if (request.client == 0 || request.client != lease_)
+      return {request_answer_t::REFUSED_LEASE, "the lease is not this client's"};
     lease_ = 0;
-    return nullptr;
+    return {};
   }
-  if (const char* reason = check_client(request.client)) return reason;
+  if (const Refusal refusal = check_client(request.client)) return refusal;
   const std::optional<Event> event = event_of(request.request);
-  if (!event) return "the request is none of idle, hold, active, stop, acknowledge, release";
+  if (!event)
+    return {request_answer_t::REFUSED_MALFORMED,
+            "the request is none of idle, hold, active, stop, acknowledge, release"};
   if (event == Event::kRequestAcknowledge && steady_ < kSteadyStates) {
-    return "the cause is not gone: the states are not steady yet";
+    return {request_answer_t::REFUSED_CAUSE_REMAINS,
+            "the cause is not gone: the states are not steady yet"};
   }
   if (event == Event::kRequestAcknowledge && stop_pressed_)
-    return "the emergency stop is pressed, or its input is silent";
-  if (event == Event::kRequestActive && !engaged_) return "ACTIVE is entered from HOLD, drives on";
-  if (!raise(*event)) return "not in this mode";
+    return {request_answer_t::REFUSED_CAUSE_REMAINS,
+            "the emergency stop is pressed, or its input is silent"};
+  if (event == Event::kRequestActive && !engaged_)
+    return {request_answer_t::REFUSED_MODE, "ACTIVE is entered from HOLD, drives on"};
+  if (!raise(*event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
   if (event == Event::kRequestAcknowledge) {
     reason_ = controller_status_t::REASON_NONE;
     reason_joint_ = -1;
@@ -89,7 +95,7 @@ const char* Supervisor::on_mode(const mode_request_t& request) noexcept {
   }
   if (event == Event::kRequestIdle) idle_requested_ = true;
   take_lease(request.client);
-  return nullptr;
+  return {};
 }
 
 bool Supervisor::not_yet(const mode_request_t& request) const noexcept {
@@ -99,11 +105,12 @@ bool Supervisor::not_yet(const mode_request_t& request) const noexcept {
   return request.request == mode_request_t::REQUEST_ACTIVE && mode_ == Mode::kHold && !engaged_;
 }
 
-const char* Supervisor::check_client(std::int64_t client) const noexcept {
-  if (client == 0) return "client must not be 0";
-  if (lease_ == 0 || client == lease_ || lease_is_over()) return nullptr;
-  return "another client holds the lease: until it releases it, or, outside ACTIVE, has requested "
-         "nothing for 10 s; a stop is taken from anybody";
+Refusal Supervisor::check_client(std::int64_t client) const noexcept {
+  if (client == 0) return {request_answer_t::REFUSED_CLIENT, "client must not be 0"};
+  if (lease_ == 0 || client == lease_ || lease_is_over()) return {};
+  return {request_answer_t::REFUSED_LEASE,
+          "another client holds the lease: until it releases it, or, outside ACTIVE, has requested "
+          "nothing for 10 s; a stop is taken from anybody"};
 }
 
 bool Supervisor::lease_is_over() const noexcept {

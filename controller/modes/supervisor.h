@@ -7,6 +7,7 @@
 
 #include "controller/modes/mode_table.h"
 #include "controller/modes/state_judge.h"
+#include "controller/refusal.h"
 
 namespace limber::controller {
 
@@ -26,12 +27,12 @@ class Supervisor {
   StateJudgement on_state(const joint_state_t& state) noexcept;
   /// No new state for too long: the next one may have any number.
   void forget_sequence() noexcept { judge_.forget_sequence(); }
-  /// nullptr: obeyed, else why not.
-  const char* on_mode(const mode_request_t& request) noexcept;
+  /// Nothing: obeyed, else why not.
+  Refusal on_mode(const mode_request_t& request) noexcept;
   /// Too early: the request would be refused because controller or drives are still starting.
   bool not_yet(const mode_request_t& request) const noexcept;
-  /// nullptr if the client may send goals and gains: it holds the lease, or nobody does.
-  const char* check_client(std::int64_t client) const noexcept;
+  /// Nothing if the client may send goals and gains: it holds the lease, or nobody does.
+  Refusal check_client(std::int64_t client) const noexcept;
   /// The client was obeyed: the lease is its from now on.
   void take_lease(std::int64_t client) noexcept {
     lease_ = client;

@@ -7,7 +7,7 @@
 
 #include "drivers/can/can_bus.h"
 #include "drivers/can/datagram_batch.h"
-#include "drivers/can/file_descriptor.h"
+#include "common/file_descriptor.h"
 
 namespace limber {
 

@@ -11,7 +11,7 @@
 #include <array>
 #include <cstring>
 
-#include "drivers/can/file_descriptor.h"
+#include "common/file_descriptor.h"
 
 namespace limber {
 namespace {

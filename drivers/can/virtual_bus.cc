@@ -1,7 +1,6 @@
 #include "drivers/can/virtual_bus.h"
 
 #include <arpa/inet.h>
-#include <linux/filter.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -13,6 +12,7 @@
 #include <cstring>
 
 #include "common/config_error.h"
+#include "common/multicast_socket.h"
 #include "drivers/can/datagram_bus.h"
 #include "drivers/can/virtual_frame.h"
 
@@ -27,84 +27,10 @@ constexpr std::size_t kLongestDatagramBytes = 1024;  // ours have at most 256; o
   throw ConfigError("virtual:" + name + ": " + problem);
 }
 
-[[noreturn]] void refuse_with_errno(const std::string& name, const std::string& attempt) {
-  if (errno == ENETUNREACH || errno == ENODEV || errno == EADDRNOTAVAIL) {
-    refuse_bus(name,
-               "there is no multicast route on this machine. Without a network it needs:\n"
-               "  sudo ip link set lo multicast on\n  sudo ip route add 224.0.0.0/4 dev lo");
-  }
-  refuse_bus(name, attempt + ": " + std::strerror(errno));
-}
-
 std::uint32_t fnv1a(const std::string& text) {
   std::uint32_t hash = 2166136261U;
   for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619U;
   return hash;
-}
-
-FileDescriptor open_udp(const std::string& name) {
-  FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (socket.get() < 0) refuse_with_errno(name, "cannot open a socket");
-  return socket;
-}
-
-template <typename Value>
-void set(const std::string& name, int socket, int level, int option, const Value& value) {
-  if (setsockopt(socket, level, option, &value, sizeof(value)) != 0) {
-    refuse_with_errno(name, "cannot set up the socket");
-  }
-}
-
-const sockaddr* generic(const sockaddr_in* address) {
-  return reinterpret_cast<const sockaddr*>(address);
-}
-
-FileDescriptor open_receiver(const std::string& name, const sockaddr_in& group) {
-  FileDescriptor socket = open_udp(name);
-  set(name, socket.get(), SOL_SOCKET, SO_REUSEADDR, 1);
-  set(name, socket.get(), SOL_SOCKET, SO_REUSEPORT, 1);
-  set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
-  prepare_receive(socket.get());
-  // Bound to the group, not to any address: other buses on the same port stay out.
-  if (bind(socket.get(), generic(&group), sizeof(group)) != 0) {
-    refuse_with_errno(name, "cannot bind to port " + std::to_string(ntohs(group.sin_port)));
-  }
-  // No interface named: the kernel joins where its route to the group leads, and sent frames take
-  // the same route.
-  set(name, socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, ip_mreqn{group.sin_addr, {}, 0});
-  return socket;
-}
-
-/// Sends from a port of its own, by which our frames are distinguished from all others. Not
-/// connected: the kernel would fix a source address, and then prefer that address's interface to
-/// the route.
-FileDescriptor open_sender(const std::string& name) {
-  FileDescriptor socket = open_udp(name);
-  set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_TTL, 0);
-  set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_LOOP, 1);
-  sockaddr_in any{};
-  any.sin_family = AF_INET;
-  if (bind(socket.get(), generic(&any), sizeof(any)) != 0)
-    refuse_with_errno(name, "cannot bind a port to send from");
-  return socket;
-}
-
-/// Multicast brings a sender's datagrams back to its own host, where a port has one owner. The
-/// kernel drops ours here, before they wake anybody up.
-void drop_own(const std::string& name, int receiver, int sender) {
-  sockaddr_in own{};
-  socklen_t size = sizeof(own);
-  if (getsockname(sender, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
-    refuse_with_errno(name, "cannot read the port to send from");
-  }
-  constexpr std::uint32_t kSourcePort = 0;  // a UDP socket's filter sees the UDP header first
-  std::array<sock_filter, 4> program = {{
-      BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohs(own.sin_port), 0, 1),
-      BPF_STMT(BPF_RET | BPF_K, 0),
-      BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFFU),
-  }};
-  set(name, receiver, SOL_SOCKET, SO_ATTACH_FILTER, sock_fprog{program.size(), program.data()});
 }
 
 class VirtualBus final : public DatagramBus {
@@ -115,9 +41,10 @@ class VirtualBus final : public DatagramBus {
     group.sin_family = AF_INET;
     group.sin_port = htons(virtual_bus_port());
     inet_pton(AF_INET, virtual_bus_group(name).c_str(), &group.sin_addr);
-    receiver_ = open_receiver(name, group);
-    sender_ = open_sender(name);
-    drop_own(name, receiver_.get(), sender_.get());
+    MulticastSockets sockets = open_multicast("virtual:" + name, group, 0);
+    prepare_receive(sockets.receiver.get());
+    receiver_ = std::move(sockets.receiver);
+    sender_ = std::move(sockets.sender);
     outgoing_.set_destination(group);
   }
 

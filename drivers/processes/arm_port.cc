@@ -15,8 +15,8 @@ ArmPort::ArmPort(const Robot& robot, const ArmDriverOptions& options, LcmPort* u
     : lockstep_(options.lockstep),
       user_plane_(user_plane),
       reporter_(reporter),
-      arm_plane_(arm_plane_url()) {
-  arm_plane_.subscribe<joint_command_t>(channels::kJointTorque, 30,
+      arm_plane_(arm_plane_url(), ArmPlaneEnd::kDriver) {
+  arm_plane_.subscribe<joint_command_t>(channels::kJointTorque,
                                         [this](const joint_command_t& c) { on_command(c); });
   for (const BusConfig& bus : robot.buses) {
     buses_.push_back(

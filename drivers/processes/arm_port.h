@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "common/arm_plane/arm_plane.h"
 #include "common/lcm_port.h"
 #include "drivers/arm_driver.h"
 #include "drivers/can/can_bus.h"
@@ -20,8 +21,7 @@
 
 namespace limber {
 
-/// LCM's receive path and messages on errors may allocate; all else is free of it after
-/// construction.
+/// Messages on errors may allocate; all else is free of it after construction.
 class ArmPort {
  public:
   /// Opens the arm plane and the buses and builds the driver. `user_plane` and `reporter` outlive
@@ -44,6 +44,8 @@ class ArmPort {
   /// Reads commands until one answers the state published last (true) or the deadline has come.
   bool wait_for_answer(std::int64_t deadline_ns);
   void publish_status();
+  /// Keeps what goes over the arm plane; outlives this. Set-up only.
+  void set_black_box(BlackBox* box) { arm_plane_.set_black_box(box); }
 
   /// DRIVER_STATUS as published last. `realtime_priority` is the process's to set.
   driver_status_t& status() noexcept { return status_; }
@@ -57,7 +59,7 @@ class ArmPort {
   bool lockstep_;
   LcmPort* user_plane_;
   StateReporter* reporter_;
-  LcmPort arm_plane_;
+  ArmPlane arm_plane_;
   std::vector<std::unique_ptr<CanBus>> buses_;
   std::vector<CanBus*> bus_pointers_;
   std::unique_ptr<ArmDriver> driver_;

@@ -5,34 +5,15 @@
 #include <array>
 #include <chrono>
 
+#include "common/problem_text.h"
+#include "drivers/drives_text.h"
+
 namespace limber {
 namespace {
 
-constexpr std::array kStateNames = {"configuring", "off",  "enabling", "on",
-                                    "fallback",    "damp", "fault"};
-constexpr std::array kFaultNames = {
-    "none",
-    "controller lost",
-    "commands refused",
-    "replies lost",
-    "drive error",
-    "configuration wrong",
-    "position limit",
-    "velocity limit",
-    "bus lost",
-    "overruns",
-    "requested",
-    "replies doubled or unreadable: is another motor on this id, or a log replayed?",
-    "somebody else commands a drive of this arm, or writes its settings: stop the other program",
-    "feedback contradicts itself",
-    "emergency stop: release it, then acknowledge"};
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 
-template <typename Names>
-std::string name_in(const Names& names, int index) {
-  const auto i = static_cast<std::size_t>(index);
-  return i < names.size() ? names[i] : "unknown";
-}
+int fault_of(std::uint64_t packed) noexcept { return static_cast<int>(packed >> 8 & 0xFF); }
 
 }  // namespace
 
@@ -62,10 +43,14 @@ void StateReporter::stop() {
 
 void StateReporter::report_changes(std::uint64_t reported, std::uint64_t noted) const {
   const bool first_time = reported == kNothing;
-  if (first_time || (reported & ~kSensorError) != (noted & ~kSensorError)) report(noted);
+  const int known_fault = first_time ? joint_state_t::FAULT_NONE : fault_of(reported);
+  if (first_time || (reported & ~kSensorError) != (noted & ~kSensorError))
+    report(noted, known_fault);
   const bool was_lost = !first_time && (reported & kSensorError) != 0;
   const bool lost = (noted & kSensorError) != 0;
-  if (lost && !was_lost) spdlog::warn("tip sensor: does not answer, or is beyond its range");
+  if (lost && !was_lost)
+    spdlog::warn("warning: {}",
+                 problem_text(problems::kSensor, joint_state_t::SENSOR_ERROR, "", ""));
   if (!lost && was_lost) spdlog::info("tip sensor: back");
 }
 
@@ -80,22 +65,19 @@ void StateReporter::report_warnings(std::array<DriveWarning, kMaxMotors>* report
   }
 }
 
-void StateReporter::report(std::uint64_t packed) const {
+void StateReporter::report(std::uint64_t packed, int known_fault) const {
   const int state = static_cast<int>(packed & 0xFF);
-  const int fault = static_cast<int>(packed >> 8 & 0xFF);
+  const int fault = fault_of(packed);
   const auto joint = static_cast<std::size_t>(packed >> 16 & 0xFF);
-  if (fault == joint_state_t::FAULT_NONE) {
-    spdlog::info("drives: {}", name_in(kStateNames, state));
-    return;
-  }
+  if (known_fault == fault) return spdlog::info(drives_text_again(state, fault));
   const auto detail = static_cast<std::uint16_t>(packed >> 32U);
   const bool named = joint < joints_.size();
   const int of_joint = named ? static_cast<int>(joint) : -1;
   const std::string text = fault_text_ ? fault_text_(fault, of_joint, detail) : "";
-  const std::string where = named ? " (" + joints_[joint] + ")" : "";
-  const std::string cause = text.empty() ? "" : ": " + text;
-  spdlog::warn("drives: {}, because of: {}{}{}", name_in(kStateNames, state),
-               name_in(kFaultNames, fault), where, cause);
+  spdlog::info(drives_text(state, fault, named ? joints_[joint] : "", text));
+  const Problem* problem = find_problem(problems::kDriver, fault);
+  if (problem != nullptr && fault != joint_state_t::FAULT_REQUESTED && on_fault_)
+    on_fault_(problem->code);
 }
 
 }  // namespace limber

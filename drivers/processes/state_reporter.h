@@ -33,6 +33,11 @@ class StateReporter {
   using WarningText = std::function<std::string(int motor, const DriveWarning& warning)>;
   void set_warning_text(WarningText text) { warning_text_ = std::move(text); }
 
+  /// Called from the thread when the drives have a new fault, with its code, such as
+  /// driver.VELOCITY; not for driver.REQUESTED. Set before the first note().
+  using OnFault = std::function<void(const char* code)>;
+  void set_on_fault(OnFault call) { on_fault_ = std::move(call); }
+
   /// What motor 0, 1, .. is to be looked at for; a line for each change. Allowed inside the cycle.
   void note_warning(int motor, const DriveWarning& warning) noexcept {
     warnings_[static_cast<std::size_t>(motor)].store(warning, std::memory_order_release);
@@ -53,11 +58,12 @@ class StateReporter {
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(fault)) << 8 |
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(joint)) << 16;
   }
-  void report(std::uint64_t packed) const;
+  void report(std::uint64_t packed, int known_fault) const;
   void report_changes(std::uint64_t reported, std::uint64_t noted) const;
 
   std::vector<std::string> joints_;
   FaultText fault_text_;
+  OnFault on_fault_;
   void report_warnings(std::array<DriveWarning, kMaxMotors>* reported) const;
 
   static_assert(std::atomic<DriveWarning>::is_always_lock_free);

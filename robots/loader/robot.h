@@ -138,6 +138,8 @@ struct Robot {
   double rate_hz = 1000.0;
   /// Net power the motors may put into the arm; infinite: no limit.
   double power_limit_W = std::numeric_limits<double>::infinity();
+  /// Kinetic energy that may come from elsewhere than the motors: controller/modes/energy_watch.h.
+  double energy_limit_J = 2.0;
   std::vector<BusConfig> buses;
   std::vector<JointConfig> joints;
   DefaultGains gains;
@@ -147,6 +149,11 @@ struct Robot {
   std::optional<EmergencyStopConfig> emergency_stop;
 
   int size() const { return static_cast<int>(joints.size()); }
+  std::vector<std::string> joint_names() const {
+    std::vector<std::string> names;
+    for (const JointConfig& joint : joints) names.push_back(joint.name);
+    return names;
+  }
   int motors() const {
     int count = 0;
     for (const JointConfig& joint : joints) count += joint.motors();

@@ -298,6 +298,8 @@ TEST(ObedienceTest, ThirdRefusalWithinATenthOfASecondIsAHold) {
     EXPECT_EQ(arm.state->drive_state, refusal < 3 ? kOn : kFallback);
   }
   EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_COMMAND_REFUSED + 0);
+  EXPECT_EQ(arm.driver->fault_text(arm.state->fault, -1, arm.driver->fault_detail()),
+            "gate.NOT_FINITE: a torque of the command is not a finite number");
 }
 
 TEST(ObedienceTest, AnotherControllerWaitsForTheFirstToBeSilent) {

@@ -1,5 +1,5 @@
-// Not a target: reads inputs of `messages` from standard input, each behind its length (four bytes,
-// little-endian), and writes what C++ makes of each in the same form, or the length FFFFFFFF for a
+// Not a target: reads messages from standard input, each behind its length (four bytes,
+// little-endian) and the number of its type (one byte, in that length), and writes what C++ makes of each in the same form, or the length FFFFFFFF for a
 // refusal. For the comparison with Python.
 #include <cstdio>
 
@@ -12,7 +12,7 @@ int main() {
   while (std::fread(&size, sizeof(size), 1, stdin) == 1) {
     std::vector<std::uint8_t> input(size);
     if (size == 0 || std::fread(input.data(), 1, size, stdin) != size) return 1;
-    const auto again = fuzz::decoded_and_encoded(input[0], std::span(input).subspan(1));
+    const auto again = fuzz::message_type_of(input[0]).encoded_again(std::span(input).subspan(1));
     const auto length = again ? static_cast<std::uint32_t>(again->size()) : 0xFFFFFFFFU;
     std::fwrite(&length, sizeof(length), 1, stdout);
     if (again) std::fwrite(again->data(), 1, again->size(), stdout);

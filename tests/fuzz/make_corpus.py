@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/fuzz/make_corpus.py
 
-Frames are those of short runs of the lab. Inputs that are there already stay, so what a fuzzer
-found and somebody kept is never lost.
+Frames are those of short runs of the lab. Inputs that this script does not write, such as what a
+fuzzer found and somebody kept (found-...), stay.
 """
 
 import re
@@ -59,8 +59,7 @@ def run(scenario: str, folder: Path) -> tuple[list[str], Path]:
 def keep(target: str, name: str, data: bytes) -> None:
     path = CORPUS / target / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    if not path.exists():
-        path.write_bytes(data)
+    path.write_bytes(data)
 
 
 def of_first_motor(frames: Iterable[Frame], is_its: Callable[[int], bool]) -> list[Frame]:
@@ -162,16 +161,28 @@ def patches(*changes: tuple[int, bytes]) -> bytes:
     return bytes([len(changes)]) + b"".join(parts)
 
 
+def behind_fingerprint(data: bytes) -> bytes:
+    return data[8:]
+
+
 def message_inputs(logs: list[Path]) -> None:
     names = sorted(path.stem for path in (ROOT / "lcmtypes").glob("*.lcm"))
     for number, name in enumerate(names):
-        keep("messages", name, bytes([number]) + messages.message_class(name)().encode())
+        keep(
+            "messages",
+            name,
+            bytes([number]) + behind_fingerprint(messages.message_class(name)().encode()),
+        )
     for log in logs:
         for channel, data in last_of_each_channel(log):
             row = messages.channels().get(channel)
             if row:
                 kind = names.index(row.type_name)
-                keep("messages", f"{row.type_name}-{log.stem}", bytes([kind]) + data)
+                keep(
+                    "messages",
+                    f"{row.type_name}-{log.stem}",
+                    bytes([kind]) + behind_fingerprint(data),
+                )
     half = struct.pack(">d", 0.5)
     nan = struct.pack(">d", float("nan"))
     tau = 36  # of joint_command_t, behind its fingerprint

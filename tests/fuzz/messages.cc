@@ -1,5 +1,6 @@
 // Every type of message: bytes are read or refused, and what was read can be encoded. The first
-// byte says which type; tests/fuzz/test_messages_alike.py asks Python the same.
+// byte is the type, the rest the message behind its fingerprint; tests/fuzz/test_messages_alike.py
+// compares with Python.
 #include "tests/fuzz/support/message_types.h"
 #include "tests/fuzz/support/require.h"
 
@@ -7,8 +8,8 @@ using namespace limber;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const std::span<const std::uint8_t> bytes(data + 1, size - 1);
-  const auto again = fuzz::decoded_and_encoded(data[0], bytes);
+  const fuzz::Bytes bytes = fuzz::with_fingerprint(std::span(data, size));
+  const auto again = fuzz::message_type_of(data[0]).encoded_again(bytes);
   if (again) fuzz::require(again->size() <= bytes.size(), "an encoding does not grow");
   return 0;
 }

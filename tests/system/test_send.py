@@ -119,7 +119,9 @@ def test_command_line(standing):
     assert "did you mean 'salisbury'?" in wrong.stderr
     unfit = limber_send("gains: {law: admittance}")
     assert unfit.returncode == 2
-    assert "refused by the controller: admittance needs a contact source" in unfit.stderr
+    assert (
+        "refused by the controller: request.LAW: admittance needs a contact source" in unfit.stderr
+    )
     stranger = limber_send("mode: idle", client=5)
     assert stranger.returncode == 2
     assert "another client holds the lease" in stranger.stderr

@@ -26,4 +26,4 @@ def test_no_race_from_the_start_to_a_fault_and_the_end(programs, races, tmp_path
     told = (tmp_path / "out" / "limber-driver.log").read_text(encoding="utf-8")
     assert not races(), "\n".join(races())
     assert done.returncode == 0, done.stdout + done.stderr + told
-    assert "drives: on" in told and "drive error" in told
+    assert "drives: on" in told and "driver.DRIVE_ERROR" in told

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "tests/support/mutation.h"
 
@@ -185,8 +186,60 @@ TEST(Check, WarnsOfGainsThatALawRefuses) {
   const Outcome outcome = check("scenario " + file);
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_FALSE(contains(outcome.output, "gains at 1 s will be refused")) << outcome.output;
-  EXPECT_TRUE(contains(outcome.output, "warning: gains at 2 s will be refused: K_q is too soft"))
+  EXPECT_TRUE(contains(outcome.output,
+                       "warning: gains at 2 s will be refused: request.LAW: K_q is too soft"))
       << outcome.output;
+}
+
+// The whole timeline goes through the controller's own checks, in its order and at its times.
+TEST(Check, ForetellsEveryRequestThatIsRefused) {
+  struct Case {
+    const char* name;
+    std::string timeline;
+    std::string expect;  // "": nothing is refused
+  };
+  const std::string start = "  - {at_s: 0.3, mode: hold}\n  - {at_s: 0.8, mode: active}\n";
+  const std::string offset = "goal: {offset_m: [0.05, 0, 0], duration_s: 1}}\n";
+  const std::string soft = "  - {at_s: 0.9, gains: {law: joint_pd}}\n";
+  const std::string joints = "goal: {joints_rad: [0.4, 1.0], duration_s: 1}}\n";
+  const Case cases[] = {
+      {"a joint goal under the default law", start + "  - {at_s: 1.0, " + joints,
+       "goal at 1 s will be refused: request.GOAL_KIND"},
+      {"under a law that follows it", start + soft + "  - {at_s: 1.0, " + joints, ""},
+      {"a goal before ACTIVE", "  - {at_s: 0.3, mode: hold}\n  - {at_s: 0.5, " + offset,
+       "goal at 0.5 s will be refused: request.MODE"},
+      {"active without hold", "  - {at_s: 0.3, mode: idle}\n  - {at_s: 0.8, mode: active}\n",
+       "mode at 0.8 s will be refused: request.MODE"},
+      {"nothing wrong", start + "  - {at_s: 1.0, " + offset + "  - {at_s: 3.0, mode: stop}\n", ""},
+      {"a goal while it stops", start + "  - {at_s: 1.0, mode: stop}\n  - {at_s: 1.1, " + offset,
+       "goal at 1.1 s will be refused: request.MODE"},
+      {"after an injected fault nobody knows",
+       start + "  - {at_s: 1.0, fault: {joint: shoulder, kind: drive_error}}\n  - {at_s: 1.5, " +
+           joints,
+       ""},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const testing::TemporaryFolder folder;
+    const Outcome outcome = check(
+        "scenario " +
+        folder.write(
+            "s.yaml",
+            "format: limber-scenario/1\nrobot: planar2r\nduration_s: 5\ntimeline:\n" + c.timeline));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(contains(outcome.output, "refused"), !c.expect.empty()) << outcome.output;
+    EXPECT_TRUE(contains(outcome.output, c.expect)) << outcome.output;
+  }
+}
+
+TEST(Check, NoShippedScenarioIsRefused) {
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::string(LIMBER_SOURCE_DIR) + "/scenarios")) {
+    if (file.path().extension() != ".yaml") continue;
+    const Outcome outcome = check("scenario " + file.path().string());
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_FALSE(contains(outcome.output, "refused")) << outcome.output;
+  }
 }
 
 // planar2r: two uniform rods, l = (0.5, 0.4) m, m = (4, 2.5) kg, elbow at 1 rad. The joint modes

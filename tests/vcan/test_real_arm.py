@@ -4,12 +4,19 @@ The arm is the simulator in a network of its own, behind a cable from can0 to ca
 frames connects the two.
 """
 
+import configparser
+import os
+import shlex
+import shutil
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
 import yaml
 
+from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import BIN, ROOT
 
 # Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
@@ -113,3 +120,65 @@ def test_a_private_network_is_refused(folder, arm):
     run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--private", "--out", "out")
     assert run.returncode == 2
     assert "--private" in run.stderr
+
+
+class Services:
+    """What systemd makes of the units that `limber service` has written, without its sandbox."""
+
+    def __init__(self, folder: Path) -> None:
+        self.units = {path.name: path.read_text() for path in folder.glob("*.service")}
+        (line,) = [
+            line
+            for line in (folder / "limber-my_arm.tmpfiles.conf").read_text().splitlines()
+            if line.startswith("d ")
+        ]
+        self.run_folder = Path(line.split()[1])
+        self.run_folder.mkdir(mode=0o770)
+        self.processes: dict[str, subprocess.Popen] = {}
+
+    def start(self, role: str) -> None:
+        unit = configparser.ConfigParser(interpolation=None, strict=False)
+        unit.optionxform = str
+        unit.read_string(self.units[f"limber-my_arm-{role}.service"])
+        name, _, value = unit["Service"]["Environment"].partition("=")
+        assert unit["Service"]["Restart"] == "on-failure"
+        self.processes[role] = subprocess.Popen(
+            shlex.split(unit["Service"]["ExecStart"]), env=os.environ | {name: value}
+        )
+
+    def kill(self, role: str) -> None:
+        self.processes[role].kill()
+        self.processes[role].wait()
+
+    def close(self) -> None:
+        for process in self.processes.values():
+            process.kill()
+            process.wait()
+        shutil.rmtree(self.run_folder)
+
+
+def test_services_that_die_come_back_without_motion(folder, arm, stack):
+    change_the_word(folder)
+    written = limber(folder, "service", "my_arm", "--out", "service")
+    assert written.returncode == 0, written.stderr
+    services = Services(folder / "service")
+    try:
+        for role in ("driver", "controller"):
+            services.start(role)
+        stack.until(lambda: stack.mode == Status.MODE_IDLE, 30, "IDLE after the start")
+        stack.bring_to(Status.MODE_HOLD)
+        for role in ("driver", "controller"):
+            services.kill(role)
+            services.start(role)
+            stack.until(
+                lambda: stack.state.drive_state in (State.DRIVE_OFF, State.DRIVE_FAULT),
+                30,
+                f"drives without power after the {role}'s restart",
+            )
+            time.sleep(1.0)
+            assert stack.mode in (Status.MODE_IDLE, Status.MODE_INIT, Status.MODE_FAULT)
+            assert stack.state.drive_state in (State.DRIVE_OFF, State.DRIVE_FAULT)
+            stack.acknowledge()
+            stack.bring_to(Status.MODE_HOLD)
+    finally:
+        services.close()

@@ -106,8 +106,10 @@ TEST_F(Unplugged, TakenOutAndPutBack) {
   arm.cycle(kKeep);
   EXPECT_NE(arm.state.drive_state, kOn);
   EXPECT_EQ(arm.state.fault, +joint_state_t::FAULT_BUS);
-  EXPECT_EQ(arm.driver->fault_text(arm.state.fault, -1, arm.driver->fault_detail()),
-            "can0: the interface is down or gone; was the adapter unplugged?");
+  EXPECT_EQ(
+      arm.driver->fault_text(arm.state.fault, -1, arm.driver->fault_detail()),
+      "can0: the interface is down or gone; plug it in and bring it up; `limber doctor ROBOT` "
+      "prints the command");
   ASSERT_TRUE(arm.run_until(kFault, kKeep));
   run(kPlug);
   ASSERT_TRUE(arm.sends_again());

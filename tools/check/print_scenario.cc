@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
-#include "tools/check/gains_report.h"
 #include "tools/check/json.h"
 #include "tools/check/print.h"
+#include "tools/check/refusal_report.h"
 #include "tools/check/stiffness_report.h"
 
 namespace limber {
@@ -64,13 +63,6 @@ std::string describe(const TimedMessage& timed) {
 const char* mode_name(const Scenario& scenario) {
   return scenario.lockstep ? "lockstep" : "realtime";
 }
-std::vector<std::string> warnings(const Scenario& scenario, const LoadedRobot& robot,
-                                  const std::vector<StiffnessReport>& reports) {
-  std::vector<std::string> all = stiffness_warnings(reports, robot.robot.rate_hz);
-  for (std::string& refused : refused_gains(scenario, robot)) all.push_back(std::move(refused));
-  return all;
-}
-
 const char* integrator_name(const Scenario& scenario) {
   return scenario.integrator == Integrator::kOde ? "ode" : "reference";
 }
@@ -90,8 +82,10 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
   if (!robot.robot.has_drives) return text;
   const auto reports = make_stiffness_reports(scenario, robot);
   text += stiffness_text(reports, robot.robot.rate_hz);
-  for (const std::string& warning : warnings(scenario, robot, reports))
-    text += "  warning: " + warning + "\n";
+  for (const auto& warnings :
+       {stiffness_warnings(reports, robot.robot.rate_hz), refused_requests(scenario, robot)}) {
+    for (const std::string& warning : warnings) text += "  warning: " + warning + "\n";
+  }
   return text;
 }
 
@@ -117,7 +111,8 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
                        {"start_q", json::numbers(scenario.start_q)},
                        {"timeline", json::list(timeline)},
                        {"stiffness", stiffness_json(reports)},
-                       {"warnings", json::texts(warnings(scenario, robot, reports))},
+                       {"warnings", json::texts(stiffness_warnings(reports, robot.robot.rate_hz))},
+                       {"refused", json::texts(refused_requests(scenario, robot))},
                        {"notes", json::texts(robot.notes)}}) +
          "\n";
 }

@@ -27,12 +27,15 @@ _SCALARS = {
     "double": ">f8",
 }
 FINGERPRINT = "_fingerprint"
+SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
+CLIENTS = {SCENARIO_CLIENT: "scenario", 0x48414E44: "limber send"}
 
 
 @dataclass(frozen=True)
 class Channel:
     type_name: str
     timeout_s: float
+    numbered: bool  # seq counts the sender's messages; of requests it only rises
 
 
 def _types() -> Any:
@@ -43,16 +46,21 @@ def _types() -> Any:
 
 
 @cache
-def _table() -> dict[str, Any]:
-    with open(os.path.join(_types().__path__[0], "channels.yaml"), encoding="utf-8") as file:
+def table_file(name: str) -> dict[str, Any]:
+    """A table that C++ and Python share, such as channels.yaml; the build copies it here."""
+    with open(os.path.join(_types().__path__[0], name), encoding="utf-8") as file:
         return yaml.safe_load(file)
+
+
+def _table() -> dict[str, Any]:
+    return table_file("channels.yaml")
 
 
 @cache
 def channels() -> dict[str, Channel]:
     """Channels of the user plane by name: those of a log and of `limber watch`."""
     return {
-        row.get("name", key): Channel(row["type"], row["timeout_s"])
+        row.get("name", key): Channel(row["type"], row["timeout_s"], row["rate"] != "event")
         for key, row in _table()["channels"].items()
         if row["plane"] == "user"
     }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/clock.h"
-#include "common/config_error.h"
+#include "common/lcm_port.h"
 #include "common/lcm_url.h"
 #include "common/program.h"
 #include "common/wait_readable.h"
@@ -48,13 +48,12 @@ void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Si
 int record(const std::string& path, const std::string& url, double duration_s) {
   const auto& stop = limber::stop_on_signals();
   limber::Recorder recorder(path);
-  lcm::LCM lcm(limber::checked_lcm_url(url));
-  if (!lcm.good()) throw limber::ConfigError(limber::no_multicast_route(url));
+  const auto lcm = limber::open_lcm(url);
   Sink sink{&recorder, limber::monotonic_ns(), 0, {}};
-  lcm.subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
+  lcm->subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
   spdlog::info("recording {} to {}", url, path);
   const std::int64_t start_ns = limber::monotonic_ns();
-  const int descriptor = lcm.getFileno();
+  const int descriptor = lcm->getFileno();
   std::int64_t stopped_ns = 0;
   while (true) {
     const std::int64_t now = limber::monotonic_ns();
@@ -62,7 +61,7 @@ int record(const std::string& path, const std::string& url, double duration_s) {
       stopped_ns = now;
     if (stopped_ns != 0 && (now - sink.last_ns > kQuiet_ns || now - stopped_ns > kDrainLimit_ns))
       break;
-    if (limber::wait_readable(std::span(&descriptor, 1), now + 50'000'000)) lcm.handle();
+    if (limber::wait_readable(std::span(&descriptor, 1), now + 50'000'000)) lcm->handle();
     if (!sink.failure.empty()) throw std::runtime_error(sink.failure);
   }
   std::printf("%s\n", recorder.report().c_str());

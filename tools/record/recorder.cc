@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/config_error.h"
+#include "lcmtypes/channels.h"
 
 namespace limber {
 namespace {
@@ -37,9 +39,11 @@ void Recorder::write(std::int64_t time_us, const std::string& channel, const voi
     throw std::runtime_error(path_ + ": write failed; is the disk full?");
   ++messages_;
   bytes_ += size;
-  ChannelCount& count = channels_[channel];
+  const auto [entry, fresh] = channels_.try_emplace(channel);
+  ChannelCount& count = entry->second;
+  if (fresh) count.numbered = !std::ranges::count(channels::kUnnumbered, channel);
   ++count.messages;
-  if (size < kFingerprintBytes + 8) return;
+  if (size < kFingerprintBytes + 8 || !count.numbered) return;
   const std::int64_t seq = sequence_number(data);
   if (count.last_seq >= 0 && seq > count.last_seq + 1) count.lost += seq - count.last_seq - 1;
   count.last_seq = seq;

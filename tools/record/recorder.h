@@ -9,9 +9,10 @@
 
 namespace limber {
 
-/// Messages of one channel. Every limber message starts with its sequence number, so a gap is a
+/// Messages of one channel. What is sent at a rate starts with its sequence number, so a gap is a
 /// loss; a number that goes back is a new run of the sender.
 struct ChannelCount {
+  bool numbered = true;  ///< false of requests and their answers
   std::int64_t messages = 0;
   std::int64_t lost = 0;
   std::int64_t last_seq = -1;

@@ -10,6 +10,7 @@
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "common/overloaded.h"
+#include "common/problem_text.h"
 #include "controller/laws/registry.h"
 #include "lcmtypes/channels.h"
 #include "robots/loader/default_gains.h"
@@ -73,7 +74,7 @@ void RequestSender::send_entry(const std::string& entry) {
   if (!to_controller) return;
   if (!wait_for([this] { return answer_.has_value(); })) throw ConfigError("no controller answers");
   if (answer_->accepted == 0) {
-    throw ConfigError("refused by the controller: " + answer_->reason);
+    throw ConfigError("refused by the controller: " + refusal_text(answer_->code, answer_->reason));
   }
 }
 

@@ -19,6 +19,7 @@ const std::map<Event, int> kReasons = {
     {Event::kDriveNotOn, +Status::REASON_DRIVE_NOT_ON},
     {Event::kStrayed, +Status::REASON_STRAYED},
     {Event::kEncoderStopped, +Status::REASON_ENCODER_STOPPED},
+    {Event::kEnergy, +Status::REASON_ENERGY},
 };
 
 /// What went wrong is kept wherever it ends something; INIT has nothing to end. A stop is kept

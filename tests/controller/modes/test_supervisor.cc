@@ -32,6 +32,7 @@ const std::map<Event, std::string> kExpected = {
     {Event::kDriveNotOn, "...F...."},
     {Event::kStrayed, "...F...."},
     {Event::kEncoderStopped, "...FFF.."},
+    {Event::kEnergy, "...FFF.."},
     {Event::kEstopPressed, "EEEEEEE."},
 };
 

@@ -53,7 +53,7 @@ std::map<std::string, Misdeed> misdeeds(const JointConfig& joint, double rate_hz
            *start = state.q[0];
            *last = answer.tau[0];
          }
-         const double goal = std::min(*start + 2e-3 * cycle, joint.position_max + 0.3);
+         const double goal = std::max(*start - 2e-3 * cycle, joint.position_min - 0.3);
          const double pull = 20.0 * (goal - state.q[0]) - 1.0 * state.v[0];
          const double wanted = answer.tau_gravity[0] + std::clamp(pull, -3.0, 3.0);
          *last += std::clamp(wanted - *last, -0.9 * step, 0.9 * step);

@@ -102,4 +102,6 @@ def test_fault_names_the_joint():
     listener = listening()
     state = records("joint_state_t", 1, num_joints=2, drive_state=6, fault=3, fault_joint=1)[0]
     listener.hear("JOINT_STATE", state)
-    assert "REPLY_LOST at elbow" in text_of(listener)
+    text = text_of(listener)
+    assert text.count("driver.REPLY_LOST") == 2 and "(elbow)" in text
+    assert "To do: check power, cable" in text

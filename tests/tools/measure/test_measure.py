@@ -292,20 +292,20 @@ def test_refusals_losses_and_faults_fail_the_run(tmp_path, still):
     refused[5] = 3
     summary = measured(tmp_path, still, truth, commands_refused=refused)
     assert summary.find("commands refused").value == 3
-    assert "STALE 3" in summary.find("commands refused").note
+    assert "gate.STALE 3" in summary.find("commands refused").note
     assert not summary.passed
 
     faulty = state_of(truth)
     faulty["fault"][100:] = 3
     log = Log(write_log(tmp_path / "f.lcmlog", {"SIM_TRUTH": truth, "JOINT_STATE": faulty}))
     summary = measure(log, still, "lockstep")[0]
-    assert summary.find("faults").value == "REPLY_LOST"
+    assert summary.find("faults").value == "driver.REPLY_LOST"
     assert not summary.passed
 
     stopped = records("controller_status_t", 5, mode=6, reason=1)
     channels = {"SIM_TRUTH": truth, "JOINT_STATE": state_of(truth), "CONTROLLER_STATUS": stopped}
     summary = measure(Log(write_log(tmp_path / "c.lcmlog", channels)), still, "lockstep")[0]
-    assert summary.find("faults").value == "STATE_LOST"
+    assert summary.find("faults").value == "controller.STATE_LOST"
     assert not summary.passed
 
     gap = np.delete(truth, slice(1000, 1004))

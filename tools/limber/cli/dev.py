@@ -47,13 +47,14 @@ def test(
 
 @app.command()
 def docs() -> None:
-    """Write the tables in the docs that come from programs: gains, faults on the bus, fuzzing.
+    """Write the tables in the docs that come from programs: problems, gains, faults on the bus,
+    fuzzing.
 
     The fault matrix takes minutes: `limber faults report` writes it.
     """
-    from limber.dev import faults_doc, fuzz, gains_doc
+    from limber.dev import faults_doc, fuzz, gains_doc, troubleshooting_doc
 
-    for table in (gains_doc.TABLE, faults_doc.TABLE, fuzz.TABLE):
+    for table in (troubleshooting_doc.TABLE, gains_doc.TABLE, faults_doc.TABLE, fuzz.TABLE):
         console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
 
 

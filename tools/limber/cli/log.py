@@ -29,6 +29,26 @@ def rate(path: LogPath) -> None:
 
 
 @log_app.command()
+def events(
+    path: LogPath,
+    robot: Annotated[
+        str | None,
+        typer.Option(help="For the joints' names; default: the robot.yaml beside the log."),
+    ] = None,
+) -> None:
+    """List what happened when: modes, requests, refusals, faults, limits, pushes, contacts."""
+    from limber.live.watch import law_names
+    from limber.log import commands
+    from limber.log.events import Names
+    from limber.model.robot import load_robot
+
+    folder = path if path.is_dir() else path.parent
+    known = robot or (str(folder.resolve()) if (folder / "robot.yaml").is_file() else None)
+    joints = load_robot(known).joint_names if known is not None else []
+    commands.show_events(path, Names(joints, law_names()), console)
+
+
+@log_app.command()
 def echo(
     path: LogPath,
     channel: Annotated[str, typer.Argument(help="Such as JOINT_STATE.")],

@@ -143,6 +143,18 @@ def check(
     become("limber-check", *arguments)
 
 
+@app.command()
+def service(
+    robot: Robot,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the files.")] = Path("out/service"),
+    bus: Bus = None,
+) -> None:
+    """Write systemd units that run driver and controller of a real arm."""
+    from limber.run import service as module
+
+    raise typer.Exit(module.write(robot, tuple(bus or ()), out, console))
+
+
 def _bus_picture(arguments: list[str], path: Path) -> None:
     from limber.model.validation import run_checker
 

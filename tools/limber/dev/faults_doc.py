@@ -7,6 +7,7 @@ from typing import Any
 from limber.dev.written_table import WrittenTable
 from limber.messages import constants
 from limber.paths import ROOT, program
+from limber.problems import problem
 
 FAMILIES = {"damiao_mit": "Damiao", "moteus": "moteus", "cia402": "CiA 402"}
 COUNTERS = ("lost", "late", "invalid", "foreign")
@@ -37,14 +38,14 @@ def reaction_text(cell: dict[str, Any] | None) -> str:
 
 
 def cause_text(row: dict[str, Any]) -> str:
-    """JOINT_STATE.fault and the words behind it, of each family where they differ."""
-    causes = constants("joint_state_t", "FAULT_")
+    """The code of JOINT_STATE.fault and the words behind it, of each family where they differ."""
     found: list[str] = []
     for cell in row["families"].values():
         if cell["cycles"][1] < 0:
             continue
         words = cell["text"].replace(cell["bus"], "NAME").replace(cell["joint_name"], "JOINT")
-        text = causes[cell["cause"]] + (f": {words}" if words else "")
+        cause = problem("driver", cell["cause"])
+        text = (cause.code if cause else "none") + (f": {words}" if words else "")
         if text not in found:
             found.append(text)
     return "; ".join(found)
@@ -56,7 +57,7 @@ def cells(row: dict[str, Any]) -> list[str]:
     return [row["name"], *families, cause_text(row)]
 
 
-HEAD = ["fault", *FAMILIES.values(), "JOINT_STATE.fault: words"]
+HEAD = ["fault", *FAMILIES.values(), "code: words"]
 
 
 def _lines() -> list[str]:

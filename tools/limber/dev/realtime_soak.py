@@ -18,6 +18,7 @@ from limber.live import network
 from limber.live.client import Client
 from limber.model.robot import Robot, load_robot
 from limber.paths import output_folder, program
+from limber.problems import problem
 
 START_S = 10.0  # at most, until the drives are enabled
 PAUSE_S = 2.0  # between two goals
@@ -94,8 +95,8 @@ def _use(arm, bus, watch, children, hours, random, robot, console) -> str:
             if watch.state is None:
                 return "no JOINT_STATE"
             if watch.state["drive_state"] != drive.DRIVE_ON:
-                faults = messages.constants("joint_state_t", "FAULT_")
-                return f"the drives left ON: {faults[int(watch.state['fault'])]}"
+                cause = problem("driver", watch.state["fault"])
+                return f"the drives left ON: {cause.code if cause else 'nobody knows why'}"
             status.update(f"{(end - time.monotonic()) / 60:.1f} minutes left")
     return ""
 

@@ -12,11 +12,12 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from limber import messages, tables
+from limber import messages, problems, tables
 from limber.live.listener import Listener
 from limber.model.robot import JointInfo
 from limber.model.rotations import rotation_error
 from limber.paths import program
+from limber.problems import Problem, sentence
 
 PERIODIC = ("JOINT_STATE", "JOINT_TORQUE", "CONTROLLER_STATUS", "DRIVER_STATUS", "SIM_TRUTH")
 BAR_WIDTH = 16
@@ -44,6 +45,13 @@ def _settings(status: np.void) -> dict[str, str]:
     return settings
 
 
+def _sentences(problem: Problem, where: str) -> Text:
+    text = Text(problem.code + (f" ({where})" if where else ""), style=BAD)
+    return text.append(
+        f" {sentence(problem.what)} To do: {problem.remedy}.", style="not bold default"
+    )
+
+
 class View:
     """Draws the listener's state; `joints` give names and position limits."""
 
@@ -59,10 +67,30 @@ class View:
         panels.append(Panel(self._tip(status), title="tip", width=39))
         return Group(
             Columns(panels),
+            *self._problems(state, status),
             self._joints(state) if state is not None else Text("no JOINT_STATE yet", style=WARN),
             self._buses(self.listener.newest("DRIVER_STATUS")),
             self._channels(),
         )
+
+    def _problems(self, state: np.void | None, status: np.void | None) -> list[Text]:
+        """What is wrong now, each with a sentence and what to do."""
+        found = []
+        if state is not None:
+            found.append(self._at(problems.problem("driver", state["fault"]), state["fault_joint"]))
+            found += [(problems.problem("sensor", state["sensor_state"]), "")]
+            found += [(problems.problem("stop", state["emergency_stop"]), "")]
+        driver = self.listener.newest("DRIVER_STATUS")
+        if driver is not None:
+            states = driver["bus_state"][: int(driver["num_buses"])]
+            found += [(problems.problem("bus", s), f"bus {b + 1}") for b, s in enumerate(states)]
+        if status is not None:
+            reason = problems.problem("controller", status["reason"])
+            found.append(self._at(reason, status["reason_joint"]))
+        return [_sentences(problem, where) for problem, where in found if problem is not None]
+
+    def _at(self, problem: Problem | None, joint: int) -> tuple[Problem | None, str]:
+        return problem, self._joint_name(int(joint)) if joint >= 0 else ""
 
     def _stale(self, channel: str) -> bool:
         last = self.listener.channels[channel]
@@ -75,13 +103,13 @@ class View:
             table.add_row("mode", Text("STALE: no controller", style=BAD))
         if status is not None:
             mode = messages.constants("controller_status_t", "MODE_")[int(status["mode"])]
-            reason = messages.constants("controller_status_t", "REASON_")[int(status["reason"])]
             law = int(status["law"])
-            limits = messages.bit_names("controller_status_t", "LIMIT_", int(status["limits"]))
+            limits = [p.code for p in problems.problems_of_bits("limit", status["limits"])]
+            reason = problems.problem("controller", status["reason"])
             table.add_row("mode", Text(mode, style=GOOD if mode in ("HOLD", "ACTIVE") else WARN))
             table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
-            if reason != "NONE":
-                table.add_row("because", Text(reason, style=BAD))
+            if reason is not None:
+                table.add_row("because", Text(reason.code, style=BAD))
             table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
             for name, setting in _settings(status).items():
                 table.add_row(name, setting)
@@ -89,11 +117,10 @@ class View:
             table.add_row("drives", Text("STALE: no driver", style=BAD))
         if state is not None:
             drive = messages.constants("joint_state_t", "DRIVE_")[int(state["drive_state"])]
-            fault = messages.constants("joint_state_t", "FAULT_")[int(state["fault"])]
+            fault = problems.problem("driver", state["fault"])
             table.add_row("drives", Text(drive, style=GOOD if drive == "ON" else WARN))
-            joint = int(state["fault_joint"])
-            where = f" at {self._joint_name(joint)}" if joint >= 0 else ""
-            table.add_row("fault", Text(fault + where, style="" if fault == "NONE" else BAD))
+            shown = "none" if fault is None else fault.code
+            table.add_row("fault", Text(shown, style="" if fault is None else BAD))
             table.add_row("arm time", f"{float(state['time_ns']) * 1e-9:.1f} s")
         return table
 
@@ -124,8 +151,7 @@ class View:
         table = tables.table("<joint", ">position", "<", *numbers, "<", padding=(0, 1))
         for i in range(int(state["num_joints"])):
             q = float(state["q"][i])
-            flags = messages.bit_names("joint_state_t", "JOINT_", int(state["joint_flags"][i]))
-            wrong = [flag for flag in flags if flag in ("DRIVE_ERROR", "OUT_OF_RANGE", "WARNING")]
+            wrong = problems.problems_of_bits("joint", state["joint_flags"][i])
             age = int(state["age_cycles"][i])
             table.add_row(
                 self._joint_name(i),
@@ -136,7 +162,7 @@ class View:
                 f"{float(state['tau_applied'][i]):+.2f}",
                 f"{float(state['temperature_degC'][i]):.0f}",
                 Text(f"{age}", style=BAD if age > 1 else ""),
-                Text(" ".join(wrong), style=BAD),
+                Text(" ".join(problem.code for problem in wrong), style=BAD),
             )
         return table
 
@@ -157,15 +183,14 @@ class View:
         table = tables.table("<bus", "<state", *of_bus, *of_joints, padding=(0, 1))
         if status is None:
             return table
-        states = messages.constants("driver_status_t", "BUS_")
         replies = [int(np.sum(status[f"replies_{how}"])) for how in ("late", "lost", "invalid")]
         for b in range(int(status["num_buses"])):
-            state = states[int(status["bus_state"][b])]
+            problem = problems.problem("bus", status["bus_state"][b])
             counts = [int(status[key][b]) for key in ("send_refused", "error_frames")]
             foreign = int(status["frames_foreign"][b])
             table.add_row(
                 f"{b + 1}",
-                Text(state.replace("_", " "), style="" if state == "GOOD" else BAD),
+                Text("good") if problem is None else Text(problem.code, style=BAD),
                 f"{float(status['bus_load_counted'][b]):.0%}",
                 f"{float(status['bus_load_predicted'][b]):.0%}",
                 *(Text(f"{n}", style=WARN if n else "") for n in (*counts, foreign)),

@@ -6,25 +6,27 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.text import Text
 
 from limber import messages, tables
 from limber.errors import InputError
-from limber.log.reader import Log
+from limber.log import events
+from limber.log.reader import Log, log_file
 from limber.paths import output_folder
 
 
 def info(path: Path, console: Console) -> None:
     log = Log(path)
     table = tables.table("<channel", "<type", ">messages", ">lost", ">undecodable", ">kB")
-    stamps = [stamp for events in log.channels.values() for stamp in events.stamps_us]
-    for name, events in sorted(log.channels.items()):
+    stamps = [stamp for channel in log.channels.values() for stamp in channel.stamps_us]
+    for name, found in sorted(log.channels.items()):
         table.add_row(
             name,
             log.type_of(name) or "unknown",
-            str(len(events)),
+            str(len(found)),
             str(log.lost(name)) if log.type_of(name) else "-",
             str(log.undecodable(name)),
-            f"{sum(events.sizes) / 1e3:.0f}",
+            f"{sum(found.sizes) / 1e3:.0f}",
         )
     duration_s = (max(stamps) - min(stamps)) * 1e-6
     console.print(f"{log.path}: {len(stamps)} messages in {duration_s:.2f} s")
@@ -46,6 +48,14 @@ def rate(path: Path, console: Console) -> None:
         cells = (1e3 / gaps_ms.mean(), median, high, gaps_ms.max())
         lost = str(log.lost(name)) if log.type_of(name) else "-"
         table.add_row(name, *(f"{value:.3f}" for value in cells), lost)
+    console.print(table)
+
+
+def show_events(path: Path, names: events.Names, console: Console) -> None:
+    table = tables.table(">s", "<who", "~what", title=f"{log_file(path)}")
+    for event in events.events(Log(path), names):
+        text = Text(event.text, style="red" if event.bad else "")
+        table.add_row(f"{event.time_s:.3f}", event.who, text)
     console.print(table)
 
 

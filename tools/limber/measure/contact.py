@@ -26,17 +26,18 @@ def contact_results(truth: np.ndarray, scenario: Scenario, tolerance: float) -> 
         Result("speed at contact", float(speed), "m/s"),
         Result("peak contact force", float(force.max()), "N"),
     ]
+    results[0].span = (t[first] - APPROACH_S, t[first])
+    results[1].span = (t[first], t[int(force.argmax())])
     steady = _steadiest(t, touching, force)
     if steady is not None and np.ptp(force[steady]) < 0.05 * force[steady].mean() + 0.1:
         depth = -((truth["p_BT"][steady] - wall.point) @ wall.normal).mean()
         predicted = wall.stiffness_N_per_m * depth
         measured = force[steady].mean()
         note = f"wall's stiffness x {depth * 1e3:.3g} mm"
-        results.append(
-            close_to(
-                "static contact force", measured, "N", predicted, tolerance * abs(predicted), note
-            )
-        )
+        allowed = tolerance * abs(predicted)
+        static = close_to("static contact force", measured, "N", predicted, allowed, note)
+        static.span = (t[steady][0], t[steady][-1])
+        results.append(static)
     return results
 
 

@@ -1,22 +1,29 @@
 """Whether a run went as it should, apart from its physics: cycles, losses, refusals, faults."""
 
+from typing import Any
+
 import numpy as np
 
 from limber import messages
-from limber.log.reader import Log
+from limber.log.reader import Log, time_s
+from limber.measure.faults import Fault
 from limber.measure.results import Result, at_most
 from limber.measure.sound import damaged
 from limber.model.scenario import Scenario
+from limber.problems import problem
 
 
-def health_results(log: Log, scenario: Scenario, recorder_lost: dict[str, int]) -> list[Result]:
+def health_results(
+    log: Log, scenario: Scenario, recorder_lost: dict[str, int], faults: list[Fault]
+) -> list[Result]:
     state, driver = log.read("JOINT_STATE"), log.read("DRIVER_STATUS")
     results = [Result("cycles", len(state))]
     realtime = len(driver) and not driver[-1]["lockstep"]
     results.append(_lost(log, recorder_lost, skipped={"JOINT_TORQUE"} if realtime else set()))
     if len(driver):
         results.extend(_driver(driver[-1], scenario))
-    results.append(_faults(state, log.read("CONTROLLER_STATUS"), scenario))
+    results.append(_requests(log, log.read("CONTROLLER_STATUS")))
+    results.append(_faults(faults, scenario))
     return results + _unsound(log)
 
 
@@ -40,9 +47,12 @@ def _lost(log: Log, recorder_lost: dict[str, int], skipped: set[str]) -> Result:
 
 def _driver(status: np.void, scenario: Scenario) -> list[Result]:
     cycles = int(status["cycles"])
-    verdicts = messages.constants("driver_status_t", "VERDICT_")
-    refused = {name: int(status["commands_refused"][i]) for i, name in verdicts.items() if i}
-    why = ", ".join(f"{name} {count}" for name, count in refused.items() if count)
+    refused = {
+        cause.code: int(count)
+        for verdict, count in enumerate(status["commands_refused"])
+        if count and (cause := problem("gate", verdict)) is not None
+    }
+    why = ", ".join(f"{code} {count}" for code, count in refused.items())
     replies = int(status["replies_lost"].sum())
     results = [
         Result("cycles without an answer", int(status["commands_missing"])),
@@ -66,19 +76,48 @@ def _driver(status: np.void, scenario: Scenario) -> list[Result]:
     ]
 
 
-def _faults(state: np.ndarray, status: np.ndarray, scenario: Scenario) -> Result:
-    """The driver's and the controller's, until the scenario is over and the drives are shut down.
-    Faults that the scenario or an operator requested are not judged.
-    """
-    end_ns = scenario.duration_s * 1e9
-    state, status = state[state["time_ns"] < end_ns], status[status["time_ns"] < end_ns]
-    seen = _names("joint_state_t", "FAULT_", state["fault"])
-    in_fault = status["mode"] == messages.message_class("controller_status_t").MODE_FAULT
-    seen += _names("controller_status_t", "REASON_", status["reason"][in_fault])
-    passed = None if scenario.faults or seen == ["REQUESTED"] else not seen
-    return Result("faults", ", ".join(seen) or "none", expected="none", passed=passed)
+def _faults(faults: list[Fault], scenario: Scenario) -> Result:
+    """Faults that the scenario requested are not judged."""
+    passed = None if scenario.faults else not faults
+    codes = dict.fromkeys(code for fault in faults for code in (fault.problem.code, *fault.also))
+    if any(code.startswith("driver.") for code in codes):
+        codes.pop("controller.DRIVER_FAULT", None)  # its consequence
+    note = "; ".join(fault.title.partition(" ")[2] for fault in faults)
+    return Result("faults", ", ".join(codes) or "none", expected="none", passed=passed, note=note)
 
 
-def _names(type_name: str, prefix: str, values: np.ndarray) -> list[str]:
-    names = messages.constants(type_name, prefix)
-    return [names.get(int(value), str(value)) for value in np.unique(values) if value]
+def _requests(log: Log, status: np.ndarray) -> Result:
+    """Those of the scenario are judged: nobody else was told of them."""
+    kinds = messages.constants("request_answer_t", "KIND_")
+    answers = [answer for answer in log.decode("REQUEST_ANSWER") if not answer.accepted]
+    own = [answer for answer in answers if answer.client == messages.SCENARIO_CLIENT]
+    notes = [_refusal(answer, kinds) for answer in own]
+    if len(answers) > len(own):
+        notes.append(f"{len(answers) - len(own)} of other clients, who were told")
+    unheard = int(status["requests_refused"].max(initial=0)) - len(answers)
+    if unheard > 0:
+        notes.append(f"{unheard} more, whose answers are not in the log")
+    return at_most("requests refused", len(own) + max(unheard, 0), "", 0, "; ".join(notes))
+
+
+def _refusal(answer: Any, kinds: dict[int, str]) -> str:
+    cause = problem("request", answer.code)
+    code = f"{cause.code}: " if cause else ""
+    kind = kinds.get(answer.kind, "request").lower()
+    return f"{kind} at {answer.time_ns * 1e-9:.3g} s: {code}{answer.reason}"
+
+
+def stopped_s(log: Log) -> float:
+    """When the driver, told to end, let the drives brake; the log's end if they were off."""
+    state = log.read("JOINT_STATE")
+    if not len(state):
+        return 0.0
+    kinds = messages.message_class("joint_state_t")
+    t = time_s(state)
+    braking = state["drive_state"] == kinds.DRIVE_DAMP
+    begins = np.flatnonzero(braking & ~np.concatenate([[False], braking[:-1]]))
+    if not len(begins) or state["fault"][begins[-1]] != kinds.FAULT_REQUESTED:
+        return float(t[-1])
+    after = state["drive_state"][begins[-1] :]
+    on_again = np.isin(after, (kinds.DRIVE_ENABLING, kinds.DRIVE_ON, kinds.DRIVE_HOLD)).any()
+    return float(t[-1]) if on_again else float(t[begins[-1]])

@@ -30,6 +30,12 @@ class MeasuredPush:
     offset_after_m: float  # how far from where it was the tip came to rest after the release
 
     @property
+    def span(self) -> tuple[float, float]:
+        """Arm time it was measured in."""
+        rests = _Rests.of(self.push)
+        return rests.before[0], rests.during[1]
+
+    @property
     def force(self) -> float:
         return float(self.wrench @ self.direction)
 
@@ -171,29 +177,32 @@ def push_results(pushes: list[MeasuredPush], tolerance: float) -> list[Result]:
     """With friction a push feels stiffer than the law is; then the part of the law is judged."""
     results = []
     for measured in pushes:
-        unit, force_unit = ("N m/rad", "N m") if measured.angular else ("N/m", "N")
-        name = f"stiffness {measured.axis}"
-        note = f"{measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
-        allowed = tolerance * measured.expected
-        if measured.friction_bound == 0.0:
-            results.append(
-                close_to(name, measured.stiffness, unit, measured.expected, allowed, note)
-            )
-            continue
-        results.append(Result(name, measured.stiffness, unit, note=note))
-        value = measured.stiffness_without_friction
-        note = f"friction took {measured.friction_took:.2g} {force_unit}"
-        results.append(
-            close_to(f"{name} less friction", value, unit, measured.expected, allowed, note)
-        )
-        name = f"friction band {measured.axis}"
-        note = "predicted, at a rest"
-        results.append(Result(name, measured.friction_bound, force_unit, note=note))
-        offset_mm = measured.offset_after_m * 1e3
-        if np.isfinite(offset_mm):
-            results.append(
-                Result(f"offset after {measured.axis}", offset_mm, "mm", note="kept by friction")
-            )
+        found = _results_of(measured, tolerance)
+        for result in found:
+            result.span = measured.span
+        results += found
+    return results
+
+
+def _results_of(measured: MeasuredPush, tolerance: float) -> list[Result]:
+    unit, force_unit = ("N m/rad", "N m") if measured.angular else ("N/m", "N")
+    name = f"stiffness {measured.axis}"
+    note = f"{measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
+    allowed = tolerance * measured.expected
+    if measured.friction_bound == 0.0:
+        return [close_to(name, measured.stiffness, unit, measured.expected, allowed, note)]
+    value = measured.stiffness_without_friction
+    took = f"friction took {measured.friction_took:.2g} {force_unit}"
+    bound = measured.friction_bound
+    results = [
+        Result(name, measured.stiffness, unit, note=note),
+        close_to(f"{name} less friction", value, unit, measured.expected, allowed, took),
+        Result(f"friction band {measured.axis}", bound, force_unit, note="predicted, at a rest"),
+    ]
+    offset_mm = measured.offset_after_m * 1e3
+    if np.isfinite(offset_mm):
+        offset = f"offset after {measured.axis}"
+        results.append(Result(offset, offset_mm, "mm", note="kept by friction"))
     return results
 
 
@@ -222,6 +231,7 @@ def matrix_results(pushes: list[MeasuredPush], tolerance: float, friction: bool)
     S = np.outer(scale, scale)
     off = float(np.linalg.norm((K - K_expected) * S) / np.linalg.norm(K_expected * S))
     result = Result("stiffness matrix, off by", off, note="6x6, relative")
+    result.span = (min(p.span[0] for p in pushes), max(p.span[1] for p in pushes))
     if not friction:
         result.expected, result.tolerance, result.passed = 0.0, tolerance, bool(off <= tolerance)
     return [result]

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from limber import tables
 from limber.errors import InputError
+from limber.measure.faults import Fault
 
 
 @dataclass
@@ -23,6 +24,7 @@ class Result:
     tolerance: float | None = None
     passed: bool | None = None
     note: str = ""
+    span: tuple[float, float] | None = None  # arm time it was measured in, s; not saved
 
 
 def at_most(name: str, value: float, unit: str, limit: float, note: str = "") -> Result:
@@ -41,10 +43,21 @@ def close_to(
 class Summary:
     header: dict[str, Any] = field(default_factory=dict)
     results: list[Result] = field(default_factory=list)
+    faults: list[Fault] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:
         return all(result.passed is not False for result in self.results)
+
+    def disturbed(self, span: tuple[float, float]) -> bool:
+        """True if a fault lies in this time, or before it without the arm being ACTIVE again."""
+        return any(fault.time_s < span[1] and fault.until_s > span[0] for fault in self.faults)
+
+    def leave_out_disturbed(self) -> None:
+        """What was measured after a fault is shown, not judged."""
+        for result in self.results:
+            if result.span is not None and self.disturbed(result.span):
+                result.passed, result.note = None, "after the fault"
 
     def find(self, name: str) -> Result | None:
         return next((result for result in self.results if result.name == name), None)
@@ -54,6 +67,7 @@ class Summary:
             **self.header,
             "pass": self.passed,
             "results": [_as_json(result) for result in self.results],
+            "faults": [fault.as_json() for fault in self.faults],
         }
         path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -74,6 +88,7 @@ def _as_json(result: Result) -> dict[str, Any]:
         for key, value in asdict(result).items()
     }
     content["pass"] = content.pop("passed")
+    del content["span"]
     if not content["note"]:
         del content["note"]
     return content

@@ -6,24 +6,35 @@ from importlib import metadata
 from limber import __version__
 from limber.log.reader import Log
 from limber.measure.contact import contact_results
-from limber.measure.health import health_results
+from limber.measure.faults import find_faults
+from limber.measure.health import health_results, stopped_s
 from limber.measure.pushes import MeasuredPush, matrix_results, measure_pushes, push_results
-from limber.measure.results import Summary
+from limber.measure.results import Result, Summary
 from limber.measure.sound import sound
 from limber.model.scenario import Scenario
 
 
 def measure(
-    log: Log, scenario: Scenario, mode: str, recorder_lost: dict[str, int] | None = None
+    log: Log,
+    scenario: Scenario,
+    mode: str,
+    recorder_lost: dict[str, int] | None = None,
+    stopped: bool = False,
 ) -> tuple[Summary, list[MeasuredPush]]:
+    """`stopped`: by the user, before the scenario was over; what follows is not judged."""
+    end_s = stopped_s(log) if stopped else scenario.duration_s
+    faults = find_faults(log, scenario.robot, end_s)
     truth = sound(log.read("SIM_TRUTH"))
     pushes = measure_pushes(log, scenario)
     tolerances = scenario.tolerances
-    results = health_results(log, scenario, recorder_lost or {})
+    results = [Result("stopped", f"by you after {end_s:.1f} s")] if stopped else []
+    results += health_results(log, scenario, recorder_lost or {}, faults)
     results += push_results(pushes, tolerances.stiffness)
     results += matrix_results(pushes, tolerances.stiffness, scenario.friction)
     results += contact_results(truth, scenario, tolerances.contact_force)
-    return Summary(_header(log, scenario, mode), results), pushes
+    summary = Summary(_header(log, scenario, mode), results, faults)
+    summary.leave_out_disturbed()
+    return summary, pushes
 
 
 def _header(log: Log, scenario: Scenario, mode: str) -> dict:

@@ -67,6 +67,7 @@ class Scenario:
     faults: list[str] = field(default_factory=list)
     event_times: list[float] = field(default_factory=list)
     tolerances: Tolerances = field(default_factory=Tolerances)
+    refused: list[str] = field(default_factory=list)  # requests that will be, by limber-check
 
     def gains_at(self, time_s: float) -> Gains:
         """The requested gains at a time; `gains` starts with the robot's own."""

@@ -1,5 +1,6 @@
 """Robots, URDFs and scenarios, checked by limber-check: the code that all programs share."""
 
+import json
 import subprocess
 from pathlib import Path
 
@@ -34,9 +35,11 @@ def run_checker(arguments: list[str]) -> subprocess.CompletedProcess[str]:
 def load_checked(path: Path) -> Scenario:
     """Raises InputError with limber-check's message if the scenario or its robot is wrong."""
     existing_file(path, "scenario file (.yaml)")
-    done = run_checker(["scenario", str(path)])
+    done = run_checker(["scenario", str(path), "--json"])
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.strip()]
         message = lines[-1] if lines else f"limber-check failed (exit code {done.returncode})"
         raise InputError(message.removeprefix("limber-check: "))
-    return load_scenario(path)
+    scenario = load_scenario(path)
+    scenario.refused = json.loads(done.stdout)["refused"]
+    return scenario

@@ -24,8 +24,15 @@ def next_folder(name: str) -> Path:
     return Path("out") / f"{name}-{number}"
 
 
-def run(path: Path, options: RunOptions, console: Console) -> int:
+def _load(path: Path, console: Console) -> Scenario:
     scenario = load_checked(path)
+    for line in scenario.refused:
+        console.print(line, style="yellow", markup=False, highlight=False, soft_wrap=True)
+    return scenario
+
+
+def run(path: Path, options: RunOptions, console: Console) -> int:
+    scenario = _load(path, console)
     addresses = buses.addresses(scenario.robot, options.buses)
     buses.warn_of_motion(addresses, options.with_simulator, console)
     if buses.real(addresses):
@@ -37,7 +44,7 @@ def run(path: Path, options: RunOptions, console: Console) -> int:
 
 
 def lab(path: Path, out: Path | None, record_can: bool, console: Console) -> int:
-    scenario = load_checked(path)
+    scenario = _load(path, console)
     folder = output_folder(out or next_folder(scenario.name))
     return report(runner.lab(scenario, folder, console, record_can), scenario, console)
 
@@ -46,7 +53,9 @@ def measure_again(folder: Path, console: Console) -> int:
     """From the copies of robot and scenario beside the log."""
     header = load_header(folder)
     scenario = load_scenario(existing_file(folder / "scenario.yaml", "scenario"), robot=folder)
-    finished = FinishedRun(folder, header.get("mode", "unknown"))
+    finished = FinishedRun(
+        folder, header.get("mode", "unknown"), header.get("stopped_early", False)
+    )
     finished.recorder = {"lost": header.get("recorder_lost", {})}
     return report(finished, scenario, console)
 
@@ -55,14 +64,24 @@ def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
     """Measures the log, writes summary.json and prints it; returns the exit code."""
     summary, _ = summarize(finished, scenario)
     console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
+    show_faults(summary, console)
     console.print(f"log and summary: {finished.folder}", soft_wrap=True)
     return OK if summary.passed else OUT_OF_TOLERANCE
+
+
+def show_faults(summary: Summary, console: Console) -> None:
+    """The story of each."""
+    for fault in summary.faults:
+        title, *lines = fault.lines()
+        console.print(title, style="bold red", markup=False, highlight=False, soft_wrap=True)
+        for line in lines:
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:
     log = Log(finished.log)
     lost = finished.recorder.get("lost", {})
-    summary, pushes = measure(log, scenario, finished.mode, lost)
+    summary, pushes = measure(log, scenario, finished.mode, lost, finished.stopped_early)
     if len(log.read("JOINT_STATE")) == 0:
         raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
     summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}

@@ -27,6 +27,7 @@ SHOWN = (
     "late cycles",
     "overruns",
     "messages lost",
+    "requests refused",
     "faults",
     "realtime granted",
 )
@@ -72,7 +73,7 @@ def _show(
     summary: Summary, pushes: list[MeasuredPush], scenario: Scenario, console: Console
 ) -> None:
     if pushes:
-        console.print(_stiffness_table(pushes, scenario.tolerances.stiffness))
+        console.print(_stiffness_table(pushes, scenario.tolerances.stiffness, summary))
     for name in SHOWN:
         result = summary.find(name)
         if result is not None:
@@ -80,12 +81,13 @@ def _show(
     faults = summary.find("faults")
     if summary.header["mode"] == "realtime" and faults is not None and faults.passed is False:
         console.print(TOO_BUSY)
+    commands.show_faults(summary, console)
     wrong = [result for result in summary.results if result.passed is False]
     for result in wrong:
         console.print(f"[bold red]out of tolerance:[/] {_line(result)}")
 
 
-def _stiffness_table(pushes: list[MeasuredPush], tolerance: float) -> Table:
+def _stiffness_table(pushes: list[MeasuredPush], tolerance: float, summary: Summary) -> Table:
     numbers = ("force", "moved", "felt", "friction", "band", "less friction", "expected", "")
     columns = ["<push", *(f">{name}" for name in numbers)]
     table = tables.table(*columns, title="How soft is the tip?", padding=(0, 1, 0, 0))
@@ -103,7 +105,7 @@ def _stiffness_table(pushes: list[MeasuredPush], tolerance: float) -> Table:
             f"±{measured.friction_bound:.2f}",
             f"{value:.1f} {unit}",
             f"{measured.expected:.1f} {unit}",
-            tables.verdict(good),
+            "after the fault" if summary.disturbed(measured.span) else tables.verdict(good),
         )
     return table
 

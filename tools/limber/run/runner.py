@@ -36,8 +36,9 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
         for name, command in commands.items():
             _start(group, name, command)
         driver = group.children["limber-driver"]
+        told = [driver, group.children["limber-controller"]]
         code = _follow(group, display(scenario, console, options.live_view), result, console)
-        _tell(driver, console)
+        _tell(told, console)
         if code != 0 and not result.stopped_early:
             raise driver.failure()
         result.recorder = _stop_others(group)
@@ -60,6 +61,7 @@ def lab(
             code = group.run_until("limber-lab", lambda: status.update(_last_line(child)))
         if code != 0:
             raise child.failure()
+    _tell([child], console)
     console.print(_last_line(child))
     return result
 
@@ -115,12 +117,12 @@ def _follow(
     console: Console,
 ) -> int:
     """Shows the run until the driver ends, or ends the driver on Ctrl-C; returns its exit code."""
-    driver = group.children["limber-driver"]
+    told = [group.children[name] for name in ("limber-driver", "limber-controller")]
     try:
         with display as update:
 
             def tick() -> None:
-                _tell(driver, console)
+                _tell(told, console)
                 for child in group.missed():
                     lost = f"{child.failure()}; the run goes on without it"
                     console.print(lost, style="bold red", markup=False, soft_wrap=True)
@@ -132,10 +134,11 @@ def _follow(
         return group.stop("limber-driver", signal.SIGINT, STOP_TIMEOUT_S)
 
 
-def _tell(driver: Child, console: Console) -> None:
-    """What the driver's user has to know now, not when he reads its log."""
-    for line in driver.news():
-        console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
+def _tell(children: list[Child], console: Console) -> None:
+    """What the user has to know now, not when he reads the logs."""
+    for child in children:
+        for line in child.news():
+            console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
 
 
 def _stop_others(group: ProcessGroup) -> dict:

@@ -1,0 +1,31 @@
+// UDP multicast between the processes of one machine: the virtual CAN buses and the arm plane.
+#pragma once
+
+#include <netinet/in.h>
+
+#include <string>
+
+#include "common/file_descriptor.h"
+
+namespace limber {
+
+/// What makes a multicast route on a machine that has none, as for a user to type.
+inline constexpr const char* kMulticastRouteCommands =
+    "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo";
+
+/// Both do not block.
+struct MulticastSockets {
+  FileDescriptor receiver;  ///< hears what others send to the group, not what `sender` sends
+  FileDescriptor sender;    ///< for sendto() the group
+};
+
+/// Joins `group` on the interface to which the kernel routes it, where `sender` sends as well, at
+/// most `ttl` hops far. Throws ConfigError that begins with `name`, without a route with
+/// kMulticastRouteCommands. Set-up only.
+MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl);
+
+/// The network interface to which this machine routes `group`, and where sockets join it. "" if it
+/// is the loopback interface, or if there is no route. Set-up only.
+std::string network_interface_of(const in_addr& group);
+
+}  // namespace limber

@@ -1,0 +1,66 @@
+#include "controller/controller_log.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+
+#include "common/problem_text.h"
+
+namespace limber {
+namespace {
+
+constexpr std::array kModeNames = {"BOOT",   "INIT",      "IDLE",  "HOLD",
+                                   "ACTIVE", "SOFT_STOP", "FAULT", "ESTOP"};
+constexpr std::array kKindNames = {"mode", "goal", "gains"};
+
+template <typename Names>
+const char* name_in(const Names& names, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  return i < names.size() ? names[i] : "unknown";
+}
+
+}  // namespace
+
+request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns) {
+  request_answer_t answer;
+  answer.time_ns = time_ns;
+  answer.client = outcome.client;
+  answer.seq = outcome.seq;
+  answer.kind = outcome.kind;
+  answer.what = outcome.what;
+  answer.accepted = outcome.refusal ? 0 : 1;
+  answer.code = outcome.refusal.code;
+  answer.reason = outcome.refusal ? outcome.refusal.reason : "";
+  return answer;
+}
+
+void ControllerLog::note(const controller_status_t& status) {
+  if (status.mode == mode_ && status.reason == reason_) return;
+  const bool caused = status.reason != controller_status_t::REASON_NONE && status.reason != reason_;
+  const auto joint = static_cast<std::size_t>(status.reason_joint);
+  const std::string where = joint < joints_.size() ? joints_[joint] : "";
+  mode_ = status.mode;
+  reason_ = status.reason;
+  const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
+  if (!caused) return spdlog::info(mode);
+  const Problem* problem = find_problem(problems::kController, reason_);
+  if (mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
+    keep(black_box_, problem->code);
+  const std::string line = mode + ": " + problem_text(problems::kController, reason_, where, "");
+  // Somebody knows of it already: who stopped the arm, or who reads what the driver told.
+  if (reason_ == controller_status_t::REASON_STOP_REQUESTED ||
+      reason_ == controller_status_t::REASON_DRIVER_FAULT) {
+    spdlog::info(line);
+  } else {
+    spdlog::warn("warning: {}", line);
+  }
+}
+
+void ControllerLog::note(const request_answer_t& answer) {
+  if (answer.accepted != 0) return;
+  spdlog::warn("warning: {} at {:.3f} s refused: {}", name_in(kKindNames, answer.kind),
+               static_cast<double>(answer.time_ns) * 1e-9,
+               refusal_text(answer.code, answer.reason));
+}
+
+}  // namespace limber
