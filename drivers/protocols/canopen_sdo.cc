@@ -37,7 +37,6 @@ void put_object(const SdoMessage& message, CanFrame* frame) noexcept {
 void take_object(const CanFrame& frame, SdoMessage* message) noexcept {
   message->object.index = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U);
   message->object.sub = frame.data[3];
-  message->value = 0;
   for (unsigned i = 0; i < 4; ++i)
     message->value |= static_cast<std::uint32_t>(frame.data[4 + i]) << (8 * i);
 }

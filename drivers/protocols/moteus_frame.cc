@@ -1,5 +1,6 @@
 #include "drivers/protocols/moteus_frame.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace limber::moteus {
@@ -77,17 +78,20 @@ bool FrameWriter::kept_if(bool fits, std::uint8_t start) noexcept {
 
 bool FrameWriter::begin(unsigned opcode, Type type, unsigned first, std::size_t count) noexcept {
   const unsigned shape = opcode | static_cast<unsigned>(type) << 2U;
-  const bool counted = count >= 1 && count <= 3
-                           ? put(shape | static_cast<unsigned>(count))
-                           : put(shape) && put_varuint(static_cast<std::uint32_t>(count));
-  return counted && put_varuint(first);
+  if (count >= 1 && count <= 3) {
+    put(shape | static_cast<unsigned>(count));
+  } else {
+    put(shape);
+    put_varuint(static_cast<std::uint32_t>(count));
+  }
+  return put_varuint(first);
 }
 
 bool FrameWriter::values(unsigned opcode, Type type, unsigned first,
                          std::span<const double> values) noexcept {
   const std::uint8_t start = frame_.length;
   bool fits = begin(opcode, type, first, values.size());
-  for (std::size_t i = 0; i < values.size() && fits; ++i)
+  for (std::size_t i = 0; i < values.size(); ++i)
     fits = put_value(type, lsb(static_cast<std::uint16_t>(first + i), type), values[i]);
   return kept_if(fits, start);
 }
@@ -105,22 +109,27 @@ bool FrameWriter::read(Type type, std::uint16_t first, unsigned count) noexcept 
   return kept_if(begin(kRead, type, first, count), start);
 }
 
-bool FrameWriter::write_error(std::uint16_t reg, std::uint8_t error) noexcept {
+bool FrameWriter::error(std::uint8_t opcode, std::uint16_t reg, std::uint8_t error) noexcept {
   const std::uint8_t start = frame_.length;
-  return kept_if(put(kWriteError) && put_varuint(reg) && put_varuint(error), start);
+  put(opcode);
+  put_varuint(reg);
+  return kept_if(put_varuint(error), start);
+}
+
+bool FrameWriter::write_error(std::uint16_t reg, std::uint8_t error) noexcept {
+  return this->error(kWriteError, reg, error);
 }
 
 bool FrameWriter::read_error(std::uint16_t reg, std::uint8_t error) noexcept {
-  const std::uint8_t start = frame_.length;
-  return kept_if(put(kReadError) && put_varuint(reg) && put_varuint(error), start);
+  return this->error(kReadError, reg, error);
 }
 
 bool FrameWriter::text(std::uint8_t opcode, std::string_view text) noexcept {
   const std::uint8_t start = frame_.length;
-  bool fits =
-      put(opcode) && put(kTextChannel) && put_varuint(static_cast<std::uint32_t>(text.size()));
-  for (std::size_t i = 0; i < text.size() && fits; ++i)
-    fits = put(static_cast<std::uint8_t>(text[i]));
+  put(opcode);
+  put(kTextChannel);
+  bool fits = put_varuint(static_cast<std::uint32_t>(text.size()));
+  for (const char letter : text) fits = put(static_cast<std::uint8_t>(letter));
   return kept_if(fits, start);
 }
 
@@ -134,13 +143,14 @@ bool FrameWriter::text_from_drive(std::string_view text) noexcept {
 
 bool FrameWriter::text_poll(unsigned most) noexcept {
   const std::uint8_t start = frame_.length;
-  return kept_if(put(kTextPoll) && put(kTextChannel) && put_varuint(most), start);
+  put(kTextPoll);
+  put(kTextChannel);
+  return kept_if(put_varuint(most), start);
 }
 
 std::size_t FrameWriter::room_for_text() const noexcept {
   constexpr std::size_t kHead = 3;  // opcode, channel, count
-  const std::size_t used = frame_.length + kHead;
-  return used < kLongestFrame ? kLongestFrame - used : 0;
+  return kLongestFrame - std::min(frame_.length + kHead, kLongestFrame);
 }
 
 CanFrame FrameWriter::frame() const noexcept {
@@ -189,7 +199,7 @@ bool FrameReader::parse(std::uint8_t opcode, Subframe* subframe) noexcept {
     return true;
   }
   if (opcode >= kTextToDrive && opcode <= kTextPoll) return parse_text(opcode, subframe);
-  if (opcode >= kReply + 0x10) return false;
+  if (opcode >= kWriteError) return false;
   if (count == 0 && !take_varuint(&count)) return false;
   if (!take_varuint(&first) || first > kLastRegister || count > kLastRegister - first) return false;
   subframe->kind = opcode < kRead    ? Subframe::Kind::kWrite
@@ -223,7 +233,6 @@ bool FrameReader::parse_text(std::uint8_t opcode, Subframe* subframe) noexcept {
 }
 
 bool FrameReader::take_varuint(std::uint32_t* value) noexcept {
-  *value = 0;
   for (unsigned shift = 0; shift < 28 && at_ < frame_.length; shift += 7) {
     const std::uint8_t byte = frame_.data[at_++];
     *value |= static_cast<std::uint32_t>(byte & 0x7FU) << shift;

@@ -60,6 +60,8 @@ class FrameWriter {
  private:
   bool begin(unsigned opcode, Type type, unsigned first, std::size_t count) noexcept;
   bool values(unsigned opcode, Type type, unsigned first, std::span<const double> values) noexcept;
+  bool error(std::uint8_t opcode, std::uint16_t reg, std::uint8_t error) noexcept;
+  /// False if the frame is full, and from then on: the last byte of a subframe tells of all.
   bool put(std::uint32_t byte) noexcept;
   bool put_varuint(std::uint32_t value) noexcept;
   bool put_value(Type type, double lsb, double value) noexcept;
@@ -105,6 +107,7 @@ class FrameReader {
  private:
   bool parse(std::uint8_t opcode, Subframe* subframe) noexcept;
   bool parse_text(std::uint8_t opcode, Subframe* subframe) noexcept;
+  /// `value` is 0 before.
   bool take_varuint(std::uint32_t* value) noexcept;
 
   const CanFrame& frame_;

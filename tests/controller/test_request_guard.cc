@@ -8,6 +8,8 @@
 namespace limber::test_request_guard {
 namespace {
 
+using Answer = request_answer_t;
+
 constexpr std::int64_t kRun = 1234;
 
 TEST(RequestGuard, TakesRisingNumbersOfEachClient) {
@@ -23,22 +25,23 @@ TEST(RequestGuard, TakesRisingNumbersOfEachClient) {
 TEST(RequestGuard, RefusesWhatWasReceivedBefore) {
   RequestGuard guard(kRun);
   for (std::int64_t seq : {5, 6, 9}) EXPECT_EQ(guard.check(kRun, 7, seq), nullptr);
-  for (std::int64_t seq : {5, 6, 7, 9}) EXPECT_NE(guard.check(kRun, 7, seq), nullptr) << seq;
+  for (std::int64_t seq : {5, 6, 7, 9})
+    EXPECT_EQ(guard.check(kRun, 7, seq).code, +Answer::REFUSED_REPEATED) << seq;
 }
 
 TEST(RequestGuard, RefusesWhatIsMeantForAnotherRun) {
   RequestGuard guard(kRun);
-  EXPECT_NE(guard.check(kRun + 1, 7, 1), nullptr);
-  EXPECT_NE(guard.check(0, 7, 1), nullptr);
+  EXPECT_EQ(guard.check(kRun + 1, 7, 1).code, +Answer::REFUSED_OTHER_RUN);
+  EXPECT_EQ(guard.check(0, 7, 1).code, +Answer::REFUSED_OTHER_RUN);
   EXPECT_EQ(guard.check(kRun, 7, 1), nullptr) << "what was refused is not remembered";
-  EXPECT_NE(guard.check(kRun, 0, 2), nullptr);
+  EXPECT_EQ(guard.check(kRun, 0, 2).code, +Answer::REFUSED_CLIENT);
 }
 
 TEST(RequestGuard, ForgetsNoClient) {
   RequestGuard guard(kRun);
   for (std::int64_t client = 1; client <= 64; ++client)
     EXPECT_EQ(guard.check(kRun, client, 5), nullptr) << client;
-  EXPECT_NE(guard.check(kRun, 65, 5), nullptr);
+  EXPECT_EQ(guard.check(kRun, 65, 5).code, +Answer::REFUSED_CLIENT);
   for (std::int64_t client = 1; client <= 64; ++client) {
     EXPECT_NE(guard.check(kRun, client, 5), nullptr) << client;
     EXPECT_EQ(guard.check(kRun, client, 6), nullptr) << client;

@@ -22,6 +22,18 @@ constexpr char kFar[] = "the goal is more than 10 m from the base";
 constexpr char kWrench[] = "F_ff must be within 200 N and 50 N m";
 constexpr char kJointLimits[] = "q is outside the joint limits";
 
+/// Of the kinds of refusal: what the goal is wrong about, and where else it is too much.
+int kind_of(const std::string& reason) {
+  using Answer = request_answer_t;
+  if (reason.empty()) return Answer::REFUSED_NOTHING;
+  if (reason.starts_with("the law")) return Answer::REFUSED_GOAL_KIND;
+  if (reason.ends_with("at rest")) return Answer::REFUSED_GOAL_MOVING;
+  const bool malformed = reason.starts_with("num_joints") || reason.starts_with("kind") ||
+                         reason.ends_with("finite") || reason.ends_with("quaternion") ||
+                         reason.ends_with("axis");
+  return malformed ? Answer::REFUSED_MALFORMED : Answer::REFUSED_GOAL_LIMIT;
+}
+
 double after(double x) { return std::nextafter(x, kInf); }
 
 class GoalLimitsTest : public ::testing::Test {
@@ -46,8 +58,10 @@ class GoalLimitsTest : public ::testing::Test {
   std::string why(const Change& change = [](Goal&) {}) const {
     Goal goal = goal_;
     change(goal);
-    const char* reason = limits_.check(goal, type_, end_, moving_);
-    return reason == nullptr ? "" : reason;
+    const Refusal refusal = limits_.check(goal, type_, end_, moving_);
+    const std::string reason = refusal ? refusal.reason : "";
+    EXPECT_EQ(int{refusal.code}, kind_of(reason)) << reason;
+    return reason;
   }
 
   GoalLimits limits_;

@@ -43,8 +43,20 @@ class SupervisorBench : public ::testing::Test {
   }
   /// "" if it was obeyed.
   std::string ask(std::int8_t what, std::int64_t client = kMine) {
-    const char* reason = supervisor_.on_mode(made(what, client));
-    return reason == nullptr ? "" : reason;
+    const Refusal refusal = supervisor_.on_mode(made(what, client));
+    const std::string reason = refusal ? refusal.reason : "";
+    EXPECT_EQ(int{refusal.code}, kind_of(reason)) << reason;
+    return reason;
+  }
+  /// Of the kinds of refusal: who asks, what for, and when.
+  static int kind_of(const std::string& reason) {
+    using Answer = request_answer_t;
+    if (reason.empty()) return Answer::REFUSED_NOTHING;
+    if (reason.starts_with("the request is none")) return Answer::REFUSED_MALFORMED;
+    if (reason.starts_with("client")) return Answer::REFUSED_CLIENT;
+    if (reason.find("lease") != std::string::npos) return Answer::REFUSED_LEASE;
+    const bool cause = reason.starts_with("the cause") || reason.starts_with("the emergency stop");
+    return cause ? Answer::REFUSED_CAUSE_REMAINS : Answer::REFUSED_MODE;
   }
   void to_hold() {
     states(Supervisor::kSteadyStates, State::DRIVE_OFF);

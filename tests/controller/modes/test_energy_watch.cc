@@ -121,6 +121,24 @@ TEST(EnergyWatch, WhatIsNoNumberIsTooMuch) {
   EXPECT_TRUE(arm.step(std::nan(""), kWeight_Nm));
 }
 
+// 4 J at 4 rad/s, while the motor has taken 1000 N m * 2 rad/s * 1 ms.
+TEST(EnergyWatch, WhatTheMotorsTakeCameFromOutsideToo) {
+  Arm arm;
+  arm.step(0.0, kWeight_Nm);
+  arm.step(4.0, kWeight_Nm - 1000.0);
+  EXPECT_NEAR(arm.unexplained_J(), 4.0 + 2.0, 1e-9);
+}
+
+TEST(EnergyWatch, TheLimitItselfIsAllowed) {
+  Robot robot = one_joint();
+  robot.energy_limit_J = 4.0;
+  for (const double v : {4.0, 4.001}) {
+    Arm arm(robot);
+    arm.step(0.0, kWeight_Nm);
+    EXPECT_EQ(arm.step(v, kWeight_Nm), v > 4.0) << v;
+  }
+}
+
 TEST(EnergyWatch, ArmsWithSpringsAreNotWatched) {
   Robot robot = one_joint();
   robot.joints[0].transmission.kind = TransmissionKind::kElastic;

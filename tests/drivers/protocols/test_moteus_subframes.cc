@@ -67,6 +67,7 @@ TEST(MoteusSubframes, Errors) {
                                              {0x31, 0x21},
                                              {0x30, 0x80},
                                              {0x30, 0x21, 0x80},
+                                             {0x30, 0x80, 0x80, 0x80, 0x80, 0x00, 0x01},
                                              {0x30, 0x21, 0x80, 0x02},           // error 100h
                                              {0x31, 0x80, 0x80, 0x04, 0x01}}) {  // register 10000h
     EXPECT_TRUE(malformed(bad)) << bad.size();
@@ -154,6 +155,7 @@ TEST(MoteusSubframes, Text) {
                                              {0x41, 0x01},
                                              {0x42, 0x01},
                                              {0x41, 0x80},
+                                             {0x41, 0x80, 0x80, 0x80, 0x80, 0x00, 0x00},
                                              {0x41, 0x01, 0x02, 'h'},
                                              {0x42, 0x80, 0x80, 0x04, 0x01}}) {
     EXPECT_TRUE(malformed(bad)) << bad.size();
@@ -243,6 +245,7 @@ TEST(MoteusFrames, RoomForText) {
 
 TEST(MoteusFrames, NobodysAddressIsTheHosts) {
   EXPECT_EQ(can_id(Address{}), 0u);
+  EXPECT_EQ(Subframe{}.kind, Kind::kRead);
   EXPECT_EQ(Subframe{}.first, 0);
   EXPECT_EQ(Subframe{}.error, 0);
 }
