@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "common/black_box/black_box.h"
 #include "common/decode_message.h"
 #include "common/lcm_url.h"
 #include "common/wait_readable.h"
@@ -34,7 +35,9 @@ class LcmPort {
   template <typename Message>
   bool publish(const char* channel, const Message& message) noexcept {
     const int size = message.encode(buffer_.data(), 0, kMaxMessageBytes);
-    return size >= 0 && publish_bytes(channel, size);
+    if (size < 0) return false;
+    keep(channel, std::span(buffer_).first(static_cast<std::size_t>(size)));
+    return publish_bytes(channel, size);
   }
 
   /// Calls `handler(message)` for each message on the channel that decodes whole and is not too
@@ -46,6 +49,9 @@ class LcmPort {
   /// may allocate.
   void handle_waiting(int most = kEverything) noexcept;
 
+  /// Keeps what is published and what is handled from now on; outlives this. Set-up only.
+  void set_black_box(BlackBox* box) { black_box_ = box; }
+
   /// -1 of a port for publishing alone.
   int descriptor() const noexcept { return descriptor_; }
   /// Messages of subscribed channels that were dropped: too long, or of another version of their
@@ -55,12 +61,16 @@ class LcmPort {
  private:
   static constexpr int kEverything = std::numeric_limits<int>::max();
   using BytesHandler = std::function<void(const void* data, unsigned size)>;
+  void keep(std::string_view channel, std::span<const std::uint8_t> message) noexcept {
+    if (black_box_ != nullptr) black_box_->write(channel, message);
+  }
   bool publish_bytes(const char* channel, int size) noexcept;
   void subscribe_bytes(const char* channel, int queue, BytesHandler handler);
 
   std::vector<std::unique_ptr<BytesHandler>>
       handlers_;  // outlive lcm_, which holds pointers to them
   std::unique_ptr<lcm::LCM> lcm_;
+  BlackBox* black_box_ = nullptr;
   int descriptor_ = -1;
   std::int64_t undecodable_ = 0;
   std::array<std::uint8_t, kMaxMessageBytes> buffer_{};
@@ -68,14 +78,16 @@ class LcmPort {
 
 template <typename Message, typename Handler>
 void LcmPort::subscribe(const char* channel, int queue, Handler handler) {
-  subscribe_bytes(channel, queue,
-                  [this, handler, message = Message()](const void* data, unsigned size) mutable {
-                    if (decode_message(data, size, &message)) {
-                      handler(message);
-                    } else {
-                      ++undecodable_;
-                    }
-                  });
+  subscribe_bytes(
+      channel, queue,
+      [this, channel, handler, message = Message()](const void* data, unsigned size) mutable {
+        if (size <= kMaxMessageBytes) keep(channel, {static_cast<const std::uint8_t*>(data), size});
+        if (decode_message(data, size, &message)) {
+          handler(message);
+        } else {
+          ++undecodable_;
+        }
+      });
 }
 
 }  // namespace limber

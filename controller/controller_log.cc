@@ -43,6 +43,9 @@ void ControllerLog::note(const controller_status_t& status) {
   reason_ = status.reason;
   const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
   if (!caused) return spdlog::info(mode);
+  const Problem* problem = find_problem(problems::kController, reason_);
+  if (mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
+    keep(black_box_, problem->code);
   const std::string line = mode + ": " + problem_text(problems::kController, reason_, where, "");
   // Somebody knows of it already: who stopped the arm, or who reads what the driver told.
   if (reason_ == controller_status_t::REASON_STOP_REQUESTED ||

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/black_box/black_box.h"
 #include "controller/request_outcome.h"
 
 namespace limber {
@@ -18,7 +19,9 @@ request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns);
 class ControllerLog {
  public:
   /// `joints`: names for messages.
-  explicit ControllerLog(std::vector<std::string> joints) : joints_(std::move(joints)) {}
+  /// `black_box`: where the last seconds are kept at a fault; may be null.
+  explicit ControllerLog(std::vector<std::string> joints, BlackBox* black_box = nullptr)
+      : joints_(std::move(joints)), black_box_(black_box) {}
 
   /// A line if the mode, or the cause of its last change, is another one than before.
   void note(const controller_status_t& status);
@@ -27,6 +30,7 @@ class ControllerLog {
 
  private:
   std::vector<std::string> joints_;
+  BlackBox* black_box_;
   std::int8_t mode_ = controller_status_t::MODE_BOOT;
   std::int8_t reason_ = controller_status_t::REASON_NONE;
 };

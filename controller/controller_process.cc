@@ -48,14 +48,17 @@ ControllerProcess::ControllerProcess(ArmController* controller,
                                      const ControllerProcessOptions& options)
     : controller_(controller),
       guard_(controller->status().controller),
-      log_(options.joints),
       options_(options),
+      black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.lockstep)),
+      log_(options.joints, black_box_.get()),
       // LCM starts a thread for the user plane, which anybody may flood: it keeps normal priority.
       user_(user_plane_url()),
       grant_(request_realtime(options)),
       arm_(arm_plane_url(), ArmPlaneEnd::kController) {
   arm_.subscribe<joint_state_t>(channels::kJointState,
                                 [this](const joint_state_t& state) { on_state(state); });
+  arm_.set_black_box(black_box_.get());
+  user_.set_black_box(black_box_.get());
   require_local(user_plane_url(), options.moves_motors);
   require_local(arm_plane_url(), options.moves_motors);
   subscribe<mode_request_t>(channels::kModeRequest);

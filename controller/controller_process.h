@@ -23,6 +23,8 @@ struct ControllerProcessOptions {
   /// Some bus is no simulated one: requests must not come from the network.
   bool moves_motors = false;
   std::vector<std::string> joints;  ///< names, for the log
+  std::string robot;                ///< its name, for the black box
+  double rate_hz = 1000.0;          ///< for the black box
 };
 
 class ControllerProcess {
@@ -55,8 +57,9 @@ class ControllerProcess {
 
   ArmController* controller_;
   RequestGuard guard_;
-  ControllerLog log_;
   ControllerProcessOptions options_;
+  std::unique_ptr<BlackBox> black_box_;
+  ControllerLog log_;
   LcmPort user_;
   RealtimeGrant grant_;  // after the user plane, see the constructor
   ArmPlane arm_;

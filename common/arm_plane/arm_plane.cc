@@ -15,6 +15,7 @@ void ArmPlane::handle_waiting() noexcept {
     const auto datagram =
         read_lcm_datagram(std::span(received_).first(std::min(bytes, received_.size())));
     if (!datagram || datagram->channel != channel_) continue;
+    if (black_box_ != nullptr) black_box_->write(channel_, datagram->message);
     if (bytes > received_.size() || !handler_(datagram->message)) ++undecodable_;
   }
 }

@@ -11,6 +11,7 @@
 
 #include "common/arm_plane/datagram_port.h"
 #include "common/arm_plane/lcm_datagram.h"
+#include "common/black_box/black_box.h"
 #include "common/decode_message.h"
 
 namespace limber {
@@ -28,7 +29,10 @@ class ArmPlane {
   bool publish(std::string_view channel, const Message& message) noexcept {
     const std::size_t header = write_lcm_header(channel, sequence_++, sent_);
     const int size = message.encode(sent_.data(), static_cast<int>(header), kMaxMessageBytes);
-    return size >= 0 && port_->send(std::span(sent_).first(header + static_cast<unsigned>(size)));
+    if (size < 0) return false;
+    const std::span datagram = std::span(sent_).first(header + static_cast<unsigned>(size));
+    if (black_box_ != nullptr) black_box_->write(channel, datagram.subspan(header));
+    return port_->send(datagram);
   }
 
   /// Calls `handler(message)` for each message on `channel`, a literal; others are dropped. Once.
@@ -45,6 +49,9 @@ class ArmPlane {
   /// Handles what has arrived, at most kMost datagrams, without waiting.
   void handle_waiting() noexcept;
 
+  /// Keeps what is sent and what is handled from now on; outlives this. Set-up only.
+  void set_black_box(BlackBox* box) { black_box_ = box; }
+
   int descriptor() const noexcept { return port_->descriptor(); }
   /// Datagrams on the subscribed channel that were dropped: too long, of another version of their
   /// type, or of a user who may not send here.
@@ -58,6 +65,7 @@ class ArmPlane {
   std::unique_ptr<DatagramPort> port_;
   std::string_view channel_;
   std::function<bool(std::span<const std::uint8_t>)> handler_;
+  BlackBox* black_box_ = nullptr;
   std::uint32_t sequence_ = 0;
   std::int64_t undecodable_ = 0;
   std::array<std::uint8_t, kLongest> sent_{};

@@ -63,8 +63,17 @@ void delete_oldest(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".box") incidents.push_back(entry.path());
   std::ranges::sort(incidents);
-  const auto kept = static_cast<std::size_t>(BlackBox::kIncidents);
+  constexpr auto kept = static_cast<std::size_t>(BlackBox::kIncidents) - 1;  // one is to come
   for (std::size_t i = 0; i + kept < incidents.size(); ++i) fs::remove(incidents[i]);
+}
+
+/// A state and a command a cycle, and what else there is.
+std::size_t bytes_for(double rate_hz) {
+  constexpr double kPerCycle = 2300.0;
+  constexpr double kLeast = 1 << 20;
+  constexpr double kMost = 64 << 20;
+  const double seconds = BlackBox::kSeconds + BlackBox::kAfter_s;
+  return static_cast<std::size_t>(std::clamp(rate_hz * seconds * kPerCycle, kLeast, kMost)) / 8 * 8;
 }
 
 fs::path incident_path(const std::string& name, const std::string& code) {
@@ -77,10 +86,10 @@ fs::path incident_path(const std::string& name, const std::string& code) {
 
 }  // namespace
 
-BlackBox::BlackBox(const std::string& name, std::size_t bytes) {
+BlackBox::BlackBox(const std::string& name, double rate_hz) {
   if (from_environment("LIMBER_BLACK_BOX") == "off") return;
   try {
-    open(name, bytes);
+    open(name, bytes_for(rate_hz));
     thread_ = std::thread([this] { keep_when_due(); });
   } catch (const std::exception& error) {
     spdlog::warn("no black box: {}; after a fault nothing will be kept", error.what());
@@ -137,18 +146,18 @@ void BlackBox::write(std::string_view channel, std::span<const std::uint8_t> mes
   if (ring_) ring_->write(channel, monotonic_ns() / 1000, message);
 }
 
-std::string BlackBox::keep(const std::string& code) {
-  if (!ring_) return "";
+void BlackBox::keep(const std::string& code) {
+  if (!ring_) return;
   const std::lock_guard lock(mutex_);
-  if (!incident_.empty()) return "";
+  if (!incident_.empty()) return;
   try {
     incident_ = incident_path(path_.filename(), code);
   } catch (const std::exception& error) {
     spdlog::warn("the black box cannot be kept: {}", error.what());
-    return "";
+    return;
   }
   changed_.notify_all();
-  return incident_;
+  spdlog::info("what happened is kept for `limber incident`: {}", incident_.string());
 }
 
 void BlackBox::keep_when_due() {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -31,11 +32,12 @@ class BlackBox {
   static constexpr std::size_t kHeaderBytes = 4096;
   static constexpr double kAfter_s = 2.0;
   static constexpr int kIncidents = 30;
+  static constexpr double kSeconds = 10.0;  ///< before the fault
 
-  /// `name`: program and robot, such as "driver-openarm". With LIMBER_BLACK_BOX=off, or where
-  /// memory or folder cannot be had (a line in the log), nothing is kept. Set-up only, before the
-  /// caller gets real-time priority: a thread starts here.
-  BlackBox(const std::string& name, std::size_t bytes);
+  /// `name`: program and robot, such as "driver-openarm"; room for kSeconds at `rate_hz`. With
+  /// LIMBER_BLACK_BOX=off, or where memory or folder cannot be had (a line in the log), nothing is
+  /// kept. Set-up only, before the caller gets real-time priority: a thread starts here.
+  BlackBox(const std::string& name, double rate_hz);
   ~BlackBox();
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
@@ -43,9 +45,9 @@ class BlackBox {
   /// An encoded message. From any thread; allowed in the cycle.
   void write(std::string_view channel, std::span<const std::uint8_t> message) noexcept;
 
-  /// Something happened that is worth keeping; `code` becomes part of the file's name. Returns the
-  /// incident's path, "" if nothing is kept or one is under way. Not in the cycle.
-  std::string keep(const std::string& code);
+  /// Something happened that is worth keeping; `code`, such as driver.VELOCITY, becomes part of the
+  /// file's name, which is logged. Nothing happens if an incident is under way. Not in the cycle.
+  void keep(const std::string& code);
 
  private:
   void open(const std::string& name, std::size_t bytes);
@@ -63,5 +65,15 @@ class BlackBox {
   bool ending_ = false;
   std::thread thread_;
 };
+
+/// None in lock step, where a run can be repeated.
+inline std::unique_ptr<BlackBox> open_black_box(const std::string& name, double rate_hz,
+                                                bool lockstep) {
+  return lockstep ? nullptr : std::make_unique<BlackBox>(name, rate_hz);
+}
+
+inline void keep(BlackBox* box, const std::string& code) {
+  if (box != nullptr) box->keep(code);
+}
 
 }  // namespace limber

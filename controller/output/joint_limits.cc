@@ -70,7 +70,7 @@ bool JointLimits::scale_for_power(const VectorJ& v, const VectorJ& g, VectorJ* t
   const double weight = g.dot(v);
   const double motion = tau->dot(v) - weight;
   if (!(motion > 0.0 && motion + weight > power_W_)) return false;
-  const double share = std::clamp((power_W_ - weight) / motion, 0.0, 1.0);
+  const double share = std::max((power_W_ - weight) / motion, 0.0);  // below 1
   *tau = g + share * (*tau - g);
   return true;
 }

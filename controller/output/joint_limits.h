@@ -15,13 +15,11 @@ namespace limber::controller {
 /// Limits of every joint, in the order they act. The gate in the driver trips; these shape:
 ///   power     where the net power of all joints would exceed the arm's limit, the torque beyond
 ///             what carries the weight is scaled down to it, by one factor for all joints;
-///   velocity  above 80 % of the limit, torque that accelerates further is scaled down, to zero at
-///   the
-///             limit (the part that carries the weight is not);
-///   position  from 0.10 rad (0.10 m) inside the limits on, at most a tenth of the range, a spring
-///   that
-///             reaches half the joint's torque at the limit, and a damper against motion into the
-///             wall (of the motor where it has a spring before it);
+///   velocity  above 80 % of the limit, torque that accelerates further is scaled down, to zero
+///             at the limit (the part that carries the weight is not);
+///   position  from 0.10 rad (0.10 m) inside the limits on, at most a tenth of the range, a
+///             spring that reaches half the joint's torque at the limit, and a damper against
+///             motion into the wall (of the motor where it has a spring before it);
 ///   torque    clamped to the limit;
 ///   rate      the step from the torque sent before is clamped to 80 % of what the gate lets pass.
 class JointLimits {

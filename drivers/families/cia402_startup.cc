@@ -63,7 +63,7 @@ CyclePeriod cycle_period(double period_s) noexcept {
   for (int exponent = -3; exponent >= -6; --exponent) {
     const double exact = period_s * std::pow(10.0, -exponent);
     const double count = std::round(exact);
-    if (count < 1.0 || count > 255.0) continue;
+    if (count > 255.0) continue;
     finest = {whole(count), exponent};
     if (std::abs(exact - count) <= 1e-6 * count) break;
   }
@@ -83,8 +83,8 @@ Cia402Startup::Cia402Startup(const JointConfig& joint, const cia402::StateLayout
     : node_(canopen::node_of(joint.drive.command_id)),
       tpdos_(cia402::tpdos_of(layout)),
       counts_per_turn_(joint.drive.counts_per_turn),
-      patience_cycles_(std::max(1, static_cast<int>(std::ceil(kPatience_s / period_s)))) {
-  steps_.push_back({Kind::kPreOperational, {}, 0, 0, Number::kUnsigned, Absence::kRefused});
+      patience_cycles_(static_cast<int>(std::ceil(kPatience_s / period_s))) {
+  steps_.push_back({.kind = Kind::kPreOperational});
   write(cia402::kControlword, cia402::kDisableVoltage);
   await(cia402::kStatusword, 0, kPowerBits);
   plan_identity(joint);
@@ -100,7 +100,7 @@ Cia402Startup::Cia402Startup(const JointConfig& joint, const cia402::StateLayout
     else
       switch_off_tpdo(k);
   }
-  steps_.push_back({Kind::kStart, {}, 0, 0, Number::kUnsigned, Absence::kRefused});
+  steps_.push_back({.kind = Kind::kStart});
 }
 
 void Cia402Startup::plan_identity(const JointConfig& joint) {
@@ -108,8 +108,10 @@ void Cia402Startup::plan_identity(const JointConfig& joint) {
   compare(cia402::kSupportedModes, kTorqueMode, kTorqueMode);
   compare(cia402::kRatedTorque_mNm, whole(1000.0 * joint.drive.rated_torque_Nm));
   for (std::size_t i = 0; i < kCountsObjects.size(); ++i)
-    steps_.push_back({Kind::kCounts, kCountsObjects[i], static_cast<std::uint32_t>(i), 0,
-                      Number::kUnsigned, i == 0 ? Absence::kRefused : Absence::kSilent});
+    steps_.push_back({.kind = Kind::kCounts,
+                      .object = kCountsObjects[i],
+                      .value = static_cast<std::uint32_t>(i),
+                      .absence = i == 0 ? Absence::kRefused : Absence::kSilent});
   if (joint.link_encoder.present)
     compare(cia402::kLinkEncoderCounts, 1U << static_cast<unsigned>(joint.link_encoder.bits));
 }
@@ -119,8 +121,7 @@ void Cia402Startup::plan_settings(const JointConfig& joint, double period_s) {
   await(cia402::kModeInForce, cia402::kCyclicSynchronousTorque);
   write_and_compare(cia402::kMaxTorque, most_permille(joint));
   write_and_compare(canopen::pdo_event_timer_ms(canopen::kRpdoCommunication),
-                    std::max(1U, whole(1000.0 * joint.drive.watchdog_s)), Number::kUnsigned,
-                    Absence::kWarned);
+                    whole(1000.0 * joint.drive.watchdog_s), Number::kUnsigned, Absence::kWarned);
   write_and_compare(cia402::kConnectionLostOption,
                     static_cast<std::uint32_t>(cia402::Reaction::kFault), Number::kSigned,
                     Absence::kWarned);
@@ -171,21 +172,25 @@ void Cia402Startup::switch_off_tpdo(int k) {
 }
 
 void Cia402Startup::write(const Object& object, std::uint32_t value, Absence absence) {
-  steps_.push_back({Kind::kWrite, object, value, 0, Number::kUnsigned, absence});
+  steps_.push_back({.kind = Kind::kWrite, .object = object, .value = value, .absence = absence});
 }
 
 void Cia402Startup::write_and_compare(const Object& object, std::uint32_t value, Number number,
                                       Absence absence) {
   write(object, value, absence);
-  steps_.push_back({Kind::kCompare, object, value, 0xFFFFFFFF, number, absence});
+  steps_.push_back({.kind = Kind::kCompare,
+                    .object = object,
+                    .value = value,
+                    .number = number,
+                    .absence = absence});
 }
 
 void Cia402Startup::compare(const Object& object, std::uint32_t value, std::uint32_t mask) {
-  steps_.push_back({Kind::kCompare, object, value, mask, Number::kUnsigned, Absence::kRefused});
+  steps_.push_back({.kind = Kind::kCompare, .object = object, .value = value, .mask = mask});
 }
 
 void Cia402Startup::await(const Object& object, std::uint32_t value, std::uint32_t mask) {
-  steps_.push_back({Kind::kAwait, object, value, mask, Number::kUnsigned, Absence::kRefused});
+  steps_.push_back({.kind = Kind::kAwait, .object = object, .value = value, .mask = mask});
 }
 
 // --- the dialogue --------------------------------------------------------------------------------

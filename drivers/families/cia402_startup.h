@@ -55,11 +55,11 @@ class Cia402Startup {
   enum class Number : std::uint8_t { kUnsigned, kSigned, kFloat };
   struct Step {
     Kind kind;
-    canopen::Object object;
-    std::uint32_t value;
-    std::uint32_t mask;
-    Number number;
-    Absence absence;
+    canopen::Object object = {};
+    std::uint32_t value = 0;
+    std::uint32_t mask = 0xFFFFFFFF;
+    Number number = Number::kUnsigned;
+    Absence absence = Absence::kRefused;
   };
 
   void plan_identity(const JointConfig& joint);

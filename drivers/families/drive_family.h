@@ -130,9 +130,7 @@ class DriveFamily {
   /// All identifiers of is_mine() and is_foreign_command(). Allocates: set-up only.
   virtual std::vector<CanFilter> receive_filters() const = 0;
   /// Whether the frame answers presence_request().
-  virtual bool is_presence(const CanFrame& frame) const noexcept {
-    return is_mine(frame) && !is_unsolicited(frame);
-  }
+  virtual bool is_presence(const CanFrame& frame) const noexcept { return is_mine(frame); }
   /// Whether the frame answers presence_request() as this drive would, but with an identifier that
   /// is not its own: a setting of the drive that is easily forgotten.
   virtual bool is_astray(const CanFrame& frame) const noexcept {

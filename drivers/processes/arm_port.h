@@ -44,6 +44,8 @@ class ArmPort {
   /// Reads commands until one answers the state published last (true) or the deadline has come.
   bool wait_for_answer(std::int64_t deadline_ns);
   void publish_status();
+  /// Keeps what goes over the arm plane; outlives this. Set-up only.
+  void set_black_box(BlackBox* box) { arm_plane_.set_black_box(box); }
 
   /// DRIVER_STATUS as published last. `realtime_priority` is the process's to set.
   driver_status_t& status() noexcept { return status_; }

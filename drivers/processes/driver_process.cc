@@ -69,12 +69,16 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
       robot_(load(options)),
       bridged_cycles_(bridged_cycles(options, &robot_)),
       locks_(lock_buses(robot_)),
+      black_box_(open_black_box("driver-" + robot_.name, robot_.rate_hz, options.lockstep)),
       reporter_(robot_.joint_names()),
       user_plane_(user_plane_url(), LcmPort::Use::kPublishOnly),
       grant_(request_realtime(options)),
       port_(robot_, ArmDriverOptions{options.session, options.lockstep, bridged_cycles_},
             &user_plane_, &reporter_) {
   port_.status().realtime_priority = grant_.fifo && grant_.locked_memory ? 1 : 0;
+  port_.set_black_box(black_box_.get());
+  user_plane_.set_black_box(black_box_.get());
+  reporter_.set_on_fault([this](const char* code) { keep(black_box_.get(), code); });
 }
 
 int DriverProcess::run(const volatile std::sig_atomic_t& stop) {

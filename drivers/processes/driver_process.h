@@ -4,9 +4,11 @@
 #include <csignal>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "common/black_box/black_box.h"
 #include "common/lcm_port.h"
 #include "common/realtime.h"
 #include "common/run_lock.h"
@@ -54,6 +56,7 @@ class DriverProcess {
   Robot robot_;
   int bridged_cycles_;
   std::vector<RunLock> locks_;  ///< on the arm plane and every bus: nobody else may drive them
+  std::unique_ptr<BlackBox> black_box_;
   // In this order: LCM starts a thread for each port. The user plane's, which anybody may flood,
   // and the reporter's keep normal priority; the arm plane's inherits the one requested.
   StateReporter reporter_;

@@ -75,6 +75,9 @@ void StateReporter::report(std::uint64_t packed, int known_fault) const {
   const int of_joint = named ? static_cast<int>(joint) : -1;
   const std::string text = fault_text_ ? fault_text_(fault, of_joint, detail) : "";
   spdlog::info(drives_text(state, fault, named ? joints_[joint] : "", text));
+  const Problem* problem = find_problem(problems::kDriver, fault);
+  if (problem != nullptr && fault != joint_state_t::FAULT_REQUESTED && on_fault_)
+    on_fault_(problem->code);
 }
 
 }  // namespace limber

@@ -33,6 +33,11 @@ class StateReporter {
   using WarningText = std::function<std::string(int motor, const DriveWarning& warning)>;
   void set_warning_text(WarningText text) { warning_text_ = std::move(text); }
 
+  /// Called from the thread when the drives have a new fault, with its code, such as
+  /// driver.VELOCITY; not for driver.REQUESTED. Set before the first note().
+  using OnFault = std::function<void(const char* code)>;
+  void set_on_fault(OnFault call) { on_fault_ = std::move(call); }
+
   /// What motor 0, 1, .. is to be looked at for; a line for each change. Allowed inside the cycle.
   void note_warning(int motor, const DriveWarning& warning) noexcept {
     warnings_[static_cast<std::size_t>(motor)].store(warning, std::memory_order_release);
@@ -58,6 +63,7 @@ class StateReporter {
 
   std::vector<std::string> joints_;
   FaultText fault_text_;
+  OnFault on_fault_;
   void report_warnings(std::array<DriveWarning, kMaxMotors>* reported) const;
 
   static_assert(std::atomic<DriveWarning>::is_always_lock_free);

@@ -167,7 +167,7 @@ std::string_view Subframe::text() const noexcept {
 }
 
 bool FrameReader::next(Subframe* subframe) noexcept {
-  while (!malformed_ && at_ < frame_.length && frame_.data[at_] == kNop) ++at_;
+  while (at_ < frame_.length && frame_.data[at_] == kNop) ++at_;
   if (malformed_ || at_ >= frame_.length) return false;
   malformed_ = !parse(frame_.data[at_++], subframe);
   return !malformed_;

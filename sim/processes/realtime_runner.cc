@@ -48,6 +48,7 @@ void RealtimeRunner::drop_time(std::int64_t behind_ns) {
 }
 
 void RealtimeRunner::on_state(const joint_state_t& state) {
+  port_.watch_faults(state);
   if (state.session != session_) {
     session_ = state.session;
     anchored_ = false;

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/clock.h"
+#include "common/problem_text.h"
 
 namespace limber::sim {
 namespace {
@@ -50,6 +51,19 @@ SimPort::SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* time
 }
 
 void SimPort::publish_truth() noexcept { user_.publish(channels::kSimTruth, simulator_.truth()); }
+
+void SimPort::set_black_box(BlackBox* box) {
+  black_box_ = box;
+  user_.set_black_box(box);
+}
+
+void SimPort::watch_faults(const joint_state_t& state) {
+  if (state.fault == fault_) return;
+  fault_ = state.fault;
+  const Problem* problem = find_problem(problems::kDriver, fault_);
+  if (problem != nullptr && fault_ != joint_state_t::FAULT_REQUESTED)
+    keep(black_box_, problem->code);
+}
 
 void SimPort::complain(const char* what) {
   const std::int64_t now_ns = monotonic_ns();

@@ -32,6 +32,11 @@ class SimPort {
   void wait(std::int64_t deadline_ns) noexcept { wait_readable(descriptors_, deadline_ns); }
   void handle_messages() noexcept { user_.handle_waiting(kMessagesAtOnce); }
   void publish_truth() noexcept;
+  /// Keeps what is published and heard from now on, as an incident when the driver has a fault.
+  /// Outlives this. Set-up only.
+  void set_black_box(BlackBox* box);
+  /// Each state of the driver. Not for lock step.
+  void watch_faults(const joint_state_t& state);
   /// To the log, at most once a second.
   void complain(const char* what);
 
@@ -44,6 +49,8 @@ class SimPort {
   LcmPort user_;
   std::vector<int> descriptors_;
   std::int64_t complained_ns_ = 0;
+  BlackBox* black_box_ = nullptr;
+  int fault_ = joint_state_t::FAULT_NONE;
 };
 
 template <typename Handler>

@@ -1,13 +1,10 @@
-// Joint limits, torque blend and gain ramp, each alone.
+// Joint limits and torque blend, each alone.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limber/controller_status_t.hpp>
 #include <limits>
 
-#include "controller/gains/gain_ramp.h"
-#include "controller/gains/gains.h"
 #include "controller/output/joint_limits.h"
 #include "controller/output/torque_blend.h"
 #include "tests/controller/arms.h"
@@ -169,50 +166,6 @@ TEST(TorqueBlend, DoesNotGoOnPushingAJointThatYields) {
   blend.add_to(&tau);
   EXPECT_NEAR(tau[0], std::exp(-1.0) * tau[1], 1e-9);
   EXPECT_GT(tau[1], 9.8);
-}
-
-// The stiffness stays symmetric positive semidefinite on the way; no step of the ramp is large.
-TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
-  std::mt19937 generator(1);
-  Gains from(2);
-  from.K_x = limber::testing::random_stiffness(300.0, 10.0, generator);
-  Gains to = from;
-  to.K_x = limber::testing::random_stiffness(900.0, 40.0, generator);
-  to.K_q.diagonal().setConstant(50.0);
-  to.damping_ratio = 1.0;
-  GainRamp ramp(from);
-  ramp.start(to, 0.2);
-  Matrix6 before = from.K_x;
-  for (int i = 0; i < 199; ++i) {
-    ramp.advance(1e-3);
-    const Matrix6& K = ramp.now().K_x;
-    EXPECT_LT((K - before).norm(), 0.009 * (to.K_x - from.K_x).norm());
-    EXPECT_GT(K.ldlt().vectorD().minCoeff(), 0.0);
-    EXPECT_TRUE(ramp.moving());
-    before = K;
-    if (i == 99) {
-      EXPECT_NEAR(ramp.now().K_q(0, 0), 25.0, 1e-9) << "half way";
-    }
-  }
-  ramp.advance(1e-3 + 1e-12);
-  EXPECT_FALSE(ramp.moving());
-  EXPECT_EQ(ramp.now().K_x, to.K_x);
-  EXPECT_EQ(ramp.now().damping_ratio, 1.0);
-}
-
-TEST(GainRamp, ANewRampStartsWhereTheOldOneIs) {
-  Gains gains(1);
-  GainRamp ramp(gains);
-  gains.K_q.diagonal().setConstant(100.0);
-  ramp.start(gains, 0.0);  // at least a tenth of a second
-  for (int i = 0; i < 50; ++i) ramp.advance(1e-3);
-  const double reached = ramp.now().K_q(0, 0);
-  EXPECT_NEAR(reached, 50.0, 1e-6);
-  gains.K_q.setZero();
-  ramp.start(gains, 1.0);
-  EXPECT_EQ(ramp.now().K_q(0, 0), reached);
-  ramp.advance(1e-3);
-  EXPECT_NEAR(ramp.now().K_q(0, 0), reached, 1e-3);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ import typer
 from typer.exceptions import TyperException
 
 from limber import __version__
-from limber.cli import can, dev, experiment, faults, identify, live, log, referee, run
+from limber.cli import can, dev, experiment, faults, identify, incident, live, log, referee, run
 from limber.cli.options import console
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
 
@@ -27,6 +27,7 @@ app.add_typer(can.app, name="can")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(faults.app, name="faults")
 app.add_typer(identify.app, name="identify")
+app.add_typer(incident.app, name="incident")
 
 
 @app.callback(invoke_without_command=True)

@@ -1,0 +1,165 @@
+// From the torque that is wanted to the torque that is sent: blend, limits and preload in a row.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limber/controller_status_t.hpp>
+#include <limits>
+
+#include "controller/output/torque_output.h"
+#include "tests/controller/one_joint.h"
+
+namespace limber::controller::test_torque_output {
+namespace {
+
+using Status = controller_status_t;
+
+constexpr double kT = 1e-3;
+
+VectorJ one(double x) { return VectorJ::Constant(1, x); }
+
+/// One joint with two motors: 20 N m, steps of 0.4 N m. Its springs pull with 800 c^2 / 2 N m.
+class TorqueOutputTest : public ::testing::Test {
+ protected:
+  TorqueOutputTest() : robot_(made()), output_(robot_), state_(1), terms_(1) {
+    state_.period_s = kT;
+    terms_.g.setZero();
+    terms_.M_total.setOnes();
+  }
+  static Robot made() {
+    Robot robot = limber::testing::one_pair({}).robot;
+    JointConfig& joint = robot.joints[0];
+    joint.torque_limit_Nm = 20.0;
+    joint.torque_rate_limit_Nm_per_s = 500.0;
+    joint.velocity_limit = 10.0;
+    joint.position_min = -3.0;
+    joint.position_max = 3.0;
+    return robot;
+  }
+  bool shape(double tau, const VectorJ* preload = nullptr) {
+    limits_ = 0;
+    return output_.shape(one(tau), preload, state_, terms_, one(0.0), kT, &limits_);
+  }
+  void stand_by(double target, const Standby& how) {
+    limits_ = 0;
+    output_.stand_by(one(target), how, state_, one(0.0), &limits_);
+  }
+  void sent(double tau) { stand_by(tau, {.preload = PreloadAtRest::kWound}); }
+  double torque() const { return output_.torque()[0]; }
+  double preload_torque() const { return output_.preload_torque()[0]; }
+
+  Robot robot_;
+  TorqueOutput output_;
+  ArmState state_;
+  ArmTerms terms_;
+  std::int32_t limits_ = 0;
+};
+
+TEST_F(TorqueOutputTest, ATorqueThatFitsIsSent) {
+  state_.preload[0] = 0.3;
+  sent(1.0);
+  EXPECT_TRUE(shape(1.2));
+  EXPECT_EQ(torque(), 1.2);
+  EXPECT_EQ(limits_, 0);
+}
+
+TEST_F(TorqueOutputTest, AllLimitsAreTold) {
+  state_.preload[0] = 0.3;
+  sent(19.9);
+  state_.v << 9.0;
+  EXPECT_TRUE(shape(41.0));  // 20.5 N m are left by the speed limit
+  EXPECT_EQ(torque(), 20.0);
+  EXPECT_EQ(limits_, Status::LIMIT_VELOCITY | Status::LIMIT_TORQUE);
+  EXPECT_TRUE(shape(0.0));
+  EXPECT_NEAR(torque(), 19.6, 1e-12);
+  EXPECT_EQ(limits_, +Status::LIMIT_RATE);
+}
+
+TEST_F(TorqueOutputTest, ATorqueThatIsNoNumberIsNotSent) {
+  state_.preload[0] = 0.3;
+  sent(2.0);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_FALSE(shape(bad));
+    EXPECT_EQ(torque(), 2.0);
+  }
+}
+
+// Half a second along a cosine: 2 + 6 (1 + cos) / 2.
+TEST_F(TorqueOutputTest, ASwitchIsBlended) {
+  state_.preload[0] = 0.3;
+  sent(8.0);
+  output_.blend_next();
+  EXPECT_FALSE(shape(std::nan(""))) << "and one that fails is not the switch";
+  EXPECT_TRUE(shape(2.0));
+  EXPECT_EQ(torque(), 8.0);
+  EXPECT_EQ(limits_, +Status::LIMIT_RAMP);
+  for (int i = 0; i < 250; ++i) shape(2.0);
+  EXPECT_NEAR(torque(), 5.0, 1e-9);
+  EXPECT_EQ(limits_, +Status::LIMIT_RAMP);
+  for (int i = 0; i < 251; ++i) shape(2.0);
+  EXPECT_NEAR(torque(), 2.0, 1e-12);
+  EXPECT_EQ(limits_, 0);
+  EXPECT_TRUE(shape(3.0));
+  EXPECT_NEAR(torque(), 2.4, 1e-12) << "a step of the law itself is no switch";
+  EXPECT_EQ(limits_, +Status::LIMIT_RATE);
+}
+
+TEST_F(TorqueOutputTest, ABlendDoesNotPushAJointThatYields) {
+  state_.preload[0] = 0.3;
+  sent(8.0);
+  output_.blend_next();
+  shape(2.0);
+  state_.v << 1.0;
+  for (int i = 0; i < 30; ++i) shape(2.0);
+  EXPECT_LT(torque(), 2.0 + 6.0 * std::exp(-0.9)) << "30 ms are its time constant";
+}
+
+TEST_F(TorqueOutputTest, StepsAreCountedFromWhatTheDrivesApply) {
+  sent(5.0);
+  state_.tau_applied << 5.4;
+  output_.follow_drives(state_);
+  EXPECT_EQ(torque(), 5.0) << "on its way";
+  state_.tau_applied << -3.0;
+  output_.follow_drives(state_);
+  EXPECT_EQ(torque(), -3.0);
+}
+
+TEST_F(TorqueOutputTest, StandbyGoesThereAtOnceOrInSteps) {
+  EXPECT_EQ(Standby{}.torque, Standby::Torque::kZero) << "where nothing is chosen";
+  stand_by(6.0, {});
+  EXPECT_EQ(torque(), 6.0);
+  EXPECT_EQ(limits_, 0);
+  stand_by(0.0, {.in_steps = true});
+  EXPECT_NEAR(torque(), 5.6, 1e-12);
+  EXPECT_EQ(limits_, +Status::LIMIT_RATE);
+}
+
+TEST_F(TorqueOutputTest, StandbyKeepsWindsOrReleasesThePreload) {
+  state_.preload[0] = 0.3;
+  stand_by(0.0, {.preload = PreloadAtRest::kWound});
+  EXPECT_NEAR(preload_torque(), 36.0, 1e-12) << "400 * 0.3^2";
+  stand_by(0.0, {.preload = PreloadAtRest::kAsSent});
+  EXPECT_NEAR(preload_torque(), 36.0, 1e-12);
+  stand_by(0.0, {.in_steps = true});
+  EXPECT_NEAR(preload_torque(), 35.6, 1e-12);
+  stand_by(0.0, {});
+  EXPECT_EQ(preload_torque(), 0.0);
+}
+
+// robot.yaml's preload of 0.3 rad unless the law wants another: 0.6 mrad a cycle, K_c = 180 N
+// m/rad.
+TEST_F(TorqueOutputTest, TheLawMayWantAnotherPreload) {
+  state_.preload[0] = 0.3;
+  sent(0.0);
+  for (int i = 0; i < 20; ++i) shape(0.0);
+  EXPECT_NEAR(preload_torque(), 36.0, 1e-9);
+  EXPECT_EQ(limits_, 0);
+  const VectorJ slack = one(0.0);
+  shape(0.0, &slack);
+  EXPECT_NEAR(preload_torque(), 400.0 * 0.2994 * 0.2994 - 180.0 * 0.0006, 1e-9);
+  state_.preload[0] = 0.0;
+  shape(0.0, &slack);
+  EXPECT_EQ(limits_, +Status::LIMIT_RATE) << "180 N m/rad want 54 N m more";
+}
+
+}  // namespace
+}  // namespace limber::controller::test_torque_output

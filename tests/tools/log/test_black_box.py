@@ -1,0 +1,100 @@
+"""Black boxes, written here byte by byte as common/black_box does: order, seams, damage."""
+
+import struct
+
+import lcm
+import pytest
+
+from limber.errors import InputError
+from limber.log import black_box
+from limber.log.black_box import Record, incidents, read, together, write_log
+
+EPOCH_us = 1_000_000_000
+
+
+def header(text: str = "limber-black-box/1\nname: driver-x\n") -> bytes:
+    text += f"epoch_minus_monotonic_ns: {EPOCH_us * 1000}\n"
+    return text.encode().ljust(black_box.HEADER_BYTES, b"\0")
+
+
+def record(number: int, channel: str = "A", data: bytes = b"data", time_us: int = 0) -> bytes:
+    lengths = struct.pack(">ii", len(channel), len(data))
+    whole = b"\xed\xa1\xda\x01" + struct.pack(">qq", number, time_us) + lengths
+    whole += channel.encode() + data
+    return whole + bytes(-len(whole) % 8)
+
+
+def box(folder, ring: bytes, name: str = "20261122T101112-driver-x-driver.BUS.box"):
+    path = folder / name
+    path.write_bytes(header() + ring)
+    return path
+
+
+def test_records_come_in_the_order_of_their_numbers(tmp_path):
+    """The ring went round: the newest records lie before the oldest."""
+    path = box(tmp_path, record(7, "B", b"new", 9) + record(5, "A", b"old", 4) + bytes(64))
+    assert read(path) == [
+        Record(5, EPOCH_us + 4, "A", b"old"),
+        Record(7, EPOCH_us + 9, "B", b"new"),
+    ]
+
+
+def test_a_record_that_was_overwritten_in_part_is_left_out(tmp_path):
+    old = record(1, data=b"x" * 100)
+    unfinished = bytearray(record(9))
+    unfinished[:4] = bytes(4)  # its sync word is written last
+    path = box(tmp_path, record(8) + old[len(record(8)) :] + bytes(unfinished) + record(2))
+    assert [r.number for r in read(path)] == [2, 8]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        record(3)[:30],  # the file ends
+        record(3, "A" * 64),
+        record(3, data=b"x" * 1401),
+        record(3, channel=""),
+        b"\xed\xa1\xda\x01" * 9,
+    ],
+)
+def test_damage_hides_nothing_else(tmp_path, damage):
+    whole = record(1)
+    padded = damage + bytes(-len(damage) % 8)
+    assert [r.number for r in read(box(tmp_path, whole + padded + whole))][:1] == [1]
+    assert [r.number for r in read(box(tmp_path, whole + damage))] == [1]
+
+
+def test_what_is_no_black_box_is_refused(tmp_path):
+    for content in (b"", b"something else", header("limber-black-box/2\n")):
+        path = tmp_path / "20261122T101112-driver-x-y.box"
+        path.write_bytes(content)
+        with pytest.raises(InputError, match="no black box"):
+            read(path)
+
+
+def test_boxes_of_one_incident_become_one_log(tmp_path, monkeypatch):
+    monkeypatch.setenv("LIMBER_INCIDENTS", str(tmp_path))
+    state = record(0, "JOINT_STATE", b"state", 10)
+    box(tmp_path, state + record(1, "JOINT_TORQUE", b"torque", 30))
+    box(
+        tmp_path,
+        record(0, "JOINT_STATE", b"state", 12) + record(1, "SIM_TRUTH", b"truth", 20),
+        "20261122T101114-controller-x-controller.DRIVER_FAULT.box",
+    )
+    box(tmp_path, record(0), "20261122T101112-driver-other-driver.BUS.box")
+    box(tmp_path, record(0), "20261122T111112-driver-x-driver.BUS.box")
+    (tmp_path / "notes.box").write_text("not of limber")
+    first = next(b for b in incidents() if b.robot == "x")
+    boxes = together(first, incidents())
+    assert [(b.program, b.code) for b in boxes if b.robot == "x"] == [
+        ("driver", "driver.BUS"),
+        ("controller", "controller.DRIVER_FAULT"),
+    ]
+    assert write_log(boxes, tmp_path / "log") == 3
+    events = list(lcm.EventLog(str(tmp_path / "log")))
+    assert [(e.channel, e.data) for e in events] == [
+        ("JOINT_STATE", b"state"),
+        ("SIM_TRUTH", b"truth"),
+        ("JOINT_TORQUE", b"torque"),
+    ]
+    assert [e.timestamp - EPOCH_us for e in events] == [10, 20, 30]
