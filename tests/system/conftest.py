@@ -32,7 +32,8 @@ def pytest_configure(config):
 
 
 @pytest.fixture
-def stack(tmp_path):
+def stack(tmp_path, monkeypatch):
+    monkeypatch.setenv("LIMBER_INCIDENTS", str(tmp_path / "incidents"))
     running = Stack(tmp_path)
     yield running
     running.close()

@@ -88,6 +88,29 @@ TEST(Check, WarnsWhereGravityIsTooMuch) {
   EXPECT_TRUE(contains(outcome.output, "warning: shoulder: gravity needs up to 7.01"));
 }
 
+TEST(Check, WarnsOfARateLimitThatLimitsNothing) {
+  // 3500 N m/s are half of 7 N m in a cycle at 1 kHz.
+  for (const auto& [rate, can, warned] : {std::tuple{"3600", "socketcan:can0", true},
+                                          {"3400", "socketcan:can0", false},
+                                          {"3600", "virtual:desktop2r", false}}) {
+    const testing::TemporaryFolder folder;
+    const std::string robot = LIMBER_SOURCE_DIR "/robots/desktop2r/";
+    folder.write("robot.urdf", testing::read_text(robot + "robot.urdf"));
+    std::string yaml = testing::read_text(robot + "robot.yaml");
+    yaml = testing::apply(yaml, {"", "virtual:desktop2r", can, ""}).text;
+    yaml = testing::apply(yaml, {"", "    bus: arm\n",
+                                 std::string("    bus: arm\n    torque_rate_limit_Nm_per_s: ") +
+                                     rate + "\n",
+                                 ""})
+               .text;
+    folder.write("robot.yaml", yaml);
+    const Outcome outcome = check("robot " + folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(contains(outcome.output, "the gate will pass almost any step"), warned)
+        << rate << can << outcome.output;
+  }
+}
+
 TEST(Check, RefusesABusThatCannotCarryTheArm) {
   // Seven joints on a classic bus at 1 kHz: 14 frames of 135 bits are 189 % of 1 Mbit/s.
   const testing::TemporaryFolder folder;

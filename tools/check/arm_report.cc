@@ -75,6 +75,20 @@ void warn_of_gravity(const Robot& robot, ArmReport* report) {
   }
 }
 
+/// With real motors: ideal ones are often described so.
+void warn_of_steps(const Robot& robot, ArmReport* report) {
+  constexpr double kMostShare = 0.5;  // of the torque limit, in one cycle
+  if (robot.on_virtual_buses()) return;
+  for (const JointConfig& joint : robot.joints) {
+    const double step = joint.torque_rate_limit_Nm_per_s / robot.rate_hz;
+    if (step <= kMostShare * joint.torque_limit_Nm) continue;
+    report->warnings.push_back(fmt::format(
+        "{}: its torque rate limit allows steps of {:.3g} in a cycle, with a torque limit of "
+        "{:.3g}: the gate will pass almost any step",
+        joint.name, step, joint.torque_limit_Nm));
+  }
+}
+
 BusReport bus_report(const Robot& robot, int index) {
   BusReport report{expected_bus_load(robot, index),
                    predicted_bus_load(robot, index),
@@ -107,6 +121,7 @@ ArmReport make_arm_report(const LoadedRobot& robot) {
   add_home(robot, home, &report);
   add_gravity(robot, home, &report);
   warn_of_gravity(robot.robot, &report);
+  warn_of_steps(robot.robot, &report);
   for (std::string& warning : chain_warnings(robot.robot))
     report.warnings.push_back(std::move(warning));
   if (robot.robot.has_drives) add_buses(robot.robot, &report);

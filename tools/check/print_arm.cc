@@ -193,6 +193,7 @@ std::string arm_json(const LoadedRobot& robot, const ArmReport& report) {
               {"tip", json::text(arm.tip)},
               {"links", json::texts(robot.segment_links)},
               {"rate_hz", json::number(arm.rate_hz)},
+              {"energy_limit_J", json::number(robot.robot.energy_limit_J)},
               {"gravity_m_per_s2", json::numbers({arm.gravity[0], arm.gravity[1], arm.gravity[2]})},
               {"moving_mass_kg", json::number(report.moving_mass_kg)},
               {"home_p_BT", json::numbers(report.home_p_BT)},

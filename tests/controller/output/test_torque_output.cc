@@ -68,7 +68,7 @@ TEST_F(TorqueOutputTest, AllLimitsAreTold) {
   state_.v << 9.0;
   EXPECT_TRUE(shape(41.0));  // 20.5 N m are left by the speed limit
   EXPECT_EQ(torque(), 20.0);
-  EXPECT_EQ(limits_, Status::LIMIT_VELOCITY | Status::LIMIT_TORQUE);
+  EXPECT_EQ(limits_, +Status::LIMIT_VELOCITY | +Status::LIMIT_TORQUE);
   EXPECT_TRUE(shape(0.0));
   EXPECT_NEAR(torque(), 19.6, 1e-12);
   EXPECT_EQ(limits_, +Status::LIMIT_RATE);

@@ -1,10 +1,13 @@
 """`limber test`: everything that CI runs, in order; each part writes its own output."""
 
+import itertools
 import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -49,35 +52,47 @@ def _format() -> list[str]:
     return [clang_format, "--dry-run", "-Werror", *map(str, cxx_files())]
 
 
-# Name -> its command
-PARTS: dict[str, Callable[[], list[str]]] = {
-    "ctest": lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)],
+@dataclass(frozen=True)
+class Part:
+    command: Callable[[], list[str]]
+    # Runs beside others: it neither fills all processors nor runs in real time
+    beside: bool = False
+
+
+DETERMINISM = "tests/system/test_determinism.py"
+
+PARTS: dict[str, Part] = {
+    "ctest": Part(lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)]),
     # The other C++ unit tests, built with sanitizers only
-    "sanitizers": lambda: [
-        "env",
-        f"CTEST_PARALLEL_LEVEL={JOBS}",
-        "cmake",
-        "--workflow",
-        "--preset",
-        "asan",
-    ],
-    "fuzz": lambda: _limber("fuzz"),
-    "threads": _threads,
-    "soak": lambda: _limber("soak", "--hours", "0.12"),
-    "pytest": lambda: [*PYTEST, "tests/tools", "tests/fuzz"],
-    # What decides whether the arm moves; the other areas take longer
-    "mutation": lambda: _limber(
-        "mutation", "gate", "tables", "supervisors", "watches", "--seconds", "90"
+    "sanitizers": Part(
+        lambda: [
+            "env",
+            f"CTEST_PARALLEL_LEVEL={JOBS}",
+            "cmake",
+            "--workflow",
+            "--preset",
+            "asan",
+        ]
     ),
-    "coverage": lambda: _limber("coverage"),
-    "eval": lambda: [*PYTEST, "tests/eval"],
-    "system": lambda: [*_private(), *PYTEST, "tests/system"],
-    "tutorial": lambda: [*PYTEST, "tests/tutorial"],
+    "fuzz": Part(lambda: _limber("fuzz")),
+    "threads": Part(_threads),
+    "pytest": Part(lambda: [*PYTEST, "tests/tools", "tests/fuzz"], beside=True),
+    "lockstep": Part(lambda: [*_private(), *PYTEST, DETERMINISM], beside=True),
+    "tutorial": Part(lambda: [*PYTEST, "tests/tutorial"], beside=True),
+    # What decides whether the arm moves; the other areas take longer
+    "mutation": Part(
+        lambda: _limber("mutation", "gate", "tables", "supervisors", "watches", "--seconds", "90"),
+        beside=True,
+    ),
+    "coverage": Part(lambda: _limber("coverage"), beside=True),
+    "eval": Part(lambda: [*PYTEST, "tests/eval"], beside=True),
+    "soak": Part(lambda: _limber("soak", "--hours", "0.12"), beside=True),
+    "repo": Part(lambda: [*PYTEST, "tests/repo"], beside=True),
+    "format": Part(_format, beside=True),
+    "lint": Part(lambda: [sys.executable, "-m", "ruff", "check", "."], beside=True),
+    "system": Part(lambda: [*_private(), *PYTEST, "tests/system", f"--ignore={DETERMINISM}"]),
     # SocketCAN in a guest kernel that has vcan; one guest at a time
-    "vcan": lambda: [*CTEST, "-L", "vcan", "--no-tests=error"],
-    "format": _format,
-    "lint": lambda: [sys.executable, "-m", "ruff", "check", "."],
-    "repo": lambda: [*PYTEST, "tests/repo"],
+    "vcan": Part(lambda: [*CTEST, "-L", "vcan", "--no-tests=error"]),
 }
 
 
@@ -94,20 +109,60 @@ def cxx_files() -> list[Path]:
     )
 
 
+@dataclass(frozen=True)
+class Verdict:
+    name: str
+    passed: bool
+    seconds: float
+
+
+def _run_part(name: str, command: list[str], output: int | None) -> tuple[Verdict, str]:
+    start = time.monotonic()
+    try:
+        done = subprocess.run(
+            command, cwd=ROOT, check=False, stdout=output, stderr=subprocess.STDOUT, text=True
+        )
+    except FileNotFoundError as error:
+        raise RunError(f"{command[0]} is missing: start with ./limber test") from error
+    return Verdict(name, done.returncode == 0, time.monotonic() - start), done.stdout or ""
+
+
+def _groups(names: list[str]) -> Iterator[list[str]]:
+    """Parts that may run beside one another, together; every other one by itself."""
+    for beside, group in itertools.groupby(names, lambda name: PARTS[name].beside):
+        if beside:
+            yield list(group)
+        else:
+            for name in group:
+                yield [name]
+
+
 def run(names: list[str], console: Console) -> bool:
-    """Runs all parts, also after one has failed; True if all passed."""
-    commands = {name: PARTS[name]() for name in names}
-    verdicts = []
-    for number, (name, command) in enumerate(commands.items(), 1):
-        console.rule(f"{number} of {len(commands)}: {name}")
-        start = time.monotonic()
-        try:
-            code = subprocess.run(command, cwd=ROOT, check=False).returncode
-        except FileNotFoundError as error:
-            raise RunError(f"{command[0]} is missing: start with ./limber test") from error
-        verdicts.append((name, code == 0, time.monotonic() - start))
+    """Runs all parts, also after one has failed; True if all passed. The output of parts that run
+    beside others comes when they have ended.
+    """
+    commands = {name: PARTS[name].command() for name in names}
+    os.environ["LIMBER_INCIDENTS"] = str(ROOT / "out" / "incidents")  # tests crash a lot
+    verdicts: list[Verdict] = []
+
+    def rule(name: str) -> None:
+        console.rule(f"{len(verdicts) + 1} of {len(commands)}: {name}")
+
+    for group in _groups(names):
+        if len(group) == 1:
+            rule(group[0])
+            verdicts.append(_run_part(group[0], commands[group[0]], None)[0])
+            continue
+        console.print(f"beside one another: {', '.join(group)}")
+        with ThreadPoolExecutor(JOBS) as pool:
+            runs = [pool.submit(_run_part, name, commands[name], subprocess.PIPE) for name in group]
+            for done in as_completed(runs):
+                verdict, output = done.result()
+                rule(verdict.name)
+                print(output, end="", flush=True)
+                verdicts.append(verdict)
     console.rule("summary")
-    for name, passed, seconds in verdicts:
-        verdict = "[green]passed[/]" if passed else "[bold red]FAILED[/]"
-        console.print(f"{name:8} {verdict} {seconds:6.1f} s")
-    return all(passed for _, passed, _ in verdicts)
+    for verdict in verdicts:
+        text = "[green]passed[/]" if verdict.passed else "[bold red]FAILED[/]"
+        console.print(f"{verdict.name:10} {text} {verdict.seconds:6.1f} s")
+    return all(verdict.passed for verdict in verdicts)

@@ -116,7 +116,7 @@ class Evidence:
         self.state = _before(log.read("JOINT_STATE"), end_s)
         self.status = _before(log.read("CONTROLLER_STATUS"), end_s)
         self.driver = log.read("DRIVER_STATUS")
-        self._joints: list[dict[str, Any]] | None = None
+        self._arm: dict[str, Any] | None = None
 
     def active_again_s(self, time: float) -> float:
         active = self.status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE
@@ -133,12 +133,16 @@ class Evidence:
         unique = tuple(dict.fromkeys(code for code in also if code != onset.problem.code))
         return Fault(onset.problem, onset.time_s, joint, measured, then, unique, until_s)
 
-    def joint(self, index: int) -> dict[str, Any]:
+    def arm(self) -> dict[str, Any]:
         """As limber-check describes it; empty if it cannot."""
-        if self._joints is None:
+        if self._arm is None:
             done = run_checker(["robot", str(self.robot.folder), "--json"])
-            self._joints = json.loads(done.stdout)["joints"] if done.returncode == 0 else []
-        return self._joints[index] if index < len(self._joints) else {}
+            self._arm = json.loads(done.stdout) if done.returncode == 0 else {}
+        return self._arm
+
+    def joint(self, index: int) -> dict[str, Any]:
+        joints = self.arm().get("joints", [])
+        return joints[index] if index < len(joints) else {}
 
     def unit(self, index: int) -> str:
         return "m" if self.joint(index).get("type") == "prismatic" else "rad"
@@ -287,6 +291,13 @@ def _stands(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
     return f"{float(theta[-1]):.4g} {evidence.unit(onset.joint)} for {stood_s:.3g} s"
 
 
+def _energy(evidence: Evidence, _rows: Rows, onset: _Onset) -> str:
+    last = evidence.status[max(onset.row - 1, 0) : onset.row + 1]
+    both = np.minimum(last["kinetic_energy_J"], last["unexplained_energy_J"])
+    limit = evidence.arm().get("energy_limit_J")
+    return f"{both.max():.3g} J" + (f", limit {limit:.3g} J" if limit is not None else "")
+
+
 MEASURED: dict[str, Callable[[Evidence, Rows, _Onset], str]] = {
     "driver.POSITION": _position,
     "driver.VELOCITY": _velocity,
@@ -300,5 +311,6 @@ MEASURED: dict[str, Callable[[Evidence, Rows, _Onset], str]] = {
     "driver.EMERGENCY_STOP": _stop,
     "controller.STRAYED": _strayed,
     "controller.ENCODER_STOPPED": _stands,
+    "controller.ENERGY": _energy,
 }
 assert all(code.split(".")[1] in groups()[code.split(".")[0]].problems for code in MEASURED)

@@ -19,6 +19,7 @@ from limber.run.processes import Child, ProcessGroup, process_group
 
 START_TIMEOUT_S = 10.0
 STOP_TIMEOUT_S = 5.0
+TELLERS = ("limber-driver", "limber-controller", "limber-lab")
 RECORDERS = ("limber-record", "limber-can")  # never a reason to stop an arm
 
 
@@ -36,9 +37,8 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
         for name, command in commands.items():
             _start(group, name, command)
         driver = group.children["limber-driver"]
-        told = [driver, group.children["limber-controller"]]
         code = _follow(group, display(scenario, console, options.live_view), result, console)
-        _tell(told, console)
+        _tell(group, console)
         if code != 0 and not result.stopped_early:
             raise driver.failure()
         result.recorder = _stop_others(group)
@@ -61,7 +61,7 @@ def lab(
             code = group.run_until("limber-lab", lambda: status.update(_last_line(child)))
         if code != 0:
             raise child.failure()
-    _tell([child], console)
+        _tell(group, console)
     console.print(_last_line(child))
     return result
 
@@ -117,12 +117,11 @@ def _follow(
     console: Console,
 ) -> int:
     """Shows the run until the driver ends, or ends the driver on Ctrl-C; returns its exit code."""
-    told = [group.children[name] for name in ("limber-driver", "limber-controller")]
     try:
         with display as update:
 
             def tick() -> None:
-                _tell(told, console)
+                _tell(group, console)
                 for child in group.missed():
                     lost = f"{child.failure()}; the run goes on without it"
                     console.print(lost, style="bold red", markup=False, soft_wrap=True)
@@ -134,9 +133,9 @@ def _follow(
         return group.stop("limber-driver", signal.SIGINT, STOP_TIMEOUT_S)
 
 
-def _tell(children: list[Child], console: Console) -> None:
+def _tell(group: ProcessGroup, console: Console) -> None:
     """What the user has to know now, not when he reads the logs."""
-    for child in children:
+    for child in (group.children[name] for name in TELLERS if name in group.children):
         for line in child.news():
             console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
 
