@@ -98,11 +98,11 @@ TEST(Check, WarnsOfARateLimitThatLimitsNothing) {
     folder.write("robot.urdf", testing::read_text(robot + "robot.urdf"));
     std::string yaml = testing::read_text(robot + "robot.yaml");
     yaml = testing::apply(yaml, {"", "virtual:desktop2r", can, ""}).text;
-    yaml = testing::apply(yaml, {"", "    bus: arm\n",
-                                 std::string("    bus: arm\n    torque_rate_limit_Nm_per_s: ") +
-                                     rate + "\n",
-                                 ""})
-               .text;
+    yaml =
+        testing::apply(
+            yaml, {"", "    bus: arm\n",
+                   std::string("    bus: arm\n    torque_rate_limit_Nm_per_s: ") + rate + "\n", ""})
+            .text;
     folder.write("robot.yaml", yaml);
     const Outcome outcome = check("robot " + folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.output;
