@@ -39,4 +39,4 @@ def _list(console: Console, title: str, mutants: list[Mutant], result: Result) -
 
 
 def _print(console: Console, text: str) -> None:
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
+    console.print(text, markup=False, highlight=False, emoji=False, soft_wrap=True)
