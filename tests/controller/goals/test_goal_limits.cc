@@ -168,10 +168,10 @@ TEST_F(GoalLimitsTest, APoseIsFiniteWithAUnitQuaternionWithinTenMetres) {
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(why([=](Goal& g) { g.quat_BD[i] = kInf; }), "the pose is not finite");
   EXPECT_EQ(why([](Goal& g) { g.offset[0] = kNan; }), "") << "of another kind of goal";
-  const auto norm = [this](double norm) {
+  const auto norm = [this](double length) {
     return why([=](Goal& g) {
-      g.quat_BD[0] = 0.6 * norm;
-      g.quat_BD[3] = -0.8 * norm;
+      g.quat_BD[0] = 0.6 * length;
+      g.quat_BD[3] = -0.8 * length;
     });
   };
   EXPECT_EQ(norm(1.0099), "");
