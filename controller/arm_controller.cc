@@ -67,10 +67,11 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   // After a longer gap the goal goes on from where it was, not from where it would be.
   const std::int64_t periods = std::min(judgement.missed, kLongestStep - 1) + 1;
   const double dt_s = static_cast<double>(periods) * period_s_;
+  // Before the torque: what they find must not make it step twice in a cycle.
+  if (judgement.usable) watch_motion(state, dt_s);
   const Activity activity = activity_of(supervisor_);
   if (activity != Activity::kStandby && !cycle_.step(activity, dt_s))
     supervisor_.raise(Event::kTorqueInvalid);
-  if (judgement.usable) watch_motion(state, dt_s);
   if (activity_of(supervisor_) == Activity::kStandby) cycle_.stand_by(standby());
 
   write_answer(state);
@@ -90,7 +91,7 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
-  const MatrixJ& M = cycle_.trace().terms.M_total;
+  const MatrixJ& M = cycle_.inertia();
   if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);
   if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);

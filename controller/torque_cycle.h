@@ -63,6 +63,8 @@ class TorqueCycle {
   const VectorJ& preload_torque() const noexcept { return output_.preload_torque(); }
   /// The model's gravity torque, within the joints' limits; the last finite one.
   const VectorJ& gravity() const noexcept { return gravity_; }
+  /// Inertia with rotors as of measure(), kg m^2.
+  const MatrixJ& inertia() const noexcept { return arm_.terms().M_total; }
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:

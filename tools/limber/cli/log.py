@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from limber.cli.options import LogPath, Out, console
+from limber.cli.options import LogPath, Out, console, names_of
 
 app = typer.Typer()
 log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
@@ -37,15 +37,11 @@ def events(
     ] = None,
 ) -> None:
     """List what happened when: modes, requests, refusals, faults, limits, pushes, contacts."""
-    from limber.live.watch import law_names
     from limber.log import commands
-    from limber.log.events import Names
-    from limber.model.robot import load_robot
 
     folder = path if path.is_dir() else path.parent
     known = robot or (str(folder.resolve()) if (folder / "robot.yaml").is_file() else None)
-    joints = load_robot(known).joint_names if known is not None else []
-    commands.show_events(path, Names(joints, law_names()), console)
+    commands.show_events(path, names_of(known), console)
 
 
 @log_app.command()

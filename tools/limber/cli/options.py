@@ -3,12 +3,15 @@
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 from rich.console import Console
 
 from limber.paths import program
+
+if TYPE_CHECKING:
+    from limber.log.events import Names
 
 # A pipe or a file has no width of its own.
 console = Console(width=None if sys.stdout.isatty() else 120, highlight=False)
@@ -34,3 +37,12 @@ def become(name: str, *arguments: str) -> NoReturn:
 def bus_words(buses: list[str] | None) -> list[str]:
     """As the C++ programs take them."""
     return [word for bus in buses or () for word in ("--bus", bus)]
+
+
+def names_of(robot: str | None) -> "Names":
+    """Of the laws, and of a robot's joints; None: they are numbered."""
+    from limber.live.watch import law_names
+    from limber.log.events import Names
+    from limber.model.robot import load_robot
+
+    return Names([] if robot is None else load_robot(robot).joint_names, law_names())

@@ -1,5 +1,6 @@
 """`limber incident`: lists black boxes, and makes one log of those of an incident."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -8,12 +9,10 @@ from rich.console import Console
 
 from limber import tables
 from limber.errors import InputError
-from limber.live.watch import law_names
 from limber.log.black_box import NAME, Incident, folder, incidents, read, together, write_log
 from limber.log.commands import show_events
 from limber.log.events import Names
 from limber.log.reader import log_file
-from limber.model.robot import load_robot
 from limber.paths import ROOT, existing_file, output_folder
 
 KILLED = "killed"
@@ -44,7 +43,10 @@ def show_all(console: Console) -> None:
     console.print(f"in {folder()}; `limber incident show` tells the newest", soft_wrap=True)
 
 
-def show(path: Path | None, out: Path | None, console: Console) -> None:
+def show(
+    path: Path | None, out: Path | None, names_of: Callable[[str], Names], console: Console
+) -> None:
+    """`names_of`: of the joints and laws of a robot."""
     kept = [dated(box) for box in incidents()]
     if path is None:
         if not kept:
@@ -64,13 +66,5 @@ def show(path: Path | None, out: Path | None, console: Console) -> None:
         raise InputError(f"{', '.join(str(box.path) for box in boxes)}: nothing readable in them")
     for box in boxes:
         console.print(f"{box.program}: {box.code}  [dim]{box.path}[/]", soft_wrap=True)
-    show_events(log_file(log), Names(_joints(chosen.robot), law_names()), console)
+    show_events(log_file(log), names_of(chosen.robot), console)
     console.print(f"{log}: {count} messages; limber plot {target}", soft_wrap=True)
-
-
-def _joints(robot: str) -> list[str]:
-    """Empty for an arm that is not found by its name: joints are then numbered."""
-    try:
-        return load_robot(robot).joint_names
-    except InputError:
-        return []
