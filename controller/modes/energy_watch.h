@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limber/joint_state_t.hpp>
 #include <limits>
+#include <optional>
 
 #include "common/joints.h"
 #include "common/types.h"
@@ -36,7 +37,7 @@ class EnergyWatch {
 
   /// The drives do not follow: what the arm does now is not their work.
   void reset() noexcept {
-    known_ = false;
+    last_.reset();
     unexplained_J_ = 0.0;
   }
   /// Once a cycle with drives that follow: whether it is too much. `gravity` in N m, `M` with
@@ -47,24 +48,25 @@ class EnergyWatch {
     const Eigen::Map<const VectorJ> v(state.v, n);
     const Eigen::Map<const VectorJ> tau(state.tau_applied, n);
     const double kinetic_J = 0.5 * v.dot(M * v);
-    if (known_) {
-      const double work_J = 0.5 * (v + v_).dot(tau - gravity) * dt_s;
+    if (last_) {
+      const double work_J = 0.5 * (v + last_->v).dot(tau - gravity) * dt_s;
       const double kept = std::max(0.0, 1.0 - dt_s / kMemory_s);
-      unexplained_J_ = std::max(0.0, kept * unexplained_J_ + kinetic_J - kinetic_J_ - work_J);
+      unexplained_J_ = std::max(0.0, kept * unexplained_J_ + kinetic_J - last_->kinetic_J - work_J);
     }
-    v_ = v;
-    kinetic_J_ = kinetic_J;
-    known_ = true;
+    last_ = Cycle{v, kinetic_J};
     return !(std::min(kinetic_J, unexplained_J_) <= limit_J_);
   }
   /// W_world as it counts, J; never negative.
   double unexplained_J() const noexcept { return unexplained_J_; }
 
  private:
+  struct Cycle {
+    VectorJ v;
+    double kinetic_J;
+  };
+
   double limit_J_;
-  bool known_ = false;
-  VectorJ v_;
-  double kinetic_J_ = 0.0;
+  std::optional<Cycle> last_;
   double unexplained_J_ = 0.0;
 };
 

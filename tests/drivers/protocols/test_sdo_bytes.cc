@@ -97,8 +97,8 @@ TEST(SdoBytes, Segments) {
   segment.last = false;
   segment.bytes = 2;
   EXPECT_EQ(answer(segment), "585#1A01020000000000");
-  EXPECT_EQ(request({.kind = SdoKind::kReadSegment}), "605#6000000000000000");
-  EXPECT_EQ(answer({.kind = SdoKind::kWriteSegment}), "585#2000000000000000");
+  EXPECT_EQ(request({SdoKind::kReadSegment, {}}), "605#6000000000000000");
+  EXPECT_EQ(answer({SdoKind::kWriteSegment, {}}), "585#2000000000000000");
   segment.kind = SdoKind::kWriteSegment;
   EXPECT_EQ(answer(segment), "585#3000000000000000");
   segment.kind = SdoKind::kReadSegment;
