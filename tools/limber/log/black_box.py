@@ -111,7 +111,7 @@ def _record_at(ring: bytes, position: int, epoch_us: int) -> Record | None:
     if not (0 < name_size <= MAX_CHANNEL_BYTES and 0 <= size <= MAX_MESSAGE_BYTES and number >= 0):
         return None
     start = position + HEADER.size
-    name, data = ring[start : start + name_size], ring[start + name_size :][:size]
+    name, data = ring[start : start + name_size], ring[start + name_size : start + name_size + size]
     if len(data) != size or not name.isascii():
         return None
     return Record(number, epoch_us + time_us, name.decode("ascii"), data)
