@@ -20,12 +20,14 @@ namespace limber::controller {
 /// the opposite torque, or a model with the wrong weight give to it. A hand that pushes against a
 /// spring gives much work to the spring but the arm hardly any speed. So what counts is the lesser
 /// of the two: the arm moves with more than limit_J, and that much has come from outside within
-/// about kMemory_s. What friction has taken before is no credit.
+/// about kMemory_s. What friction has taken before is no credit. It must be too much for kCycles in
+/// a row: a velocity that is wrong for a moment is the driver's to find.
 ///
 /// For arms with rigid joints: the springs of others store energy that is not in T.
 class EnergyWatch {
  public:
   static constexpr double kMemory_s = 0.5;
+  static constexpr int kCycles = 5;
 
   /// For set-up.
   explicit EnergyWatch(const Robot& robot)
@@ -39,6 +41,7 @@ class EnergyWatch {
   void reset() noexcept {
     last_.reset();
     unexplained_J_ = 0.0;
+    cycles_ = 0;
   }
   /// Once a cycle with drives that follow: whether it is too much. `gravity` in N m, `M` with
   /// rotors, kg m^2; `dt_s`: since the last call. A value that is not finite is too much.
@@ -54,7 +57,9 @@ class EnergyWatch {
       unexplained_J_ = std::max(0.0, kept * unexplained_J_ + kinetic_J - last_->kinetic_J - work_J);
     }
     last_ = Cycle{v, kinetic_J};
-    return !(std::min(kinetic_J, unexplained_J_) <= limit_J_);
+    const bool within = std::min(kinetic_J, unexplained_J_) <= limit_J_;
+    cycles_ = within ? 0 : cycles_ + 1;
+    return cycles_ >= kCycles;
   }
   /// W_world as it counts, J; never negative.
   double unexplained_J() const noexcept { return unexplained_J_; }
@@ -68,6 +73,7 @@ class EnergyWatch {
   double limit_J_;
   std::optional<Cycle> last_;
   double unexplained_J_ = 0.0;
+  int cycles_ = 0;  ///< in a row with too much
 };
 
 }  // namespace limber::controller
