@@ -13,11 +13,12 @@ from stack import Stack  # noqa: E402
 
 
 @pytest.fixture
-def stack():
+def stack(monkeypatch):
     # Below the tree: the lab's own /tmp is lost with it.
     folder = HERE.parents[1] / "build" / "dev" / "vcan-tests"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    monkeypatch.setenv("LIMBER_INCIDENTS", str(folder / "incidents"))
     running = Stack(folder)
     yield running
     running.close()
