@@ -129,7 +129,7 @@ void require_local(const std::string& url, bool moves_motors) {
   if (moves_motors) {
     throw ConfigError(problem + "; or set LIMBER_ALLOW_REMOTE=1 if that is what you want");
   }
-  spdlog::warn("warning: {}. With real motors that is refused", problem);
+  spdlog::info("note: {}. With real motors that is refused", problem);
 }
 
 }  // namespace limber
