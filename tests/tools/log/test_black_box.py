@@ -1,5 +1,6 @@
 """Black boxes, written here byte by byte as common/black_box does: order, seams, damage."""
 
+import random
 import struct
 
 import lcm
@@ -70,6 +71,28 @@ def test_what_is_no_black_box_is_refused(tmp_path):
         path.write_bytes(content)
         with pytest.raises(InputError, match="no black box"):
             read(path)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_damage_never_invents_a_record_or_an_error(tmp_path, seed):
+    """Whatever is changed, cut or inserted: what is read is bounded, whole records stay."""
+    choose = random.Random(seed)
+    whole = b"".join(record(n, data=bytes([n]) * (n % 40)) for n in range(60))
+    for _ in range(300):
+        ring = bytearray(whole)
+        for _ in range(choose.randint(1, 6)):
+            at = choose.randrange(len(ring))
+            kind = choose.randrange(3)
+            if kind == 0:
+                ring[at] = choose.randrange(256)
+            elif kind == 1:
+                del ring[at:]
+                ring += b"\0"
+            else:
+                ring[at:at] = choose.randbytes(choose.randint(1, 30))
+        for found in read(box(tmp_path, bytes(ring))):
+            assert 0 < len(found.channel) <= black_box.MAX_CHANNEL_BYTES
+            assert len(found.data) <= black_box.MAX_MESSAGE_BYTES
 
 
 def test_boxes_of_one_incident_become_one_log(tmp_path, monkeypatch):
