@@ -112,7 +112,7 @@ def _record_at(ring: bytes, position: int, epoch_us: int) -> Record | None:
         return None
     start = position + HEADER.size
     name, data = ring[start : start + name_size], ring[start + name_size : start + name_size + size]
-    if len(data) != size or not name.isascii():
+    if len(name) != name_size or len(data) != size or not name.isascii():
         return None
     return Record(number, epoch_us + time_us, name.decode("ascii"), data)
 
