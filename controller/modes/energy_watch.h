@@ -41,7 +41,6 @@ class EnergyWatch {
   void reset() noexcept {
     last_.reset();
     unexplained_J_ = 0.0;
-    cycles_ = 0;
   }
   /// Once a cycle with drives that follow: whether it is too much. `gravity` in N m, `M` with
   /// rotors, kg m^2; `dt_s`: since the last call. A value that is not finite is too much.

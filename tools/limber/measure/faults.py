@@ -189,6 +189,9 @@ WORDS = {
 }
 
 
+MOST_CHANGES = 6  # of drives that are configured again and again, for example
+
+
 def _changes(records: np.ndarray, field: str, start_s: float, until_s: float) -> list[str]:
     """ "FALLBACK at once", "FAULT after 0.02 s"; what was the same before is left out."""
     names = messages.constants(*WORDS[field])
@@ -204,7 +207,8 @@ def _changes(records: np.ndarray, field: str, start_s: float, until_s: float) ->
             word = "FALLBACK" if field == "drive_state" and word == "HOLD" else word
             found.append(f"{word} {_after(t[row] - start_s)}")
         last = value
-    return found
+    more = len(found) - MOST_CHANGES
+    return found if more <= 0 else [*found[:MOST_CHANGES], f"changed {more} times more"]
 
 
 Rows = np.ndarray

@@ -7,7 +7,7 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from limber.errors import WRONG_INPUT, InputError, LimberError, RunError
@@ -22,6 +22,7 @@ class Child:
     process: subprocess.Popen
     log: Path
     read: int = 0  # bytes of the log that news() has seen
+    told: set[str] = field(default_factory=set)  # lines that news() has returned
     may_end: bool = False  # it was signalled to end, or its end is awaited
     spared: bool = False  # once all have started, the others go on without it
 
@@ -34,13 +35,18 @@ class Child:
         return [line for line in text.splitlines() if line.strip()][-count:]
 
     def news(self) -> list[str]:
-        """What it has said since the last call that nobody may overlook, without time and name."""
+        """What it has logged since the last call that nobody may overlook, without time and name;
+        each line once in a run.
+        """
         with open(self.log, "rb") as log:
             log.seek(self.read)
             whole, end, _ = log.read().rpartition(b"\n")  # the last line may not be complete yet
         self.read += len(whole + end)
         lines = whole.decode("utf-8", errors="replace").splitlines()
-        return [line.partition(mark)[2] for line in lines for mark in _MARKS if mark in line]
+        told = [line.partition(mark)[2] for line in lines for mark in _MARKS if mark in line]
+        new = [line for line in dict.fromkeys(told) if line not in self.told]
+        self.told.update(new)
+        return new
 
     def failure(self) -> LimberError:
         """The error to report for a child that ended unexpectedly."""
