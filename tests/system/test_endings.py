@@ -93,7 +93,7 @@ def test_the_events_of_a_run_with_a_fault(tmp_path):
     )
     done = limber("lab", written(tmp_path, timeline), "--out", str(tmp_path / "out"))
     assert done.returncode == 1, done.stdout + done.stderr
-    assert "J, limit 2 J" in done.stdout and "To do: " in done.stdout
+    assert "J, limit 50 J" in done.stdout and "To do: " in done.stdout
     listed = limber("log", "events", str(tmp_path / "out"))
     assert listed.returncode == 0, listed.stderr
     told = [
