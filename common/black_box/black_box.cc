@@ -149,34 +149,42 @@ void BlackBox::write(std::string_view channel, std::span<const std::uint8_t> mes
 void BlackBox::keep(const std::string& code) {
   if (!ring_) return;
   const std::lock_guard lock(mutex_);
-  if (!incident_.empty()) return;
+  if (!code_.empty()) return;
+  code_ = code;
+  changed_.notify_all();
+}
+
+fs::path BlackBox::announce(const std::string& code) const {
   try {
-    incident_ = incident_path(path_.filename(), code);
+    const fs::path incident = incident_path(path_.filename(), code);
+    spdlog::info("what happened is kept for `limber incident`: {}", incident.string());
+    return incident;
   } catch (const std::exception& error) {
     spdlog::warn("the black box cannot be kept: {}", error.what());
-    return;
+    return {};
   }
-  changed_.notify_all();
-  spdlog::info("what happened is kept for `limber incident`: {}", incident_.string());
 }
 
 void BlackBox::keep_when_due() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ending_ || !incident_.empty(); });
-    if (!incident_.empty()) {
-      changed_.wait_for(lock, std::chrono::duration<double>(kAfter_s), [this] { return ending_; });
-      const fs::path incident = incident_;
+    changed_.wait(lock, [this] { return ending_ || !code_.empty(); });
+    if (!code_.empty()) {
+      const std::string code = code_;
       lock.unlock();
-      copy_to(incident);
+      const fs::path incident = announce(code);
       lock.lock();
-      incident_.clear();
+      changed_.wait_for(lock, std::chrono::duration<double>(kAfter_s), [this] { return ending_; });
+      lock.unlock();
+      if (!incident.empty()) copy_to(incident);
+      lock.lock();
+      code_.clear();
     }
     if (ending_) return;
   }
 }
 
-void BlackBox::copy_to(const fs::path& incident) {
+void BlackBox::copy_to(const fs::path& incident) const {
   std::ofstream out(incident, std::ios::binary);
   out.write(reinterpret_cast<const char*>(memory_.data()),
             static_cast<std::streamsize>(memory_.size()));

@@ -46,13 +46,15 @@ class BlackBox {
   void write(std::string_view channel, std::span<const std::uint8_t> message) noexcept;
 
   /// Something happened that is worth keeping; `code`, such as driver.VELOCITY, becomes part of the
-  /// file's name, which is logged. Nothing happens if an incident is under way. Not in the cycle.
+  /// file's name, which is logged. Nothing happens if an incident is under way. Files are the
+  /// thread's work: the caller waits for none. Allocates; not in the cycle.
   void keep(const std::string& code);
 
  private:
   void open(const std::string& name, std::size_t bytes);
   void keep_when_due();
-  void copy_to(const std::filesystem::path& incident);
+  std::filesystem::path announce(const std::string& code) const;
+  void copy_to(const std::filesystem::path& incident) const;
 
   std::filesystem::path path_;
   FileDescriptor file_;
@@ -61,7 +63,7 @@ class BlackBox {
 
   std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
-  std::filesystem::path incident_;  ///< under way
+  std::string code_;  ///< of the incident under way
   bool ending_ = false;
   std::thread thread_;
 };

@@ -13,23 +13,15 @@
 
 #include "common/arm_plane/arm_plane.h"
 #include "common/config_error.h"
+#include "tests/support/mutation.h"
 
 namespace limber::test_arm_plane {
 namespace {
 
 /// A folder of this user's alone.
-class Folder {
+class Folder : public testing::TemporaryFolder {
  public:
-  Folder() {
-    char name[] = "/tmp/limber_arm_XXXXXX";
-    path_ = mkdtemp(name);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  const std::string& path() const { return path_; }
-  std::string url() const { return "unix:" + path_ + "/arm"; }
-
- private:
-  std::string path_;
+  std::string url() const { return "unix:" + path() + "/arm"; }
 };
 
 std::string refusal(const std::string& url) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/black_box/black_box.h"
+#include "tests/support/mutation.h"
 
 namespace limber::test_black_box {
 namespace {
@@ -112,15 +113,8 @@ TEST(EventRing, TakesSeveralWriters) {
 
 class BlackBoxTest : public ::testing::Test {
  protected:
-  BlackBoxTest() {
-    char name[] = "/tmp/limber_box_XXXXXX";
-    folder_ = mkdtemp(name);
-    setenv("LIMBER_INCIDENTS", folder_.c_str(), 1);
-  }
-  ~BlackBoxTest() override {
-    unsetenv("LIMBER_INCIDENTS");
-    fs::remove_all(folder_);
-  }
+  BlackBoxTest() { setenv("LIMBER_INCIDENTS", folder_.c_str(), 1); }
+  ~BlackBoxTest() override { unsetenv("LIMBER_INCIDENTS"); }
   /// The only incident whose name contains `part`; waits for its bytes.
   Bytes incident(const std::string& part) const {
     for (int i = 0; i < 1000; ++i) {
@@ -140,7 +134,8 @@ class BlackBoxTest : public ::testing::Test {
 
   static constexpr std::size_t kLeast = 1 << 20;  ///< bytes of a ring, at these low rates
 
-  fs::path folder_;
+  const testing::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   const std::string name_ = "test-" + std::to_string(getpid());
 };
 
