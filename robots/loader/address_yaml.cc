@@ -49,14 +49,18 @@ void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,
 
 }  // namespace
 
-void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, DriveConfig* drive) {
+int read_bus(const YamlMap& yaml, const Robot& robot, std::optional<int> otherwise) {
   std::vector<std::string> names;
   for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
+  const std::string name =
+      otherwise ? yaml.word_or("bus", names, names[static_cast<std::size_t>(*otherwise)])
+                : yaml.word("bus", names);
+  return static_cast<int>(std::ranges::find(names, name) - names.begin());
+}
+
+void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, DriveConfig* drive) {
   const bool antagonist = drive == &robot.joints[index].antagonist;
-  const std::string bus =
-      antagonist ? yaml.word_or("bus", names, names[static_cast<std::size_t>(drive->bus)])
-                 : yaml.word("bus", names);
-  drive->bus = static_cast<int>(std::find(names.begin(), names.end(), bus) - names.begin());
+  drive->bus = read_bus(yaml, robot, antagonist ? std::optional(drive->bus) : std::nullopt);
   const DriveProtocolTraits& traits = traits_of(drive->protocol);
   check_protocol(yaml, traits, robot.buses[static_cast<std::size_t>(drive->bus)],
                  robot.joints[index].type);

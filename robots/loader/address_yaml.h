@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "common/yaml_reader.h"
 #include "robots/loader/robot.h"
 
 namespace limber {
+
+/// The key `bus`: index of the bus that it names; of `otherwise` if there is no such key. Throws
+/// ConfigError for a name that is none. Set-up only.
+int read_bus(const YamlMap& yaml, const Robot& robot, std::optional<int> otherwise = std::nullopt);
 
 /// Sets bus and identifiers of `drive`, whose protocol is known: a motor of robot.joints[index].
 /// The joints before it are set, and the first motor if this is the antagonist. Throws ConfigError:

@@ -4,19 +4,13 @@
 
 #include <algorithm>
 
+#include "robots/loader/address_yaml.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
 namespace {
 
 constexpr int kMostId = 0x7FE;  // 0x7FF is Damiao's register identifier
-
-int read_bus(const YamlMap& yaml, const Robot& robot) {
-  std::vector<std::string> names;
-  for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
-  const std::string name = yaml.word("bus", names);
-  return static_cast<int>(std::ranges::find(names, name) - names.begin());
-}
 
 void check_free(const YamlMap& yaml, const EmergencyStopConfig& stop, const Robot& robot) {
   for (const JointConfig& joint : robot.joints) {

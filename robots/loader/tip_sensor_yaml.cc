@@ -7,6 +7,7 @@
 #include <kdl/frames.hpp>
 
 #include "common/complaints.h"
+#include "robots/loader/address_yaml.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
@@ -84,19 +85,17 @@ TipSensorProtocol read_protocol(const YamlMap& yaml) {
 void read_wire(const YamlMap& yaml, const Robot& robot, TipSensorConfig* sensor) {
   sensor->protocol = read_protocol(yaml);
   const TipSensorTraits& traits = traits_of(sensor->protocol);
-  std::vector<std::string> names;
-  for (const BusConfig& bus : robot.buses) names.push_back(bus.name);
-  const std::string name = yaml.word("bus", names);
-  const auto bus =
-      static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  sensor->bus = static_cast<int>(bus);
-  if (!traits.fd && robot.buses[bus].fd) {
+  sensor->bus = read_bus(yaml, robot);
+  const BusConfig& bus = robot.buses[static_cast<std::size_t>(sensor->bus)];
+  if (!traits.fd && bus.fd) {
     yaml.refuse("bus", fmt::format("'{}' is a CAN-FD bus, whose frames a {} sensor would destroy; "
                                    "expected a classic bus",
-                                   name, traits.word));
+                                   bus.name, traits.word));
   }
-  if (traits.fd && !robot.buses[bus].fd)
-    yaml.refuse("bus", fmt::format("'{}' is a classic bus; {} needs fd: true", name, traits.word));
+  if (traits.fd && !bus.fd) {
+    yaml.refuse("bus",
+                fmt::format("'{}' is a classic bus; {} needs fd: true", bus.name, traits.word));
+  }
   if (!traits.counts) return;
   sensor->counts_per_N = yaml.number_or("counts_per_N", {0.1, 1e5}, sensor->counts_per_N);
   sensor->counts_per_Nm = yaml.number_or("counts_per_Nm", {0.1, 1e6}, sensor->counts_per_Nm);
