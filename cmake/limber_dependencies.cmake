@@ -1,6 +1,9 @@
 # Everything limber is built from. LCM comes from the Python environment that ./limber makes (the wheel carries headers,
 # library and lcm-gen: one version for C++ and Python), the rest from the distribution.
 set(LIMBER_VENV ${CMAKE_SOURCE_DIR}/.venv CACHE PATH "Python environment made by ./limber")
+if(NOT EXISTS ${LIMBER_VENV}/bin/lcm-gen)
+  message(FATAL_ERROR "There is no Python environment in ${LIMBER_VENV}: run ./limber once; it makes it and builds. Then cmake works as usual.")
+endif()
 find_program(LIMBER_PYTHON python HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)
 find_program(LIMBER_LCM_GEN lcm-gen HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)
 file(GLOB LIMBER_LCM_PREFIX ${LIMBER_VENV}/lib/python3*/site-packages)

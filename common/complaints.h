@@ -28,6 +28,7 @@ class Complaints {
   }
 
   bool any() const { return !lines_.empty(); }
+  const std::vector<std::string>& lines() const { return lines_; }
   /// Throws ConfigError with one complaint a line, if there are any.
   void throw_if_any() const;
 

@@ -21,6 +21,13 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// home and home_rad: one lacks the unit that the other ends in.
+bool lacks_unit(const std::string& word, const std::string& candidate) {
+  constexpr std::size_t kShortest = 3;
+  if (std::min(word.size(), candidate.size()) < kShortest) return false;
+  return candidate.starts_with(word + "_") || word.starts_with(candidate + "_");
+}
+
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
@@ -36,7 +43,10 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
       best = candidate;
     }
   }
-  return best;
+  if (!best.empty()) return best;
+  const auto longer = std::ranges::find_if(
+      known, [&](const std::string& candidate) { return lacks_unit(word, candidate); });
+  return longer == known.end() ? "" : *longer;
 }
 
 std::string joined(const std::vector<std::string>& words) {

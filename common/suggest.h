@@ -7,7 +7,7 @@
 namespace limber {
 
 /// The word that takes the fewest single-letter edits, if they are few enough to be a slip; else
-/// empty.
+/// the first that differs by its unit only (home, home_rad); else empty.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 /// "a, b, c".

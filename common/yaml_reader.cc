@@ -111,15 +111,18 @@ YAML::Node YamlMap::find(const std::string& key) const {
 
 YAML::Node YamlMap::need(const std::string& key, const std::string& what) const {
   YAML::Node node = find(key);
-  if (node.IsDefined()) return node;
+  if (!node.IsDefined()) refuse_missing(key, what);
+  return node;
+}
+
+void YamlMap::refuse_missing(const std::string& key, const std::string& what) const {
   std::vector<std::string> present;
   for (const auto& entry : node_) present.push_back(entry.first.Scalar());
   std::erase_if(present, [&](const std::string& other) {
     return std::find(known_->begin(), known_->end(), other) != known_->end();
   });
   const std::string near = nearest_word(key, present);
-  refuse("'" + key + "' is missing; expected " + what +
-         (near.empty() ? "" : "; is '" + near + "' a slip?"));
+  refuse("'" + key + "' is missing: " + what + (near.empty() ? "" : "; is '" + near + "' a slip?"));
 }
 
 bool YamlMap::has(const std::string& key) const { return find(key).IsDefined(); }
@@ -158,8 +161,11 @@ long YamlMap::integer(const std::string& key, long low, long high) const {
   const std::string what = fmt::format("a whole number from {} to {}", low, high);
   const YAML::Node node = need(key, what);
   long value = 0;
-  const std::string text = node.IsScalar() && is_plain(node) ? node.Scalar() : "";
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::string text = node.IsScalar() && is_plain(node) ? node.Scalar() : "";
+  const bool hex = text.starts_with("0x") && !text.starts_with("0x-");  // as drives' makers write
+  if (hex) text.erase(0, 2);
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
   if (text.empty() || error != std::errc() || end != text.data() + text.size())
     complain(node, key, fmt::format("found {}; expected {}", found(node), what));
   if (value < low || value > high)

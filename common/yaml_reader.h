@@ -39,6 +39,7 @@ class YamlMap {
   /// A finite number within the range. "1,5", "nan", "inf", "12kg" and quoted text are refused.
   double number(const std::string& key, Range allowed) const;
   double number_or(const std::string& key, Range allowed, double otherwise) const;
+  /// Decimal, or hexadecimal as 0x1F.
   long integer(const std::string& key, long low, long high) const;
   long integer_or(const std::string& key, long low, long high, long otherwise) const;
   bool boolean_or(const std::string& key, bool otherwise) const;
@@ -69,6 +70,8 @@ class YamlMap {
   [[noreturn]] void refuse(const std::string& key, const std::string& problem) const;
   /// A complaint about this mapping as a whole.
   [[noreturn]] void refuse(const std::string& problem) const;
+  /// "'key' is missing: what", with the key that looks like a slip for it.
+  [[noreturn]] void refuse_missing(const std::string& key, const std::string& what) const;
   /// Line of the key, or of this mapping if the key is not there.
   int line_of(const std::string& key) const;
   int line() const;

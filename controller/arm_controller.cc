@@ -1,6 +1,7 @@
 #include "controller/arm_controller.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "common/clock.h"
 #include "common/config_error.h"
@@ -37,6 +38,19 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
   return robot;
 }
 
+robot_info_t info_of(const Robot& robot, std::int64_t controller, bool simulated) {
+  robot_info_t info{};
+  info.controller = controller;
+  info.robot = robot.name;
+  if (!robot.folder.empty())
+    info.folder = std::filesystem::absolute(robot.folder).lexically_normal();
+  info.rate_hz = robot.rate_hz;
+  info.simulated = simulated ? 1 : 0;
+  info.joints = robot.joint_names();
+  info.num_joints = static_cast<std::int8_t>(info.joints.size());
+  return info;
+}
+
 }  // namespace
 
 ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOptions& options)
@@ -45,7 +59,9 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
       start_watch_(robot.robot),
       encoder_watch_(robot.robot),
-      energy_watch_(robot.robot) {
+      energy_watch_(robot.robot),
+      info_(info_of(robot.robot, options.controller,
+                    options.simulated || robot.robot.on_virtual_buses())) {
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -152,7 +168,8 @@ void ArmController::write_answer(const joint_state_t& state) noexcept {
 void ArmController::write_status(std::int64_t started_ns) noexcept {
   const bool published = answer_.state_seq % channels::kControllerStatusEvery == 0;
   if (published) ++status_.seq;
-  status_.time_ns = answer_.time_ns;
+  if (answer_.state_seq % channels::kRobotInfoEvery == 0) ++info_.seq;
+  info_.time_ns = status_.time_ns = answer_.time_ns;
   status_.session = answer_.session;
   status_.state_seq = answer_.state_seq;
   status_.mode = answer_.mode;
@@ -180,18 +197,18 @@ Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
   if (const Refusal refusal = supervisor_.check_client(goal.client)) return counted(refusal);
   if (supervisor_.mode() != Mode::kActive)
     return counted({request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"});
-  if (const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_)))
-    return counted(refusal);
+  const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_));
+  if (refusal) return counted(refusal);
   supervisor_.take_lease(goal.client);
-  return {};
+  return refusal;  // perhaps with a warning
 }
 
 Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
   if (const Refusal refusal = supervisor_.check_client(gains.client)) return counted(refusal);
-  if (const Refusal refusal = cycle_.set_gains(gains, activity_of(supervisor_)))
-    return counted(refusal);
+  const Refusal refusal = cycle_.set_gains(gains, activity_of(supervisor_));
+  if (refusal) return counted(refusal);
   supervisor_.take_lease(gains.client);
-  return {};
+  return refusal;  // perhaps with a warning
 }
 
 void ArmController::on_silence() noexcept {

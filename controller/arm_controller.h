@@ -9,6 +9,7 @@
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
+#include <limber/robot_info_t.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,6 +71,8 @@ class ArmController {
   void on_silence() noexcept;
 
   const controller_status_t& status() const noexcept { return status_; }
+  /// Which arm this is, for tools.
+  const robot_info_t& robot_info() const noexcept { return info_; }
 
  private:
   void apply_timeline(std::int64_t time_ns) noexcept;
@@ -91,6 +94,7 @@ class ArmController {
   double period_s_ = 0.0;
   joint_command_t answer_{};
   controller_status_t status_{};
+  robot_info_t info_;
 };
 
 }  // namespace limber

@@ -30,7 +30,8 @@ request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns) 
   answer.what = outcome.what;
   answer.accepted = outcome.refusal ? 0 : 1;
   answer.code = outcome.refusal.code;
-  answer.reason = outcome.refusal ? outcome.refusal.reason : "";
+  const char* text = outcome.refusal ? outcome.refusal.reason : outcome.refusal.warning;
+  answer.reason = text != nullptr ? text : "";
   return answer;
 }
 
@@ -57,7 +58,12 @@ void ControllerLog::note(const controller_status_t& status) {
 }
 
 void ControllerLog::note(const request_answer_t& answer) {
-  if (answer.accepted != 0) return;
+  if (answer.accepted != 0) {
+    if (!answer.reason.empty())
+      spdlog::warn("warning: {} at {:.3f} s: {}", name_in(kKindNames, answer.kind),
+                   static_cast<double>(answer.time_ns) * 1e-9, answer.reason);
+    return;
+  }
   spdlog::warn("warning: {} at {:.3f} s refused: {}", name_in(kKindNames, answer.kind),
                static_cast<double>(answer.time_ns) * 1e-9,
                refusal_text(answer.code, answer.reason));

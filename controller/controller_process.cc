@@ -112,6 +112,8 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
   answered_session_ = torque.session;
   user_.publish(channels::kJointTorque, torque);
   if (torque.state_seq % channels::kControllerStatusEvery == 0) publish_status();
+  if (torque.state_seq % channels::kRobotInfoEvery == 0)
+    user_.publish(channels::kRobotInfo, controller_->robot_info());
   for (const RequestOutcome& outcome : controller_->timeline_outcomes())
     publish_answer(outcome, state.time_ns);
   log_.note(controller_->status());
@@ -153,7 +155,8 @@ void ControllerProcess::publish_answer(const RequestOutcome& outcome,
   const request_answer_t answer = answer_to(outcome, time_ns);
   user_.publish(channels::kRequestAnswer, answer);
   const std::int64_t now_ns = monotonic_ns();
-  if (!outcome.refusal || now_ns - logged_ns_ < kLogInterval_ns) return;  // all are in the status
+  const bool worth_a_line = outcome.refusal || outcome.refusal.warning != nullptr;
+  if (!worth_a_line || now_ns - logged_ns_ < kLogInterval_ns) return;  // all are in the status
   logged_ns_ = now_ns;
   ControllerLog::note(answer);
 }

@@ -11,6 +11,7 @@ namespace limber {
 struct Refusal {
   std::int8_t code = request_answer_t::REFUSED_NOTHING;  ///< in words: lcmtypes/problems.yaml
   const char* reason = nullptr;
+  const char* warning = nullptr;  ///< of a request that was taken all the same
 
   constexpr operator const char*() const noexcept { return reason; }
 };

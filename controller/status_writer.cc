@@ -29,6 +29,13 @@ void write_tip(const CycleTrace& trace, controller_status_t* status) noexcept {
   write(trace.law.F, status->F_law);
 }
 
+void write_stiffness(const Gains& gains, controller_status_t* status) noexcept {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) status->K_x[i][j] = static_cast<float>(gains.K_x(i, j));
+  }
+  write(gains.K_q.diagonal(), status->K_q);
+}
+
 void write_torque_terms(const CycleTrace& trace, controller_status_t* status) noexcept {
   write(trace.law.tau_stiffness + trace.law.tau_feedforward, status->tau_stiffness);
   write(trace.law.tau_damping, status->tau_damping);
@@ -46,6 +53,7 @@ void write_status(const CycleTrace& trace, controller_status_t* status) noexcept
   status->num_joints = static_cast<std::int8_t>(trace.point.q.size());
   status->limits = trace.limits;
   write_tip(trace, status);
+  write_stiffness(trace.gains, status);
   write_torque_terms(trace, status);
   status->kinetic_energy_J = trace.terms.kinetic_energy(trace.point.v);
   status->spring_energy_J = trace.law.spring_energy_J;

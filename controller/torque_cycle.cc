@@ -7,6 +7,8 @@
 #include "controller/gains/nullspace.h"
 #include "controller/model/singularity.h"
 #include "controller/modes/mode_table.h"
+#include "lcmtypes/gains_merge.h"
+#include "robots/loader/default_gains.h"
 
 namespace limber::controller {
 namespace {
@@ -143,18 +145,27 @@ Refusal TorqueCycle::set_goal(const compliance_goal_t& message, Activity activit
 
 Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activity) noexcept {
   enter(activity);
-  if (const char* reason = check_.check(message))
+  compliance_gains_t fields =
+      requested_fields_;  // its strings and lists are empty: nothing is allocated
+  merge_gains(message, &fields);
+  if (const char* reason = check_.check(message, fields))
     return {request_answer_t::REFUSED_GAINS_RANGE, reason};
   const int law = message.law.empty() ? laws_.selected() : find_law(message.law);
   if (law < 0) return {request_answer_t::REFUSED_MALFORMED, "no control law has this name"};
   const LawEntry& wanted = LawBank::entry(law);
-  read_gains(message, &requested_);
-  if (const char* reason = laws_.check(law, requested_))
+  candidate_ = requested_;
+  read_gains(fields, &candidate_);
+  read_parameters(message, &candidate_.parameters, fields.num_joints);
+  if (const char* reason = laws_.check(law, candidate_))
     return {request_answer_t::REFUSED_LAW, reason};
-  if (const char* reason = gains_.check_springs(requested_, wanted, goals_.goal(), arm_)) {
+  if (const char* reason = gains_.check_springs(candidate_, wanted, goals_.goal(), arm_)) {
     return {request_answer_t::REFUSED_SPRINGS, reason};
   }
+  const char* unstable = stability_.check(candidate_, arm_.terms());
+  if (!simulated_ && unstable != nullptr) return {request_answer_t::REFUSED_UNSTABLE, unstable};
 
+  requested_fields_ = fields;
+  requested_ = candidate_;
   observers_.set(requested_.settings);
   guard_.set_max_damping(requested_.settings.passivity_damping_Ns_per_m);
   if (gains_.start(requested_, message.ramp_s)) output_.blend_next();
@@ -166,7 +177,7 @@ Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activ
     laws_.run_selected();
     switch_law(from, wanted.goal_type == GoalType::kNone || from == GoalType::kNone);
   }
-  return {};
+  return {.warning = unstable};
 }
 
 bool TorqueCycle::due(Term term) const noexcept {
@@ -237,7 +248,7 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, bool 
     : state_(robot.robot.size()),
       arm_(robot),
       laws_(robot, law, simulated),
-      goals_(robot, &arm_.model()),
+      goals_(robot, &arm_.model(), simulated),
       gains_(robot.robot, arm_.springs()),
       observers_(robot),
       output_(robot.robot),
@@ -255,7 +266,11 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, bool 
              .tau_sent = VectorJ::Zero(robot.robot.size()),
              .selected_law = laws_.selected()},
       check_(robot.robot.size(), simulated),
+      stability_(1.0 / robot.robot.rate_hz),
+      simulated_(simulated),
+      requested_fields_(limber::default_gains(robot.robot)),
       requested_(gains_.target()),
+      candidate_(requested_),
       gravity_(VectorJ::Zero(robot.robot.size())),
       zero_(gravity_),
       null_limit_(kNullShare * output_.torque_limit()),

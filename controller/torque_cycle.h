@@ -18,6 +18,7 @@
 #include "controller/cycle_trace.h"
 #include "controller/gains/gain_scheduler.h"
 #include "controller/gains/gains_check.h"
+#include "controller/gains/stability.h"
 #include "controller/goals/goal_tracker.h"
 #include "controller/laws/law_bank.h"
 #include "controller/model/arm_view.h"
@@ -49,7 +50,7 @@ class TorqueCycle {
   /// The next state does not follow on the last one: nothing estimated from the past is kept.
   void restart() noexcept { observers_.restart(); }
 
-  /// Nothing: accepted, else why not; then nothing has changed.
+  /// Nothing: accepted, perhaps with a warning; else why not; then nothing has changed.
   Refusal set_goal(const compliance_goal_t& message, Activity activity) noexcept;
   Refusal set_gains(const compliance_gains_t& message, Activity activity) noexcept;
 
@@ -93,7 +94,11 @@ class TorqueCycle {
   CycleTrace trace_;
 
   GainsCheck check_;
-  Gains requested_;  // where a gains message is read into
+  StabilityCheck stability_;
+  bool simulated_;                       // every bus is
+  compliance_gains_t requested_fields_;  // of the last accepted request, merged; no parameters
+  Gains requested_;                      // the same, with parameters
+  Gains candidate_;                      // those of a request that is not accepted yet
   VectorJ gravity_;
   VectorJ zero_;
   VectorJ null_limit_;

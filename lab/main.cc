@@ -54,6 +54,8 @@ void log_cycle(Lab& lab, LogWriter& log) {
   if (seq % channels::kControllerStatusEvery == 0) {
     log.write(time_ns, channels::kControllerStatus, lab.controller_status());
   }
+  if (seq % channels::kRobotInfoEvery == 0)
+    log.write(time_ns, channels::kRobotInfo, lab.controller().robot_info());
   if (seq % channels::kDriverStatusEvery == 0)
     log.write(time_ns, channels::kDriverStatus, lab.driver_status());
 }

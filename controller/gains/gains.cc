@@ -51,20 +51,6 @@ LawSettings read_settings(const compliance_gains_t& message) noexcept {
   return s;
 }
 
-// Those that the message does not list take their default.
-void read_parameters(const compliance_gains_t& message, int joints,
-                     LawParameters* parameters) noexcept {
-  *parameters = LawParameters(joints);
-  for (const law_parameter_t& given : message.parameters) {
-    const GainRow* row = find_row(law_catalog().parameters, given.key);
-    if (row->per_joint) {
-      parameters->set(*row, diagonal(given.values.data(), joints));
-    } else {
-      parameters->set(*row, static_cast<double>(given.values.front()));
-    }
-  }
-}
-
 }  // namespace
 
 Gains::Gains(int joints)
@@ -98,7 +84,19 @@ void read_gains(const compliance_gains_t& message, Gains* gains) noexcept {
   gains->D_q = diagonal(message.D_q, n);
   gains->K_null = diagonal(message.K_null, n);
   gains->D_null = diagonal(message.D_null, n);
-  read_parameters(message, static_cast<int>(n), &gains->parameters);
+}
+
+void read_parameters(const compliance_gains_t& request, LawParameters* parameters,
+                     int joints) noexcept {
+  if (request.scope == compliance_gains_t::SCOPE_ALL) *parameters = LawParameters(joints);
+  for (const law_parameter_t& given : request.parameters) {
+    const GainRow* row = find_row(law_catalog().parameters, given.key);
+    if (row->per_joint) {
+      parameters->set(*row, diagonal(given.values.data(), joints));
+    } else {
+      parameters->set(*row, static_cast<double>(given.values.front()));
+    }
+  }
 }
 
 void turn_to_base(const Eigen::Matrix3d& R_BD, Gains* gains) noexcept {

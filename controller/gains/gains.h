@@ -34,8 +34,14 @@ const LawSettings& default_settings() noexcept;
 /// The gains of robot.yaml. Throws ConfigError if there are not as many as joints.
 Gains default_gains(const Robot& robot);
 
-/// The gains of a message that GainsCheck found nothing wrong with. In the cycle.
-void read_gains(const compliance_gains_t& message, Gains* gains) noexcept;
+/// The gains of merged fields (lcmtypes/gains_merge.h) that GainsCheck found nothing wrong with.
+/// In the cycle.
+void read_gains(const compliance_gains_t& fields, Gains* gains) noexcept;
+
+/// The parameters of single laws that a checked request lists; the others stay, with SCOPE_ALL they
+/// take their default. In the cycle.
+void read_parameters(const compliance_gains_t& request, LawParameters* parameters,
+                     int joints) noexcept;
 
 /// K_x, D_x and M_x turned from the axes they are given in to base axes: T K T^T,
 /// T = blkdiag(R_BD, R_BD) for GainFrame::kGoal. In the cycle.

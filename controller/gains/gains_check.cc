@@ -8,6 +8,7 @@
 #include "common/overloaded.h"
 #include "common/types.h"
 #include "controller/laws/registry.h"
+#include "lcmtypes/gains_merge.h"
 
 namespace limber::controller {
 namespace {
@@ -51,25 +52,32 @@ Matrix6 to_matrix(const T (&values)[6][6]) noexcept {
 
 }  // namespace
 
-GainsCheck::GainsCheck(int joints, bool simulated) : joints_(joints), simulated_(simulated) {
-  const auto add = [](const GainRow& row, std::vector<Row>* rows) {
-    const auto told = [&row](const char* what) { return fmt::format("{} {}", row.key, what); };
-    rows->push_back(
-        {&row, refusal_of(row),
-         told("demonstrates a mistake and is allowed only where every bus is simulated"),
-         told("is not finite"), told("is not symmetric"), told("is not positive semidefinite")});
-  };
-  add(ramp_row(), &rows_);
-  for (const GainRow& row : gain_table()) add(row, &rows_);
-  for (const GainRow* row : law_catalog().parameters) add(*row, &parameters_);
+GainsCheck::Row GainsCheck::make_row(const GainRow& row) {
+  const auto told = [&row](const char* what) { return fmt::format("{} {}", row.key, what); };
+  return {&row,
+          refusal_of(row),
+          told("demonstrates a mistake and is allowed only where every bus is simulated"),
+          told("is not finite"),
+          told("is not symmetric"),
+          told("is not positive semidefinite")};
 }
 
-const char* GainsCheck::check(const Message& message) const noexcept {
-  if (message.num_joints != joints_) return "num_joints is not the number of joints of this arm";
+GainsCheck::GainsCheck(int joints, bool simulated)
+    : joints_(joints), simulated_(simulated), ramp_(make_row(ramp_row())) {
+  for (const GainRow& row : gain_table()) rows_.push_back(make_row(row));
+  for (const GainRow* row : law_catalog().parameters) parameters_.push_back(make_row(*row));
+}
+
+const char* GainsCheck::check(const Message& request, const Message& merged) const noexcept {
+  if (request.num_joints != joints_) return "num_joints is not the number of joints of this arm";
+  if (request.scope != Message::SCOPE_ALL && request.scope != Message::SCOPE_NAMED)
+    return "scope is neither SCOPE_ALL nor SCOPE_NAMED";
+  if (unknown_gain(request) != nullptr) return "named: no field has a key of this name";
+  if (const char* reason = check_row(ramp_, request)) return reason;
   for (const Row& row : rows_) {
-    if (const char* reason = check_row(row, message)) return reason;
+    if (const char* reason = check_row(row, merged)) return reason;
   }
-  return check_parameters(message);
+  return check_parameters(request);
 }
 
 const char* GainsCheck::check_choice(const Row& row, double value) const noexcept {

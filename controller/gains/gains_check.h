@@ -18,8 +18,10 @@ class GainsCheck {
   /// only.
   GainsCheck(int joints, bool simulated);
 
-  /// nullptr if all of the message is allowed, else what is wrong. May be called in the cycle.
-  const char* check(const compliance_gains_t& message) const noexcept;
+  /// nullptr if the request is allowed, else what is wrong. `merged`: the gains as they would be
+  /// after it, see merge_gains(). May be called in the cycle.
+  const char* check(const compliance_gains_t& request,
+                    const compliance_gains_t& merged) const noexcept;
 
  private:
   struct Row {
@@ -31,6 +33,7 @@ class GainsCheck {
     std::string indefinite;
   };
 
+  static Row make_row(const GainRow& row);
   const char* check_row(const Row& row, const compliance_gains_t& message) const noexcept;
   static const char* check_tip_matrix(const Row& row, const Matrix6& M, double rounding) noexcept;
   const char* check_parameters(const compliance_gains_t& message) const noexcept;
@@ -38,6 +41,7 @@ class GainsCheck {
 
   int joints_;
   bool simulated_;
+  Row ramp_;
   std::vector<Row> rows_;
   std::vector<Row> parameters_;
 };

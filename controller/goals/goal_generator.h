@@ -31,6 +31,9 @@ class GoalGenerator {
   /// feed-forward wrench stays until the next goal, which replaces it.
   Refusal set(const compliance_goal_t& message, GoalType type) noexcept;
 
+  /// Where a goal at the tip leads; of a circle and of a wrench alone: where the present one does.
+  Pose end_of(const compliance_goal_t& message) const noexcept;
+
   /// True if the goal was last set at the tip, false if at the joints.
   bool at_tip() const noexcept { return at_tip_; }
   /// The goal at the tip that goes with one set at the joints, or the other way round: where the
@@ -48,7 +51,6 @@ class GoalGenerator {
   void start_joints(const compliance_goal_t& message, bool smooth, double T, bool limited) noexcept;
   void start_circle(const compliance_goal_t& message) noexcept;
   void start_tip(const compliance_goal_t& message, double T, bool limited) noexcept;
-  Pose end_of(const compliance_goal_t& message) const noexcept;
   void copy() noexcept;
 
   GoalLimits limits_;

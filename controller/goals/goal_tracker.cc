@@ -2,10 +2,12 @@
 
 namespace limber::controller {
 
-GoalTracker::GoalTracker(const LoadedRobot& robot, ArmModel* model)
+GoalTracker::GoalTracker(const LoadedRobot& robot, ArmModel* model, bool simulated)
     : model_(model),
       generator_(robot.robot),
       inverse_kinematics_(robot),
+      reach_(robot),
+      simulated_(simulated),
       goal_(robot.robot.size()) {}
 
 const Goal& GoalTracker::advance(double dt_s, double period_s, GoalType type,
@@ -46,6 +48,8 @@ void GoalTracker::hand_over(GoalType from, GoalType to, const TaskRows& rows,
 
 GoalTracker::Set GoalTracker::set(const compliance_goal_t& message, GoalType type) noexcept {
   if (const Refusal refusal = generator_.check(message, type)) return {refusal};
+  const Refusal far = check_reach(message);
+  if (far && !simulated_) return {far};
   const bool wrench_alone = message.kind == compliance_goal_t::GOAL_WRENCH;
   const bool to_tip =
       wrench_alone ? generator_.at_tip() : message.kind != compliance_goal_t::GOAL_JOINT;
@@ -57,7 +61,25 @@ GoalTracker::Set GoalTracker::set(const compliance_goal_t& message, GoalType typ
   } else if (switched) {
     generator_.follow_joints(goal_.q_d);
   }
-  return {generator_.set(message, type), switched};
+  Refusal taken = generator_.set(message, type);
+  taken.warning = far.reason;
+  return {taken, switched};
+}
+
+Refusal GoalTracker::check_reach(const compliance_goal_t& message) noexcept {
+  const Pose end = generator_.end_of(message);
+  switch (message.kind) {
+    case compliance_goal_t::GOAL_POSE:
+    case compliance_goal_t::GOAL_OFFSET:
+      return reach_.check(end.p);
+    case compliance_goal_t::GOAL_CIRCLE: {
+      const Eigen::Vector3d centre(message.offset[0], message.offset[1], message.offset[2]);
+      const Eigen::Vector3d axis(message.offset[3], message.offset[4], message.offset[5]);
+      return reach_.check_circle(end.p + centre, axis, centre.norm());
+    }
+    default:
+      return {};
+  }
 }
 
 }  // namespace limber::controller

@@ -1,6 +1,7 @@
 // The goal of each cycle, for laws at the tip and at the joints.
 #pragma once
 
+#include "controller/goals/arm_reach.h"
 #include "controller/goals/goal_generator.h"
 #include "controller/goals/inverse_kinematics.h"
 
@@ -11,8 +12,9 @@ namespace limber::controller {
 /// called in the cycle.
 class GoalTracker {
  public:
-  /// The model must outlive this; its terms are not touched.
-  GoalTracker(const LoadedRobot& robot, ArmModel* model);
+  /// The model must outlive this; its terms are not touched. `simulated`: every bus is; then goals
+  /// beyond the arm's reach are taken with a warning, else refused.
+  GoalTracker(const LoadedRobot& robot, ArmModel* model, bool simulated);
 
   /// The goal of this cycle: tip and joints matched.
   const Goal& goal() const noexcept { return goal_; }
@@ -28,15 +30,19 @@ class GoalTracker {
   void stop(double duration_s) noexcept { generator_.stop(duration_s); }
 
   struct Set {
-    Refusal refusal;        ///< nothing: accepted
+    Refusal refusal;        ///< nothing: accepted, perhaps with a warning
     bool switched = false;  ///< from the tip to the joints or back: the torque has to be blended
   };
   Set set(const compliance_goal_t& message, GoalType type) noexcept;
 
  private:
+  Refusal check_reach(const compliance_goal_t& message) noexcept;
+
   ArmModel* model_;
   GoalGenerator generator_;
   InverseKinematics inverse_kinematics_;
+  ArmReach reach_;
+  bool simulated_;
   Goal goal_;
 };
 

@@ -19,7 +19,12 @@ ArmView::ArmView(const LoadedRobot& robot)
       link_measured_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
       K_J_(springs_.at_rest()),
       deflection_(VectorJ::Zero(model_.size())),
-      qbar_(&model_, K_J_, kInTheCycle) {}
+      qbar_(&model_, K_J_, kInTheCycle) {
+  VectorJ home = VectorJ::Zero(model_.size());
+  for (Eigen::Index i = 0; i < home.size(); ++i)
+    home[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
+  model_.evaluate(home, VectorJ::Zero(home.size()), &terms_);
+}
 
 PositionFeedback ArmView::resolve(PositionFeedback choice, Potential potential) const noexcept {
   if (!springs_.any()) return PositionFeedback::kLink;

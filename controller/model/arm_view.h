@@ -34,6 +34,7 @@ class ArmView {
                 const TermsDue& due) noexcept;
 
   const ControlPoint& point() const noexcept { return point_; }
+  /// Before the first evaluation: of the arm at rest in its home pose.
   const ArmTerms& terms() const noexcept { return terms_; }
   ArmModel& model() noexcept { return model_; }
 

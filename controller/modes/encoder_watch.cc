@@ -39,7 +39,9 @@ int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, co
       rest = {state.theta[i], state.q[i], state.theta_dot[i],
               state.v[i],     load_Nm,    std::to_array(state.theta)};
     }
-    const double tau = load_Nm - rest->load_Nm;
+    const double least_Nm = std::min(0.0, rest->load_Nm);
+    const double most_Nm = std::max(0.0, rest->load_Nm);
+    const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
     const double excess = std::copysign(std::max(0.0, std::abs(tau) - friction_Nm), tau);
     rest->expected_speed += excess / M(i, i) * dt_s;
     rest->expected_angle += rest->expected_speed * dt_s;

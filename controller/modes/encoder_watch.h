@@ -13,12 +13,12 @@
 namespace limber::controller {
 
 /// A reading that does not change by a single bit is normal at rest, also under torque: friction or
-/// a wall holds the joint. It is not if what the torque beyond gravity has grown by since the
-/// reading changed last would have moved the free joint by kExpected (what it was then balanced a
-/// load),
+/// a wall holds the joint. It is not if the torque would have moved the free joint by kExpected,
 ///
-///   integral integral (|tau - g - (tau - g)_then| - tau_friction) / M_ii dt^2  >=  kExpected
+///   integral integral (|tau - g - balanced| - tau_friction) / M_ii dt^2  >=  kExpected
 ///
+/// where `balanced` is the part of tau - g between zero and what it was when the reading changed
+/// last: that much a load or a wall held then, and may still hold or have let go since;
 /// and the arm moves meanwhile: another joint by kOthers at least, as it does when this one swings
 /// unseen, and does not when the whole arm leans against something. Below tau_friction, the joint's
 /// friction in robot.yaml or kFrictionShare of its torque limit, whichever is more, nothing is

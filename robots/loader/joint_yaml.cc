@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/complaints.h"
+#include "common/suggest.h"
 #include "robots/loader/address_yaml.h"
 #include "robots/loader/joint_chain_yaml.h"
 #include "robots/loader/protocols/drive_protocol.h"
@@ -23,10 +24,23 @@ void tighten(const YamlMap& yaml, const std::string& key, double* limit) {
   *limit = wanted;
 }
 
+/// Without the URDF's limits each has to be here.
+void need_limits(const YamlMap& yaml, const JointUnits& units, bool has_ends) {
+  std::vector<std::string> keys = {"velocity_limit" + units.velocity, "torque_limit" + units.force};
+  if (has_ends) {
+    for (const char* end : {"position_min", "position_max"}) keys.push_back(end + units.position);
+  }
+  std::erase_if(keys, [&](const std::string& key) { return yaml.has(key); });
+  if (!keys.empty())
+    yaml.refuse("urdf_limits",
+                "ignore: then robot.yaml gives every limit; missing: " + joined(keys));
+}
+
 void read_limits(const YamlMap& yaml, JointConfig* joint) {
   const JointUnits& units = units_of(*joint);
   const std::string low = "position_min" + units.position;
   const std::string high = "position_max" + units.position;
+  if (ignores_urdf_limits(yaml)) need_limits(yaml, units, joint->type != JointType::kContinuous);
   if (yaml.has(low)) {
     const double wanted = yaml.number(low, {-1e3, 1e3});
     if (!(wanted >= joint->position_min))
@@ -140,6 +154,10 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
 }
 
 }  // namespace
+
+bool ignores_urdf_limits(const YamlMap& joint) {
+  return joint.word_or("urdf_limits", {"use", "ignore"}, "use") == "ignore";
+}
 
 void read_joints(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
                  Robot* robot) {

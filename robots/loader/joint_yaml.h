@@ -9,6 +9,9 @@
 
 namespace limber {
 
+/// Whether the limits of a joint count as robot.yaml has them, without the URDF's.
+bool ignores_urdf_limits(const YamlMap& joint);
+
 /// Fills drives, friction, tighter limits and homes of robot->joints, whose names and limits come
 /// from the URDF and whose buses are known. Every joint must be there, no other.
 /// Throws ConfigError with every joint's complaint. Set-up only.

@@ -10,6 +10,7 @@
 #include "common/config_error.h"
 #include "common/suggest.h"
 #include "robots/loader/mass_check.h"
+#include "robots/loader/required_keys.h"
 #include "robots/loader/robot_yaml.h"
 #include "robots/loader/urdf_chain.h"
 
@@ -18,16 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_robot(const fs::path& folder) {
-  std::error_code error;
-  return fs::is_regular_file(folder / "robot.yaml", error);
-}
-
 std::vector<std::string> shipped_robots() {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(robots_root(), error)) {
-    if (is_robot(entry.path())) names.push_back(entry.path().filename());
+    if (is_robot_folder(entry.path())) names.push_back(entry.path().filename());
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -36,9 +32,9 @@ std::vector<std::string> shipped_robots() {
 fs::path find_robot(const std::string& name_or_path) {
   const bool is_name =
       name_or_path.find('/') == std::string::npos && !name_or_path.starts_with('.');
-  if (is_name && is_robot(fs::path(robots_root()) / name_or_path))
+  if (is_name && is_robot_folder(fs::path(robots_root()) / name_or_path))
     return fs::path(robots_root()) / name_or_path;
-  if (!name_or_path.empty() && is_robot(name_or_path)) return name_or_path;
+  if (!name_or_path.empty() && is_robot_folder(name_or_path)) return name_or_path;
   const auto names = shipped_robots();
   const std::string near = nearest_word(name_or_path, names);
   throw ConfigError(fmt::format("no robot '{}'{}; expected a folder with robot.yaml, or one of: {}",
@@ -46,9 +42,8 @@ fs::path find_robot(const std::string& name_or_path) {
                                 joined(names)));
 }
 
-LoadedRobot from_urdf(const std::string& path, const std::string& base, const std::string& tip,
-                      const double gravity_R[3]) {
-  UrdfChain parts = build_urdf_chain(read_urdf_text(path), base, tip);
+LoadedRobot from_chain(UrdfChain parts, const std::string& path, const std::string& base,
+                       const std::string& tip, const double gravity_R[3]) {
   LoadedRobot loaded;
   loaded.robot.urdf_path = path;
   loaded.robot.base = base;
@@ -61,6 +56,17 @@ LoadedRobot from_urdf(const std::string& path, const std::string& base, const st
   loaded.segment_links = std::move(parts.segment_links);
   loaded.notes = std::move(parts.notes);
   return loaded;
+}
+
+/// A robot that moves needs limits.
+void refuse_placeholders(const std::vector<std::string>& placeholders) {
+  std::string text;
+  for (const std::string& line : placeholders) {
+    text += (text.empty() ? "" : "\n") + line +
+            ": no limit; correct it, or give the limits in robot.yaml and let this joint have "
+            "urdf_limits: ignore there";
+  }
+  if (!text.empty()) throw ConfigError(text);
 }
 
 /// The tool is part of what the last joint carries.
@@ -89,16 +95,21 @@ void fill_default_gains(Robot* robot) {
 }
 
 LoadedRobot load_from(const YamlMap& yaml, const fs::path& folder) {
+  check_required_keys(yaml);
   const RobotHeader header = read_robot_header(yaml);
   std::error_code error;
   if (!fs::is_regular_file(folder / header.urdf, error))
     yaml.refuse("urdf", fmt::format("no file '{}' in {}", header.urdf, folder.string()));
-  LoadedRobot loaded = from_urdf(folder / header.urdf, header.base, header.tip, header.gravity_R);
+  const std::string path = folder / header.urdf;
+  const UrdfChain parts =
+      build_urdf_chain(path, header.base, header.tip, header.ignored_urdf_limits);
+  refuse_placeholders(parts.placeholders);
+  LoadedRobot loaded = from_chain(parts, path, header.base, header.tip, header.gravity_R);
   loaded.robot.name = header.name;
   loaded.robot.folder = folder;
   read_robot_yaml(yaml, &loaded.robot);
   check_tool_mass(yaml, loaded);
-  check_mass_matrix(loaded, loaded.robot.urdf_path);
+  check_mass_matrix(loaded, parts.unphysical);
   return loaded;
 }
 
@@ -124,16 +135,24 @@ LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, con
                       gravity[i]));
     }
   }
-  LoadedRobot loaded = from_urdf(urdf_path, base, tip, gravity);
+  const UrdfChain parts = build_urdf_chain(urdf_path, base, tip, {});
+  LoadedRobot loaded = from_chain(parts, urdf_path, base, tip, gravity);
   loaded.robot.name = fs::path(urdf_path).stem();
+  for (const std::string& line : parts.placeholders)
+    loaded.notes.push_back(line + ": no limit; robot.yaml needs urdf_limits: ignore for it");
   for (JointConfig& joint : loaded.robot.joints) {
     const bool zero_inside = joint.position_min <= 0.0 && joint.position_max >= 0.0;
     joint.home = zero_inside ? 0.0 : 0.5 * (joint.position_min + joint.position_max);
     joint.torque_rate_limit_Nm_per_s = std::min(joint.torque_limit_Nm / 0.02, 1000.0);
   }
   fill_default_gains(&loaded.robot);
-  check_mass_matrix(loaded, urdf_path);
+  check_mass_matrix(loaded, parts.unphysical);
   return loaded;
+}
+
+bool is_robot_folder(const std::string& folder) {
+  std::error_code error;
+  return fs::is_regular_file(fs::path(folder) / "robot.yaml", error);
 }
 
 std::string robots_root() {

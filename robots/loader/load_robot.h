@@ -20,7 +20,8 @@ struct LoadedRobot {
   KDL::Chain chain;
   /// For each segment of the chain, the URDF link at its end (pushes and payloads name links).
   std::vector<std::string> segment_links;
-  /// Things worth knowing that are no errors (mimic joints ignored, branches carried as load, ...).
+  /// Things worth knowing that are no errors (mimic joints ignored, branches carried as load, slips
+  /// in parts of the URDF that do not count, ...), each with file and line.
   std::vector<std::string> notes;
 };
 
@@ -33,10 +34,13 @@ LoadedRobot load_robot(const std::string& name_or_path);
 /// to be different from what drives and controller believe. Throws ConfigError. Set-up only.
 LoadedRobot load_reality(const std::string& name_or_path, const YamlMap& reality);
 
-/// Loads a bare URDF; limits come from the URDF, there are no drives. gravity in axes of the URDF's
-/// root link.
+/// Loads a bare URDF; limits come from the URDF (absent or zero: none, with a note), there are no
+/// drives. gravity in axes of the URDF's root link.
 LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, const std::string& tip,
                       const double gravity[3]);
+
+/// Whether a folder holds a robot: robot.yaml.
+bool is_robot_folder(const std::string& folder);
 
 /// Folder of the shipped robots: $LIMBER_ROBOTS or the one known at build time.
 std::string robots_root();

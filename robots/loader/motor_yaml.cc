@@ -37,7 +37,7 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   const double resistance = yaml.number("phase_resistance_ohm", {1e-4, 100.0});
   drive.torque_constant_Nm_per_A = drive.gear_ratio * kt;
   drive.short_circuit_damping_Nms = 2.0 / 3.0 * kt * kt / resistance * ratio_squared;
-  drive.peak_torque_Nm = yaml.number("peak_torque_Nm", {0.01, 2000.0});
+  drive.peak_torque_Nm = yaml.number("peak_torque_Nm", {0.01, 5e4});
   if (yaml.has("actuator")) drive.actuator = read_actuator(yaml.map("actuator"));
   drive.actuator.resistance_ohm = resistance;
   refuse_foreign_keys(yaml, traits);

@@ -46,6 +46,16 @@ void read_watchdog(const YamlMap& yaml, Robot* robot) {
   }
 }
 
+std::set<std::string> ignored_limits(const YamlMap& yaml) {
+  std::set<std::string> ignored;
+  if (!yaml.is_map("joints")) return ignored;
+  const YamlMap joints = yaml.map("joints");
+  for (const std::string& name : joints.keys()) {
+    if (joints.is_map(name) && ignores_urdf_limits(joints.map(name))) ignored.insert(name);
+  }
+  return ignored;
+}
+
 }  // namespace
 
 RobotHeader read_robot_header(const YamlMap& yaml) {
@@ -60,6 +70,7 @@ RobotHeader read_robot_header(const YamlMap& yaml) {
     const auto gravity = yaml.numbers("gravity_m_per_s2", 3, {-30.0, 30.0});
     std::copy(gravity.begin(), gravity.end(), header.gravity_R);
   }
+  header.ignored_urdf_limits = ignored_limits(yaml);
   return header;
 }
 

@@ -1,6 +1,7 @@
 // What robot.yaml adds to a URDF: buses, motors, drives, tighter limits, home, gains.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "common/yaml_reader.h"
@@ -14,7 +15,8 @@ struct RobotHeader {
   std::string urdf;  ///< relative to the folder of robot.yaml
   std::string base;
   std::string tip;
-  double gravity_R[3] = {0.0, 0.0, -9.81};  ///< m/s^2, axes of the URDF's root link
+  double gravity_R[3] = {0.0, 0.0, -9.81};    ///< m/s^2, axes of the URDF's root link
+  std::set<std::string> ignored_urdf_limits;  ///< joints with urdf_limits: ignore
 };
 
 RobotHeader read_robot_header(const YamlMap& yaml);

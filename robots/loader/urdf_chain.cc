@@ -4,14 +4,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "common/complaints.h"
 #include "common/config_error.h"
-#include "common/joints.h"
-#include "common/suggest.h"
 #include "robots/loader/urdf_to_kdl.h"
 
 namespace limber {
@@ -31,141 +24,77 @@ class Listener : public console_bridge::OutputHandler {
   std::string heard_;
 };
 
-urdf::ModelInterfaceSharedPtr parse(const UrdfText& text) {
+urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file) {
   Listener listener;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.text);
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!model) {
-    throw ConfigError::at(text.file, 0, "", "refused by the URDF library: " + listener.heard());
+    throw ConfigError::at(file, 0, "", "refused by the URDF library: " + listener.heard());
   }
   return model;
 }
 
-JointConfig to_config(const urdf::Joint& joint, int line, Complaints* complaints,
-                      std::vector<std::string>* notes) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const std::string where = fmt::format("joint '{}'", joint.name);
+JointType type_of(const urdf::Joint& joint) {
+  if (joint.type == urdf::Joint::CONTINUOUS) return JointType::kContinuous;
+  return joint.type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
+}
+
+JointConfig to_config(const urdf::Joint& joint, const UrdfLimits& limits) {
   JointConfig config;
   config.name = joint.name;
-  config.position_min = -kInfinity;
-  config.position_max = kInfinity;
-  config.type = JointType::kContinuous;
-  if (joint.type != urdf::Joint::CONTINUOUS) {
-    config.type =
-        joint.type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
-    config.position_min = joint.limits->lower;
-    config.position_max = joint.limits->upper;
-  }
-  config.velocity_limit = joint.limits ? joint.limits->velocity : kInfinity;
-  config.torque_limit_Nm = joint.limits ? joint.limits->effort : kInfinity;
-  if (!joint.limits)
-    notes->push_back(where + ": no <limit>, so neither speed nor torque is limited by the URDF");
-  const auto expect = [&](bool right, const std::string& problem) {
-    if (!right) complaints->add(line, where, "<limit>" + problem);
-  };
-  expect(
-      config.position_min < config.position_max,
-      fmt::format(": lower {} must be below upper {}", config.position_min, config.position_max));
-  expect(config.velocity_limit > 0.0,
-         fmt::format(" velocity: {} must be above 0", config.velocity_limit));
-  expect(config.torque_limit_Nm > 0.0,
-         fmt::format(" effort: {} must be above 0", config.torque_limit_Nm));
+  config.type = type_of(joint);
+  config.position_min = limits.lower;
+  config.position_max = limits.upper;
+  config.velocity_limit = limits.velocity;
+  config.torque_limit_Nm = limits.effort;
   return config;
 }
 
-urdf::LinkConstSharedPtr find_link(const urdf::ModelInterface& model, const UrdfText& text,
-                                   const std::string& role, const std::string& name) {
-  if (auto link = model.getLink(name)) return link;
-  std::vector<std::string> links;
-  for (const auto& [link, line] : text.link_lines) links.push_back(link);
-  const std::string near = nearest_word(name, links);
-  constexpr std::size_t kListed = 100;
-  if (links.size() > kListed) links.resize(kListed);
-  throw ConfigError::at(
-      text.file, 0, role,
-      fmt::format("no link '{}'{}; there are: {}", name,
-                  near.empty() ? "" : "; did you mean '" + near + "'?", joined(links)));
-}
-
-/// Links from below the base to the tip.
-std::vector<urdf::LinkConstSharedPtr> path(const urdf::LinkConstSharedPtr& base,
-                                           const urdf::LinkConstSharedPtr& tip,
-                                           const UrdfText& text) {
-  std::vector<urdf::LinkConstSharedPtr> links;
-  urdf::LinkConstSharedPtr link = tip;
-  for (; link && link != base; link = link->getParent()) links.push_back(link);
-  if (!link) {
-    throw ConfigError::at(
-        text.file, 0, "tip",
-        fmt::format("link '{}' does not lie below the base '{}'", tip->name, base->name));
-  }
-  std::reverse(links.begin(), links.end());
-  return links;
-}
-
-KDL::Rotation root_to_base(const urdf::LinkConstSharedPtr& base, std::vector<std::string>* notes) {
+KDL::Rotation root_to_base(const UrdfTree& tree, const urdf::ModelInterface& model,
+                           const UrdfUse& use) {
   KDL::Rotation R_RB = KDL::Rotation::Identity();
-  for (auto link = base; link->parent_joint; link = link->getParent()) {
-    const urdf::Joint& joint = *link->parent_joint;
-    R_RB = to_kdl(joint.parent_to_joint_origin_transform).M * R_RB;
-    if (moves(joint)) {
-      notes->push_back(
-          fmt::format("joint '{}' lies between root and base: frozen at zero", joint.name));
-    }
+  for (const UrdfJointText* joint = tree.joint_above(use.base); joint != nullptr;
+       joint = tree.joint_above(joint->parent)) {
+    R_RB = to_kdl(model.getJoint(joint->name)->parent_to_joint_origin_transform).M * R_RB;
   }
   return R_RB;
 }
 
 /// The joint above a link, and the link with its load.
-void add_segment(const urdf::Link& link, const urdf::Link* next, const UrdfText& text,
-                 Complaints* complaints, UrdfChain* result) {
+void add_segment(const urdf::Link& link, const urdf::Link* next, const UrdfTree& tree,
+                 const UrdfText& text, UrdfChain* result) {
   const urdf::Joint& joint = *link.parent_joint;
-  const int line = text.joint_lines.at(joint.name);
-  if (joint.type == urdf::Joint::FLOATING || joint.type == urdf::Joint::PLANAR) {
-    complaints->add(line, fmt::format("joint '{}'", joint.name),
-                    "floating and planar joints cannot be part of an arm");
-    return;
-  }
-  if (moves(joint)) result->joints.push_back(to_config(joint, line, complaints, &result->notes));
+  if (moves(joint)) result->joints.push_back(to_config(joint, text.limits.at(joint.name)));
   const Load load = load_of(link, next);
   if (load.branch_mass_kg > 0.0) {
-    result->notes.push_back(fmt::format("link '{}' carries {:.4g} kg of side branches as load",
-                                        link.name, load.branch_mass_kg));
-  }
-  for (const std::string& frozen : load.frozen) {
     result->notes.push_back(
-        fmt::format("joint '{}' is not part of the arm: frozen at zero", frozen));
+        ConfigError::at(
+            tree.file, tree.links.at(link.name)->GetLineNum(), fmt::format("link '{}'", link.name),
+            fmt::format("carries {:.4g} kg of side branches as load", load.branch_mass_kg))
+            .what());
   }
   result->chain.addSegment(KDL::Segment(
       link.name, to_kdl(joint), to_kdl(joint.parent_to_joint_origin_transform), load.inertia));
   result->segment_links.push_back(link.name);
 }
 
-void check_count(const UrdfChain& result, const UrdfText& text, const std::string& base,
-                 const std::string& tip) {
-  const std::string between = fmt::format("between '{}' and '{}'", base, tip);
-  if (result.joints.empty()) throw ConfigError::at(text.file, 0, "", "no moving joint " + between);
-  if (result.joints.size() > kMaxJoints) {
-    throw ConfigError::at(
-        text.file, 0, "",
-        fmt::format("{} moving joints {}; at most {}", result.joints.size(), between, kMaxJoints));
-  }
-}
-
 }  // namespace
 
-UrdfChain build_urdf_chain(const UrdfText& text, const std::string& base, const std::string& tip) {
-  const urdf::ModelInterfaceSharedPtr model = parse(text);
-  const auto base_link = find_link(*model, text, "base", base);
-  const auto links = path(base_link, find_link(*model, text, "tip", tip), text);
+UrdfChain build_urdf_chain(const std::string& path, const std::string& base, const std::string& tip,
+                           const std::set<std::string>& ignored) {
+  const UrdfTree tree = read_urdf_tree(path);
+  const UrdfUse use = find_use(tree, base, tip);
+  const UrdfText text = check_urdf(tree, use, ignored);
+  const urdf::ModelInterfaceSharedPtr model = parse(text.text, path);
   UrdfChain result;
-  result.notes = text.notes;
-  result.R_RB = root_to_base(base_link, &result.notes);
-  Complaints complaints(text.file);
-  for (std::size_t i = 0; i < links.size(); ++i)
-    add_segment(*links[i], i + 1 < links.size() ? links[i + 1].get() : nullptr, text, &complaints,
-                &result);
-  complaints.throw_if_any();
-  check_count(result, text, base, tip);
+  result.R_RB = root_to_base(tree, *model, use);
+  for (std::size_t i = 0; i < use.chain.size(); ++i) {
+    const bool last = i + 1 == use.chain.size();
+    const auto next = last ? nullptr : model->getLink(use.chain[i + 1]->child);
+    add_segment(*model->getLink(use.chain[i]->child), next.get(), tree, text, &result);
+  }
+  result.placeholders = text.placeholders;
+  result.unphysical = text.unphysical;
+  result.notes.insert(result.notes.end(), text.notes.begin(), text.notes.end());
   return result;
 }
 

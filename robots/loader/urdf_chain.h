@@ -2,6 +2,7 @@
 #pragma once
 
 #include <kdl/chain.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,16 @@ struct UrdfChain {
   std::vector<std::string> segment_links;  ///< link at the end of each segment
   std::vector<JointConfig> joints;         ///< moving joints with the URDF's limits
   KDL::Rotation R_RB;                      ///< base axes in axes of the URDF's root link
+  std::vector<std::string> placeholders;   ///< see UrdfText
+  std::vector<UnphysicalLink> unphysical;  ///< likewise
   std::vector<std::string> notes;
 };
 
-/// Builds the chain of a checked URDF. Side branches, and all that lies beyond the tip, are added
-/// to the link they hang from (Ic' = Ic + parallel axes), their joints frozen at zero; so are
-/// moving joints between root and base. Throws ConfigError: base or tip unknown, tip not below
-/// base, joint types other than revolute, continuous, prismatic, fixed in the chain, no moving
-/// joint or more than 16, effort or velocity not above zero. Set-up only.
-UrdfChain build_urdf_chain(const UrdfText& urdf, const std::string& base, const std::string& tip);
+/// Reads a URDF and builds the chain from base to tip. Side branches, and all that lies beyond the
+/// tip, are added to the link they hang from (Ic' = Ic + parallel axes), their joints frozen at
+/// zero; so are moving joints between root and base. `ignored`: joints whose <limit> does not
+/// count. Throws ConfigError, see read_urdf_tree(), find_use() and check_urdf(). Set-up only.
+UrdfChain build_urdf_chain(const std::string& path, const std::string& base, const std::string& tip,
+                           const std::set<std::string>& ignored);
 
 }  // namespace limber

@@ -12,15 +12,25 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr double kLargestMass_kg = 1000.0;
+constexpr double kHeavy_kg = 1'000.0;
+constexpr double kLargestMass_kg = 10'000.0;
+constexpr double kSlightlyNegative = 0.1;  ///< of the largest moment: rounding, a vendor's fit
+constexpr double kRounding = 1e-9;
+constexpr double kNothing_kgm2 = 1e-15;  ///< exporters' zeros
 
-void check_mass(const XMLElement& mass, const std::string& where, Complaints* complaints) {
+std::optional<double> read_mass(const XMLElement& mass, const std::string& where,
+                                const InertialFindings& findings) {
   const auto value = attribute_numbers(mass, "value");
-  if (value.size() != 1 || (value[0] > 0.0 && value[0] <= kLargestMass_kg)) return;
-  complaints->add(mass.GetLineNum(), where,
-                  fmt::format("<mass> value: {} kg; allowed: above 0, up to {} (leave <inertial> "
-                              "out for a link without mass)",
-                              value[0], kLargestMass_kg));
+  if (value.size() != 1) return std::nullopt;
+  const int line = mass.GetLineNum();
+  if (!(value[0] >= 0.0 && value[0] <= kLargestMass_kg)) {
+    findings.refused->add(
+        line, where,
+        fmt::format("<mass> value: {} kg; allowed: 0 to {} kg", value[0], kLargestMass_kg));
+  } else if (value[0] > kHeavy_kg) {
+    findings.told->add(line, where, fmt::format("mass {} kg; are these grams?", value[0]));
+  }
+  return value[0];
 }
 
 std::optional<Eigen::Matrix3d> read_tensor(const XMLElement& inertia) {
@@ -36,47 +46,54 @@ std::optional<Eigen::Matrix3d> read_tensor(const XMLElement& inertia) {
   return tensor;
 }
 
-void check_inertia(const XMLElement& inertia, const std::string& where, Complaints* complaints) {
-  const auto tensor = read_tensor(inertia);
-  if (!tensor) return;
+void check_tensor(const Eigen::Matrix3d& tensor, int line, const std::string& link,
+                  const InertialFindings& findings) {
+  const std::string where = fmt::format("link '{}'", link);
   const Eigen::Vector3d moment =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(*tensor, Eigen::EigenvaluesOnly).eigenvalues();
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
   const std::string moments = fmt::format("principal moments {:.6g}, {:.6g}, {:.6g} kg m^2",
                                           moment[0], moment[1], moment[2]);
-  if (!(moment[0] > 0.0)) {
-    complaints->add(inertia.GetLineNum(), where,
-                    fmt::format("<inertia>: not positive definite ({})", moments));
-  } else if (!(moment[2] <= (moment[0] + moment[1]) * (1.0 + 1e-9))) {
-    complaints->add(inertia.GetLineNum(), where,
-                    fmt::format("<inertia>: no body has it: one principal moment exceeds the sum "
-                                "of the other two ({})",
-                                moments));
+  if (!(moment[0] >= -kSlightlyNegative * moment[2])) {
+    findings.refused->add(line, where,
+                          fmt::format("<inertia>: not positive definite ({})", moments));
+    return;
   }
-}
-
-// Exporters write the links that are mere frames so.
-bool is_nothing(const XMLElement& mass, const XMLElement& inertia) {
-  const auto value = attribute_numbers(mass, "value");
-  const auto tensor = read_tensor(inertia);
-  return value.size() == 1 && value[0] == 0.0 && tensor && tensor->isZero(0.0);
+  const bool negative = !(moment[0] >= -kRounding * moment[2]);
+  if (!negative && moment[2] <= (moment[0] + moment[1]) * (1.0 + kRounding)) return;
+  findings.told->add(line, where,
+                     fmt::format("<inertia>: no body has it: {} ({}){}",
+                                 negative ? "one principal moment is below zero"
+                                          : "one principal moment exceeds the sum of the others",
+                                 moments, findings.consequence));
+  findings.unphysical->push_back({link, line, moment[0]});
 }
 
 }  // namespace
 
-void check_urdf_inertial(const XMLElement& inertial, const std::string& where,
-                         Complaints* complaints) {
+void check_urdf_inertial(const XMLElement& inertial, const std::string& link,
+                         const InertialFindings& findings) {
+  const std::string where = fmt::format("link '{}'", link);
   const XMLElement* mass = inertial.FirstChildElement("mass");
   const XMLElement* inertia = inertial.FirstChildElement("inertia");
   for (const auto& [element, name] : {std::pair{mass, "mass"}, std::pair{inertia, "inertia"}}) {
     if (element != nullptr) continue;
-    complaints->add(inertial.GetLineNum(), where,
-                    fmt::format("<inertial> without <{}>; leave <inertial> out altogether for a "
-                                "link without mass",
-                                name));
+    findings.refused->add(inertial.GetLineNum(), where,
+                          fmt::format("<inertial> without <{}>; leave <inertial> out altogether "
+                                      "for a link without mass",
+                                      name));
   }
-  if (mass != nullptr && inertia != nullptr && is_nothing(*mass, *inertia)) return;
-  if (mass != nullptr) check_mass(*mass, where, complaints);
-  if (inertia != nullptr) check_inertia(*inertia, where, complaints);
+  if (mass == nullptr || inertia == nullptr) return;
+  const auto value = read_mass(*mass, where, findings);
+  const auto tensor = read_tensor(*inertia);
+  if (!value || !tensor) return;
+  const bool no_inertia = tensor->cwiseAbs().maxCoeff() < kNothing_kgm2;
+  if (no_inertia && *value > 0.0) {
+    findings.told->add(inertia->GetLineNum(), where,
+                       fmt::format("mass {} kg without inertia: a point mass", *value));
+  } else if (!no_inertia && *value == 0.0) {
+    findings.told->add(mass->GetLineNum(), where, "inertia without mass" + findings.consequence);
+  }
+  if (!no_inertia) check_tensor(*tensor, inertia->GetLineNum(), link, findings);
 }
 
 }  // namespace limber

@@ -128,7 +128,8 @@ void check_attribute_names(const XMLElement& element, const std::string& where,
   }
 }
 
-void check_children(const XMLElement& element, const std::string& where, Complaints* complaints) {
+void check_children(const XMLElement& element, const std::string& where,
+                    const ComplaintsOf& complaints_of) {
   const std::string name = element.Name();
   const std::vector<std::string>* known = name == "link"       ? &kLinkChildren
                                           : name == "joint"    ? &kJointChildren
@@ -138,14 +139,27 @@ void check_children(const XMLElement& element, const std::string& where, Complai
     const std::string tag = child->Name();
     if (is_one_of(child->Name(), kSingleElements) &&
         element.FirstChildElement(child->Name()) != child) {
-      complaints->add(child->GetLineNum(), where, fmt::format("<{}> is here twice", tag));
+      complaints_of(tag)->add(child->GetLineNum(), where, fmt::format("<{}> is here twice", tag));
     }
     if (known == nullptr || std::find(known->begin(), known->end(), tag) != known->end()) continue;
     const std::string near = nearest_word(tag, *known);
     if (near.empty()) continue;
-    complaints->add(child->GetLineNum(), where,
-                    fmt::format("<{}>: unknown element; did you mean <{}>?", tag, near));
+    complaints_of(near)->add(child->GetLineNum(), where,
+                             fmt::format("<{}>: unknown element; did you mean <{}>?", tag, near));
   }
+}
+
+void check_element(const XMLElement& element, const std::string& where, Complaints* complaints) {
+  for (const NumberRule& rule : kNumberRules) {
+    if (std::strcmp(rule.element, element.Name()) == 0)
+      check_number(element, rule, where, complaints);
+  }
+  check_angle(element, "rpy", where, complaints);
+  check_attribute_names(element, where, complaints);
+  check_children(element, where, [&](const std::string&) { return complaints; });
+  // The parser refuses nesting deeper than 100, so this recursion is bounded.
+  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
+    check_element(*child, where, complaints);
 }
 
 }  // namespace
@@ -167,16 +181,11 @@ double attribute_number(const XMLElement& element, const char* attribute, double
   return numbers.empty() ? otherwise : numbers.front();
 }
 
-void check_urdf_numbers(const XMLElement& top, const std::string& where, Complaints* complaints) {
-  for (const NumberRule& rule : kNumberRules) {
-    if (std::strcmp(rule.element, top.Name()) == 0) check_number(top, rule, where, complaints);
-  }
-  check_angle(top, "rpy", where, complaints);
-  check_attribute_names(top, where, complaints);
-  check_children(top, where, complaints);
-  // The parser refuses nesting deeper than 100, so this recursion is bounded.
+void check_urdf_numbers(const XMLElement& top, const std::string& where,
+                        const ComplaintsOf& complaints_of) {
+  check_children(top, where, complaints_of);
   for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement())
-    check_urdf_numbers(*child, where, complaints);
+    check_element(*child, where, complaints_of(child->Name()));
 }
 
 }  // namespace limber

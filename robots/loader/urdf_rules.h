@@ -3,6 +3,7 @@
 
 #include <tinyxml2.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,13 @@ std::vector<double> attribute_numbers(const tinyxml2::XMLElement& element, const
 double attribute_number(const tinyxml2::XMLElement& element, const char* attribute,
                         double otherwise);
 
+/// Where the complaints about a part of a link or joint go, by the name of its element.
+using ComplaintsOf = std::function<Complaints*(const std::string& tag)>;
+
 /// Checks every number below a <link> or <joint>: finite, fully consumed, as many as there must be,
 /// angles in radians; no attribute and no repeated element that the URDF library would ignore
 /// silently. `where` names the link or joint, as in "link 'a'".
 void check_urdf_numbers(const tinyxml2::XMLElement& top, const std::string& where,
-                        Complaints* complaints);
+                        const ComplaintsOf& complaints_of);
 
 }  // namespace limber

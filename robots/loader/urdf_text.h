@@ -1,23 +1,29 @@
-// Checks a URDF file as text, because the URDF library reads mass "1,5" as 0 and says nothing.
+// Checks the numbers of a URDF as text, because the URDF library reads mass "1,5" as 0 without a
+// word, and keeps what counts for one chain.
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "robots/loader/urdf_inertial.h"
+#include "robots/loader/urdf_limits.h"
+#include "robots/loader/urdf_use.h"
+
 namespace limber {
 
-/// A URDF whose text has passed every check that needs no choice of base and tip.
 struct UrdfText {
-  std::string file;
-  std::string text;
-  std::map<std::string, int> link_lines;
-  std::map<std::string, int> joint_lines;
-  std::vector<std::string> notes;
+  std::string text;                          ///< what counts, as a URDF for the library
+  std::map<std::string, UrdfLimits> limits;  ///< of the joints that move, by name
+  /// Complaints of joints whose limits are absent or zero; such a limit counts as none.
+  std::vector<std::string> placeholders;
+  std::vector<UnphysicalLink> unphysical;  ///< among the links that move
+  std::vector<std::string> notes;          ///< "file:line: where: what"
 };
 
-/// Reads and checks. Throws ConfigError with every complaint, one a line. Refused without parsing:
-/// more than 8 MiB, more than 10,000 elements, DOCTYPE and entities. Set-up only.
-UrdfText read_urdf_text(const std::string& path);
+/// Throws ConfigError with every complaint of what counts, one a line. What is wrong elsewhere is a
+/// note. `ignored`: joints whose <limit> does not count either. Set-up only.
+UrdfText check_urdf(const UrdfTree& tree, const UrdfUse& use, const std::set<std::string>& ignored);
 
 }  // namespace limber

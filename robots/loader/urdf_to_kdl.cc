@@ -2,6 +2,8 @@
 
 #include <urdf_model/joint.h>
 
+#include <vector>
+
 namespace limber {
 namespace {
 
@@ -51,7 +53,6 @@ Load load_of(const urdf::Link& link, const urdf::Link* next) {
       if (child.get() == next) continue;
       const urdf::Joint& joint = *child->parent_joint;
       open.push_back({child.get(), X_LF * to_kdl(joint.parent_to_joint_origin_transform)});
-      if (moves(joint)) load.frozen.push_back(joint.name);
     }
   };
   hang(link, KDL::Frame::Identity());

@@ -18,17 +18,20 @@ const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "push",
 const std::vector<std::string> kModes = {"idle", "hold",        "active",
                                          "stop", "acknowledge", "release"};  // REQUEST_* order
 
-ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind, EntryContext* context) {
+ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
+                             const EntryContext& context) {
   if (kind == "mode") return mode_request(index_of(yaml.word("mode", kModes), kModes));
   if (kind == "gains") {
-    read_gains_entry(yaml.map("gains"), context->robot.robot, *context->laws, &context->gains);
-    return context->gains;
+    compliance_gains_t gains =
+        read_gains_entry(yaml.map("gains"), context.robot.robot, *context.laws);
+    gains.client = kScenarioClient;
+    return gains;
   }
-  if (kind == "goal") return read_goal(yaml.map("goal"), context->robot.robot);
-  if (kind == "push") return read_push(yaml.map("push"), context->robot);
+  if (kind == "goal") return read_goal(yaml.map("goal"), context.robot.robot);
+  if (kind == "push") return read_push(yaml.map("push"), context.robot);
   if (kind == "wall") return read_wall(yaml);
   if (kind == "payload") return read_payload(yaml);
-  return read_fault(yaml.map("fault"), context->robot.robot);
+  return read_fault(yaml.map("fault"), context.robot.robot);
 }
 
 }  // namespace
@@ -40,8 +43,8 @@ mode_request_t mode_request(int request) {
   return message;
 }
 
-std::optional<TimedMessage> read_entry(const YamlMap& yaml, EntryContext* context) {
-  const double at_s = yaml.number("at_s", {0.0, context->duration_s});
+std::optional<TimedMessage> read_entry(const YamlMap& yaml, const EntryContext& context) {
+  const double at_s = yaml.number("at_s", {0.0, context.duration_s});
   std::vector<std::string> there;
   for (const std::string& kind : kKinds) {
     if (yaml.has(kind)) there.push_back(kind);
@@ -51,7 +54,7 @@ std::optional<TimedMessage> read_entry(const YamlMap& yaml, EntryContext* contex
     yaml.refuse(fmt::format("an entry holds at_s and exactly one of: {}; found {}", joined(kKinds),
                             there.empty() ? "none" : joined(there)));
   }
-  if (there.front() == "gains" && context->laws == nullptr) return std::nullopt;
+  if (there.front() == "gains" && context.laws == nullptr) return std::nullopt;
   return TimedMessage{std::llround(at_s * 1e9), read_message(yaml, there.front(), context)};
 }
 

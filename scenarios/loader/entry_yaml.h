@@ -1,8 +1,6 @@
 // One entry of a scenario's timeline: `at_s` and exactly one thing that happens then.
 #pragma once
 
-#include <limber/compliance_gains_t.hpp>
-
 #include "common/yaml_reader.h"
 #include "lcmtypes/gains_table.h"
 #include "scenarios/loader/scenario.h"
@@ -15,12 +13,11 @@ struct EntryContext {
   /// nullptr: gains are left to the controller and not read.
   const LawCatalog* laws;
   double duration_s;
-  compliance_gains_t gains;  ///< after the gains entries so far
 };
 
 /// Reads and checks one entry; messages are without seq, which is given when the timeline is
 /// sorted. Empty where the entry is left to another process. Set-up only.
-std::optional<TimedMessage> read_entry(const YamlMap& yaml, EntryContext* context);
+std::optional<TimedMessage> read_entry(const YamlMap& yaml, const EntryContext& context);
 
 /// A request on behalf of the scenario.
 mode_request_t mode_request(int request);

@@ -8,6 +8,8 @@
 
 #include "common/overloaded.h"
 #include "common/types.h"
+#include "lcmtypes/gains_merge.h"
+#include "robots/loader/default_gains.h"
 
 namespace limber {
 namespace {
@@ -53,12 +55,13 @@ Matrix6d read_tip_matrix(const YamlMap& yaml, const GainRow& row) {
   return M;
 }
 
-void read_periods(const YamlMap& yaml, const GainRow& row, std::int16_t (&cycles)[5]) {
+void read_periods(const YamlMap& yaml, const GainRow& row, Message* gains) {
   const YamlMap periods = yaml.map(row.key);
   for (const GainWord& term : row.words) {
-    std::int16_t& value = cycles[term.value];
-    value = static_cast<std::int16_t>(periods.integer_or(term.word, static_cast<long>(row.low),
-                                                         static_cast<long>(row.high), value));
+    if (!periods.has(term.word)) continue;
+    gains->period_cycles[term.value] = static_cast<std::int16_t>(
+        periods.integer(term.word, static_cast<long>(row.low), static_cast<long>(row.high)));
+    name_gain(part_key(row.key, term.word).c_str(), gains);
   }
   periods.finish();
 }
@@ -100,9 +103,12 @@ void read_row(const YamlMap& yaml, const GainRow& row, int joints, Message* gain
                  [&](float(Message::*field)[16]) { joint_values(gains->*field); },
                  [&](double(Message::*field)[6][6]) { tip_matrix(gains->*field); },
                  [&](float(Message::*field)[6][6]) { tip_matrix(gains->*field); },
-                 [&](std::int16_t(Message::*field)[5]) { read_periods(yaml, row, gains->*field); },
+                 [&](std::int16_t(Message::*)[5]) { read_periods(yaml, row, gains); },
              },
              row.field);
+  if (!std::holds_alternative<std::monostate>(row.field) &&
+      !std::holds_alternative<std::int16_t(Message::*)[5]>(row.field))
+    name_gain(row.key, gains);
 }
 
 // The block's diagonal; the coupling to the other block is cleared.
@@ -118,20 +124,23 @@ void read_stiffness_block(const YamlMap& yaml, const GainRow& row, int first, Me
   for (int i = 0; i < 3; ++i) {
     gains->K_x[first + i][first + i] = diagonal[static_cast<std::size_t>(i)];
   }
+  name_gain(row.key, gains);
 }
 
 }  // namespace
 
-void read_gains_entry(const YamlMap& yaml, const Robot& robot, const LawCatalog& laws,
-                      compliance_gains_t* gains) {
+Message read_gains_entry(const YamlMap& yaml, const Robot& robot, const LawCatalog& laws) {
   const int n = robot.size();
-  gains->law = yaml.has("law") ? yaml.word("law", laws.names) : "";
-  gains->ramp_s = yaml.number_or(ramp_row().key, {ramp_row().low, ramp_row().high}, 0.0);
-  for (const GainRow& row : gain_table()) read_row(yaml, row, n, gains);
-  for (const GainRow* row : laws.parameters) read_row(yaml, *row, n, gains);
-  read_stiffness_block(yaml, translation_stiffness_row(), 0, gains);
-  read_stiffness_block(yaml, rotation_stiffness_row(), 3, gains);
+  Message gains = default_gains(robot);
+  gains.law = yaml.has("law") ? yaml.word("law", laws.names) : "";
+  gains.scope = yaml.boolean_or("reset", false) ? Message::SCOPE_ALL : Message::SCOPE_NAMED;
+  gains.ramp_s = yaml.number_or(ramp_row().key, {ramp_row().low, ramp_row().high}, 0.0);
+  for (const GainRow& row : gain_table()) read_row(yaml, row, n, &gains);
+  for (const GainRow* row : laws.parameters) read_row(yaml, *row, n, &gains);
+  read_stiffness_block(yaml, translation_stiffness_row(), 0, &gains);
+  read_stiffness_block(yaml, rotation_stiffness_row(), 3, &gains);
   yaml.finish();
+  return gains;
 }
 
 }  // namespace limber

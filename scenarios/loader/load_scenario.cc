@@ -6,7 +6,6 @@
 
 #include "common/complaints.h"
 #include "common/yaml_reader.h"
-#include "robots/loader/default_gains.h"
 #include "scenarios/loader/entry_yaml.h"
 #include "scenarios/loader/scenario.h"
 #include "scenarios/loader/values_yaml.h"
@@ -72,15 +71,14 @@ void set_seq(std::int64_t seq, std::int64_t time_ns, ScenarioMessage* message) {
 std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& robot,
                                         const LawCatalog* laws, double duration_s) {
   std::vector<TimedMessage> timeline;
-  EntryContext context{robot, laws, duration_s, default_gains(robot.robot)};
-  context.gains.client = kScenarioClient;
+  const EntryContext context{robot, laws, duration_s};
   bool asks_for_mode = false;
   Complaints complaints(yaml.file());
   if (yaml.has("timeline")) {
     for (const YamlMap& entry : yaml.maps("timeline")) {
       asks_for_mode = asks_for_mode || entry.has("mode");
       complaints.collect([&] {
-        if (auto timed = read_entry(entry, &context)) timeline.push_back(std::move(*timed));
+        if (auto timed = read_entry(entry, context)) timeline.push_back(std::move(*timed));
       });
     }
   }
@@ -98,13 +96,21 @@ std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& 
 
 }  // namespace
 
-std::string scenario_robot(const std::string& path) {
+std::string scenario_robot(const std::string& path, std::string* note) {
+  namespace fs = std::filesystem;
   const YamlMap yaml = YamlMap::from_file(path);
   yaml.word("format", {kFormat});
   std::string robot = yaml.text("robot");
   const bool is_name = robot.find('/') == std::string::npos && !robot.starts_with('.');
-  if (is_name || robot.starts_with('/')) return robot;
-  return (std::filesystem::path(path).parent_path() / robot).lexically_normal();
+  if (robot.starts_with('/')) return robot;
+  const fs::path beside = (fs::path(path).parent_path() / robot).lexically_normal();
+  if (!is_name) return beside;
+  if (!is_robot_folder(beside)) return robot;
+  if (note != nullptr && is_robot_folder(fs::path(robots_root()) / robot)) {
+    *note = fmt::format("{}:{}: robot: '{}' is the folder beside this file, not the shipped robot",
+                        path, yaml.line_of("robot"), robot);
+  }
+  return beside.has_parent_path() ? beside.string() : "./" + beside.string();
 }
 
 Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
@@ -129,6 +135,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   scenario.start_q = read_start(yaml, robot.robot);
   if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
     yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");
+  yaml.boolean_or("record", true);  // read by `limber run`
   yaml.has("timeline");
   yaml.finish();
   scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);

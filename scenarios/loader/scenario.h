@@ -64,9 +64,10 @@ inline constexpr std::int64_t kScenarioClient = 0x5343454E;
 /// runs none, such as the simulator: entries `gains` are then left out.
 Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws);
 
-/// Only the robot's name or folder (relative paths are taken from the scenario's folder), to load
-/// it first.
-std::string scenario_robot(const std::string& path);
+/// Only the robot's name or folder, to load it first: a folder beside the scenario file comes
+/// before a shipped robot of the same name, and relative paths are taken from there. `note`, if
+/// given, tells which was taken where both exist. Throws ConfigError.
+std::string scenario_robot(const std::string& path, std::string* note = nullptr);
 
 /// Walks the timeline. due() returns the next message whose time has come, or nullptr; no
 /// allocation.

@@ -117,6 +117,12 @@ TEST(YamlReader, RefusesFilesThatAreTooBigMissingOrNoText) {
   testing::complaint_of([] { read(std::string("a: 1\0", 5)); });
 }
 
+TEST(YamlReader, WholeNumbersMayBeHexadecimal) {
+  const YamlMap yaml = YamlMap::from_text("a: 0x1F\nb: 0x\nc: 0x-1\nd: 0xG\n", "ids.yaml");
+  EXPECT_EQ(yaml.integer("a", 0, 100), 31);
+  for (const char* key : {"b", "c", "d"}) EXPECT_THROW(yaml.integer(key, -10, 100), ConfigError);
+}
+
 TEST(Suggest, FindsSlipsAndNothingElse) {
   const std::vector<std::string> words = {"hold", "active", "acknowledge"};
   EXPECT_EQ(nearest_word("hlod", words), "hold");
@@ -125,6 +131,10 @@ TEST(Suggest, FindsSlipsAndNothingElse) {
   EXPECT_EQ(nearest_word("banana", words), "");
   EXPECT_EQ(nearest_word("", words), "");
   EXPECT_EQ(nearest_word("x", {}), "");
+  EXPECT_EQ(nearest_word("K_x_translation", {"K_q_Nm_per_rad", "K_x_translation_N_per_m"}),
+            "K_x_translation_N_per_m");
+  EXPECT_EQ(nearest_word("timeout_seconds_long", {"timeout"}), "timeout");
+  EXPECT_EQ(nearest_word("timeouts_everywhere", {"timeout"}), "");
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST(ArmController, SoftStopEndsInHold) {
   Rig rig(arm());
   rig.to_active();
   compliance_goal_t goal = rig.goal();
-  goal.offset[0] = 0.2;
+  goal.offset[0] = -0.2;
   ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
   rig.run(0.6);
   const double moving = Eigen::Map<const Vector6>(rig.controller.status().V_BT).head<3>().norm();

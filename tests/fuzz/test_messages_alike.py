@@ -75,6 +75,7 @@ def no_python_writes(data: bytes) -> bool:
     message = messages.message_class(TYPES[data[0] % len(TYPES)]).decode(data[1:])
     fields = [getattr(message, name) for name in message.__slots__]
     fields += [parameter.key for parameter in getattr(message, "parameters", ())]
+    fields += [text for texts in fields if isinstance(texts, list | tuple) for text in texts]
     if any("\ufffd" in text for text in fields if isinstance(text, str)):
         return True
     pairs = zip(data[1:], message.encode(), strict=True)

@@ -207,8 +207,8 @@ TEST(LoadUrdf, BranchesAreCarriedAsLoad) {
                 center.x(), center.y(), center.z(), mass, tensor(0, 0), tensor(0, 1), tensor(0, 2),
                 tensor(1, 1), tensor(1, 2), tensor(2, 2));
   expect_same(arm, load(start + merged, "base", "hand"));
-  EXPECT_TRUE(noted(arm, "link 'hand' carries 0.4 kg"));
-  EXPECT_TRUE(noted(arm, "'finger_slide' is not part of the arm: frozen at zero"));
+  EXPECT_TRUE(noted(arm, "link 'hand': carries 0.4 kg"));
+  EXPECT_TRUE(noted(arm, "not part of the arm, frozen at zero: 'finger_slide' (line "));
 }
 
 TEST(LoadUrdf, WhatHangsFromAMiddleLinkCountsToo) {
@@ -263,7 +263,7 @@ TEST(LoadUrdf, MovingJointsBelowTheBaseAreFrozen) {
           body("one", "1", "xyz='0.1 0 0'"),
       "base", "one");
   EXPECT_EQ(arm.robot.size(), 1);
-  EXPECT_TRUE(noted(arm, "'lift' lies between root and base: frozen at zero"));
+  EXPECT_TRUE(noted(arm, "arm.urdf:2: joint 'lift': between root and base: frozen at zero"));
   EXPECT_NEAR(arm.robot.gravity[1], -kG, 1e-14);
 }
 
@@ -328,7 +328,10 @@ TEST(LoadUrdf, BareUrdfHasNoDrivesAndAHomeInside) {
   EXPECT_EQ(arm.robot.joints[0].torque_limit_Nm, 20.0);
   EXPECT_EQ(arm.robot.joints[1].velocity_limit, 0.5);
   EXPECT_EQ(arm.robot.gains.K_q.size(), 3u);
-  EXPECT_TRUE(noted(arm, "joint 'finger_joint': mimic is ignored"));
+  EXPECT_TRUE(
+      noted(arm,
+            "robot.urdf:57: joint: not part of the arm, frozen at zero: 'finger_joint' (line 57, "
+            "its <mimic> is ignored)"));
 }
 
 }  // namespace

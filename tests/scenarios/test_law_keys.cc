@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controller/laws/registry.h"
+#include "lcmtypes/gains_merge.h"
 #include "robots/loader/default_gains.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/scenario.h"
@@ -84,7 +85,9 @@ TEST(LawKeys, NumbersArrive) {
 }
 
 TEST(LawKeys, LaterEntriesKeepWhatTheyDoNotName) {
-  const auto gains = message_at<Gains>(load_scenario(kGood, arm(), &law_catalog()), 3.0);
+  const Scenario scenario = load_scenario(kGood, arm(), &law_catalog());
+  Gains gains = default_gains(arm().robot);
+  for (const double time_s : {2.0, 3.0}) merge_gains(message_at<Gains>(scenario, time_s), &gains);
   EXPECT_EQ(gains.period_cycles[Gains::PERIOD_C], 9);
   EXPECT_EQ(gains.period_cycles[Gains::PERIOD_D], 6);
   EXPECT_EQ(gains.frame, +Gains::FRAME_GOAL);
@@ -128,8 +131,7 @@ std::vector<const GainRow*> every_row() {
 // The value that `key: text` gives, of what has one; throws what the reader throws.
 double read(const GainRow& row, const std::string& text) {
   const YamlMap yaml = YamlMap::from_text(fmt::format("{}: {}", row.key, text), "entry");
-  Gains gains = default_gains(arm().robot);
-  read_gains_entry(yaml, arm().robot, law_catalog(), &gains);
+  const Gains gains = read_gains_entry(yaml, arm().robot, law_catalog());
   if (const auto* f = std::get_if<double Gains::*>(&row.field)) return gains.**f;
   if (const auto* f = std::get_if<float Gains::*>(&row.field)) return gains.**f;
   if (const auto* f = std::get_if<std::int8_t Gains::*>(&row.field)) return gains.**f;
@@ -197,7 +199,7 @@ TEST(GainTable, EveryFieldHasARow) {
     declared += lcm.compare(start, 4, "    ") == 0 && lcm.compare(start, 9, "    const") != 0 &&
                 lcm.compare(start, 6, "    //") != 0;
   }
-  constexpr int kHead = 6;        // seq, time_ns, controller, client, law, num_joints
+  constexpr int kHead = 9;        // seq .. client, scope, num_named, named, law, num_joints
   constexpr int kParameters = 2;  // and their number
   EXPECT_EQ(declared, std::ssize(fields) + kHead + kParameters);
   for (std::size_t i = 0; i < fields.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "controller/laws/registry.h"
+#include "lcmtypes/gains_merge.h"
 #include "scenarios/loader/scenario.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/mutation.h"
@@ -84,10 +85,12 @@ TEST_F(GoodScenario, GainsAreComplete) {
 }
 
 TEST_F(GoodScenario, LaterGainsKeepWhatTheyDoNotName) {
-  const auto& gains = at<compliance_gains_t>(3.0);
+  const auto& later = at<compliance_gains_t>(3.0);
+  EXPECT_EQ(later.law, "");
+  EXPECT_EQ(later.ramp_s, 0.0);
+  compliance_gains_t gains = at<compliance_gains_t>(2.0);
+  merge_gains(later, &gains);
   EXPECT_EQ(gains.damping_ratio, 1.0);
-  EXPECT_EQ(gains.law, "");
-  EXPECT_EQ(gains.ramp_s, 0.0);
   EXPECT_EQ(gains.K_x[1][1], 200.0);
   EXPECT_EQ(gains.K_null[1], 2.0);
   EXPECT_EQ(gains.orientation, +compliance_gains_t::ORIENTATION_QUAT);
@@ -156,6 +159,20 @@ Scenario load_text(const std::string& rest, const LoadedRobot& robot) {
       &controller::law_catalog());
 }
 
+TEST(LoadScenario, TheRobotBesideTheFileComesFirst) {
+  const testing::TemporaryFolder folder;
+  const std::string file =
+      folder.write("first.yaml", "format: limber-scenario/1\nrobot: openarm\nduration_s: 1\n");
+  std::string note;
+  EXPECT_EQ(scenario_robot(file, &note), "openarm");  // the shipped one
+  EXPECT_EQ(note, "");
+  std::filesystem::create_directory(folder.path() + "/openarm");
+  folder.write("openarm/robot.yaml", "");
+  EXPECT_EQ(scenario_robot(file, &note), folder.path() + "/openarm");
+  EXPECT_NE(note.find("first.yaml:2: robot: 'openarm' is the folder beside this file"),
+            std::string::npos);
+}
+
 TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
   const LoadedRobot robot = load_robot("desktop2r");
   const Scenario scenario = load_text("duration_s: 2\n", robot);
@@ -196,7 +213,8 @@ TEST(LoadScenario, ADiagonalClearsTheCouplingOfItsBlock) {
       load_text("duration_s: 2\ntimeline:\n  - {at_s: 0.1, gains: {K_x: " + matrix +
                     "}}\n  - {at_s: 0.2, gains: {K_x_rotation_Nm_per_rad: 3}}\n",
                 robot);
-  const auto& gains = std::get<compliance_gains_t>(scenario.timeline[1].message);
+  auto gains = std::get<compliance_gains_t>(scenario.timeline[0].message);
+  merge_gains(std::get<compliance_gains_t>(scenario.timeline[1].message), &gains);
   EXPECT_EQ(gains.K_x[0][1], 1.0);
   EXPECT_EQ(gains.K_x[0][5], 0.0);
   EXPECT_EQ(gains.K_x[5][0], 0.0);

@@ -1,8 +1,10 @@
 """Logs made from formulas, so that every test knows what has to come out."""
 
+import socket
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -78,3 +80,19 @@ def limber() -> Callable[..., subprocess.CompletedProcess]:
         )
 
     return call
+
+
+def free_port() -> int:
+    with closing(socket.socket()) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture
+def served():
+    """The server of `limber monitor`, without a browser."""
+    from limber.monitor import server
+
+    started = server.start(free_port())
+    yield started
+    started.close()

@@ -50,7 +50,7 @@ TEST(Check, TellsOfAShippedRobot) {
   const Outcome outcome = check("robot openarm");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(contains(outcome.output, "7 joints from world to link8, 4.375 kg moving"));
-  EXPECT_TRUE(contains(outcome.output, "dm_j8009p_2ec, arm, 1/17"));
+  EXPECT_TRUE(contains(outcome.output, "dm_j8009p_2ec, arm, 0x01/0x11"));
   // 14 FD frames of 8 bytes at 56.6 us make 792 us of each millisecond.
   EXPECT_TRUE(
       contains(outcome.output,
@@ -133,10 +133,57 @@ TEST(Check, RefusesABusThatCannotCarryTheArm) {
 TEST(Check, TellsOfABareUrdfUnderAnyGravity) {
   const Outcome down = check("urdf " + kUrdf + " --base world --tip hand");
   EXPECT_EQ(down.status, 0);
-  EXPECT_TRUE(contains(down.output, "note: joint 'finger_joint': mimic is ignored"));
+  EXPECT_TRUE(contains(
+      down.output, "robot.urdf:57: joint: not part of the arm, frozen at zero: 'finger_joint'"));
   const Outcome sideways = check("urdf " + kUrdf + " --base world --tip hand --gravity -1.6,0,0");
   EXPECT_EQ(sideways.status, 0);
   EXPECT_TRUE(contains(sideways.output, "gravity [-1.6, 0, 0] m/s^2")) << sideways.output;
+}
+
+TEST(Check, ChoosesTheEndsOfTheOnlyArm) {
+  for (const char* ends : {"", " --base world", " --tip hand"}) {
+    const Outcome outcome = check("urdf " + kUrdf + ends);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.output, "3 joints from world to hand")) << outcome.output;
+  }
+}
+
+TEST(Check, ListsTheArmsOfAUrdf) {
+  const testing::TemporaryFolder folder;
+  const std::string sister =
+      "<link name='eye'/><joint name='neck' type='revolute'><parent link='world'/>"
+      "<child link='eye'/></joint></robot>";
+  const std::string file = folder.write(
+      "two.urdf", testing::apply(testing::read_text(kUrdf), {"", "</robot>", sister, ""}).text);
+  const Outcome outcome = check("urdf " + file);
+  EXPECT_EQ(outcome.status, 2);
+  for (const std::string& part :
+       {"3  turn, slide, roll\n          limber check " + file + " --base world --tip hand",
+        "1  neck\n          limber check " + file + " --base world --tip eye",
+        file + ": which arm? give --base LINK and --tip LINK"}) {
+    EXPECT_TRUE(contains(outcome.output, part)) << outcome.output;
+  }
+  const Outcome listed = check("urdf " + file + " --json", false);
+  EXPECT_EQ(listed.status, 2);
+  EXPECT_TRUE(contains(listed.output,
+                       R"("chains": [{"base": "world", "tip": "hand", "also": [], "joints": )"))
+      << listed.output;
+}
+
+TEST(Check, TellsWhichRobotAScenarioMeans) {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() + "/openarm");
+  for (const char* file : {"/robot.yaml", "/robot.urdf"})
+    folder.write(std::string("openarm") + file, testing::read_text(kArm + file));
+  const std::string scenario =
+      folder.write("first.yaml", "format: limber-scenario/1\nrobot: openarm\nduration_s: 1\n");
+  const Outcome outcome = check("scenario " + scenario);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "first: arm, 1 s"));
+  EXPECT_TRUE(contains(outcome.output,
+                       scenario + ":2: robot: 'openarm' is the folder beside this file, not the "
+                                  "shipped robot"))
+      << outcome.output;
 }
 
 TEST(Check, TellsOfAScenario) {
@@ -349,8 +396,6 @@ const CommandLine kCommandLines[] = {
     {"RobotIsAFile", "robot " + kUrdf, "expected a folder with robot.yaml"},
     {"TwoRobots", "robot openarm desktop2r", "not expected"},
     {"UnknownOption", "robot openarm --fast", "not expected: --fast"},
-    {"UrdfWithoutBase", kBareUrdf + "--tip hand", "--base is required"},
-    {"UrdfWithoutTip", kBareUrdf + "--base world", "--tip is required"},
     {"UrdfUnknownBase", kBareUrdf + "--base wordl --tip hand", "did you mean 'world'?"},
     {"UrdfUnknownTip", kBareUrdf + "--base world --tip foot", "there are: base, finger, fore"},
     {"UrdfNoSuchFile", "urdf nothing.urdf --base a --tip b", "nothing.urdf: no such file"},

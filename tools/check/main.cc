@@ -11,6 +11,7 @@
 #include "common/parse_number.h"
 #include "common/program.h"
 #include "controller/laws/registry.h"
+#include "robots/loader/required_keys.h"
 #include "tools/check/print.h"
 
 using namespace limber;
@@ -25,6 +26,12 @@ struct Arguments {
   std::string gravity = "0,0,-9.81";
   std::string scenario;
   bool as_json = false;
+  bool keys = false;
+};
+
+/// The arms of a URDF are on standard output already.
+struct Listed : ConfigError {
+  using ConfigError::ConfigError;
 };
 
 std::vector<double> parse_gravity(const std::string& text) {
@@ -47,13 +54,42 @@ std::string check_arm(const LoadedRobot& robot, bool as_json) {
   return as_json ? arm_json(robot, report) : arm_text(robot, report);
 }
 
-std::string check(const Arguments& given) {
-  if (given.scenario.empty()) {
-    if (given.urdf.empty()) return check_arm(load_robot(given.robot), given.as_json);
-    const std::vector<double> gravity = parse_gravity(given.gravity);
-    return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given.as_json);
+/// Base and tip of the only arm there is; else the arms are listed.
+void choose_ends(Arguments* given) {
+  const UrdfTree tree = read_urdf_tree(given->urdf);
+  const std::vector<UrdfArm> arms = find_arms(tree);
+  if (arms.size() == 1 && arms.front().also.empty()) {
+    if (given->base.empty()) given->base = arms.front().base;
+    if (given->tip.empty()) given->tip = arms.front().tip;
+    return;
   }
-  const LoadedRobot robot = load_robot(scenario_robot(given.scenario));
+  const std::string problem =
+      ConfigError::at(given->urdf, 0, "",
+                      arms.empty() ? "no moving joint: not an arm"
+                                   : "which arm? give --base LINK and --tip LINK")
+          .what();
+  if (given->as_json) {
+    std::fputs(arms_json(problem, arms).c_str(), stdout);
+  } else if (!arms.empty()) {
+    std::fputs(arms_text(given->urdf, arms).c_str(), stdout);
+  }
+  std::fflush(stdout);
+  throw Listed(problem);
+}
+
+std::string check_urdf_file(Arguments given) {
+  const std::vector<double> gravity = parse_gravity(given.gravity);
+  if (given.base.empty() || given.tip.empty()) choose_ends(&given);
+  return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given.as_json);
+}
+
+std::string check(const Arguments& given) {
+  if (given.keys) return required_keys_table();
+  if (!given.urdf.empty()) return check_urdf_file(given);
+  if (given.scenario.empty()) return check_arm(load_robot(given.robot), given.as_json);
+  std::string note;
+  LoadedRobot robot = load_robot(scenario_robot(given.scenario, &note));
+  if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   return given.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
 }
@@ -63,11 +99,13 @@ void define(CommandLine& line, Arguments* given) {
   robot.text("robot", &given->robot, "name of a shipped robot, or a folder").required();
   auto& urdf = line.command("urdf", "a URDF by itself");
   urdf.text("file", &given->urdf, "URDF file").required();
-  urdf.text("--base", &given->base, "link the arm is fixed by").required();
-  urdf.text("--tip", &given->tip, "link the arm works with").required();
+  urdf.text("--base", &given->base, "link the arm is fixed by; without it: lists the arms");
+  urdf.text("--tip", &given->tip, "link the arm works with");
   urdf.text("--gravity", &given->gravity, "x,y,z in m/s^2, axes of the URDF's root link");
   auto& scenario = line.command("scenario", "a scenario file, against its robot");
   scenario.text("file", &given->scenario, "scenario file").required();
+  auto& keys = line.command("keys", "lists the keys that every robot.yaml needs, in Markdown");
+  keys.when_chosen([given] { given->keys = true; });
   for (auto* command : {&robot, &urdf, &scenario})
     command->flag("--json", &given->as_json, "print one JSON object");
 }
@@ -75,6 +113,9 @@ void define(CommandLine& line, Arguments* given) {
 int run(const Arguments& given) {
   try {
     std::fputs(check(given).c_str(), stdout);
+  } catch (const Listed& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
   } catch (const ConfigError& error) {
     if (given.as_json) std::fputs(refusal_json(error.what()).c_str(), stdout);
     std::fprintf(stderr, "%s\n", error.what());  // file:line: ..., one a line, as compilers print

@@ -62,9 +62,11 @@ std::string tip_sensor_json(const Robot& robot) {
                        {"tool_mass_kg", json::number(sensor.tool_mass_kg)}});
 }
 
-// Numbers as robot.yaml has them; made of several fields, as bus tools print them.
-std::string as_seen(std::uint32_t id) {
-  return id > 0xFF ? fmt::format("{:#x}", id) : fmt::format("{}", id);
+// As the makers' tools write them: hexadecimal, or the node numbers of CANopen and moteus, whose
+// frames have more fields.
+std::string as_seen(const DriveConfig& drive, std::uint32_t id) {
+  const bool node = drive.protocol != DriveProtocol::kDamiaoMit && id <= 0xFF;
+  return node ? fmt::format("{}", id) : fmt::format("{:#04x}", id);
 }
 
 std::string joint_table(const Robot& robot, const ArmReport& report) {
@@ -83,9 +85,9 @@ std::string joint_table(const Robot& robot, const ArmReport& report) {
       const DriveConfig& drive = joint.drive;
       table += fmt::format("  {}, {}, {}/{}", drive.motor,
                            robot.buses[static_cast<std::size_t>(drive.bus)].name,
-                           as_seen(drive.command_id), as_seen(drive.reply_id));
+                           as_seen(drive, drive.command_id), as_seen(drive, drive.reply_id));
       if (joint.has_antagonist)
-        table += fmt::format(" and {}", as_seen(joint.antagonist.command_id));
+        table += fmt::format(" and {}", as_seen(drive, joint.antagonist.command_id));
     }
     table += "\n";
   }

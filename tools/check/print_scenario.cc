@@ -79,6 +79,7 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
     text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
                         describe(timed));
   }
+  for (const std::string& note : robot.notes) text += "  note: " + note + "\n";
   if (!robot.robot.has_drives) return text;
   const auto reports = make_stiffness_reports(scenario, robot);
   text += stiffness_text(reports, robot.robot.rate_hz);

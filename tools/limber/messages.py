@@ -28,7 +28,15 @@ _SCALARS = {
 }
 FINGERPRINT = "_fingerprint"
 SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
-CLIENTS = {SCENARIO_CLIENT: "scenario", 0x48414E44: "limber send"}
+SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
+SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = 0x50590000, 32  # the first of Python's Arm, and how many
+MONITOR_CLIENT = 0x4D4F0000  # of `limber monitor`; its port is added
+CLIENTS = {
+    SCENARIO_CLIENT: "scenario",
+    0x48414E44: "limber send",
+    MONITOR_CLIENT + 8080: "limber monitor",
+    **{SCRIPT_CLIENT + i: "Python" for i in range(NUM_SCRIPT_CLIENTS)},
+}
 
 
 @dataclass(frozen=True)
@@ -136,3 +144,11 @@ def view(type_name: str, data: bytes) -> np.void:
     if int(record[FINGERPRINT][0]) != fingerprint_of(type_name):
         raise ValueError(f"not a {type_name} of this version")
     return record.astype(native_dtype_of(type_name))[0]
+
+
+def views(type_name: str, parts: list[bytes]) -> np.ndarray:
+    """Messages of one type as records, in the machine's byte order; all must be of this version."""
+    wire = dtype_of(type_name)
+    if wire is None:
+        raise ValueError(f"{type_name} has no fixed size")
+    return np.frombuffer(b"".join(parts), wire).astype(native_dtype_of(type_name))

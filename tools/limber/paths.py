@@ -7,6 +7,7 @@ from limber.errors import InputError, RunError
 
 ROOT = Path(__file__).resolve().parents[2]
 RELEASE = ROOT / "build" / "release" / "bin"  # what `limber bench` builds
+LEFT_BY_RUNS = ("run.lcmlog", "run.can.log", "summary.json")
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 
@@ -34,12 +35,11 @@ def robot_names() -> list[str]:
 
 
 def robot_folder(name_or_path: str, beside: Path | None = None) -> Path:
-    """Folder with robot.yaml: a shipped robot's name, or a path (relative ones also from
-    `beside`).
+    """Folder with robot.yaml: a path, or a shipped robot's name. For a scenario, what lies `beside`
+    its file comes first, then the shipped robots.
     """
-    candidates = [Path(name_or_path), robots_root() / name_or_path]
-    if beside is not None:
-        candidates.insert(0, beside / name_or_path)
+    here, shipped = Path(name_or_path), robots_root() / name_or_path
+    candidates = [here, shipped] if beside is None else [beside / name_or_path, shipped, here]
     for folder in candidates:
         if (folder / "robot.yaml").is_file():
             return folder.resolve()
@@ -68,3 +68,13 @@ def output_folder(path: Path) -> Path:
             f"{path} cannot be written ({error.strerror}): give another --out"
         ) from error
     return path
+
+
+def run_folder(path: Path) -> Path:
+    """Makes the folder of a run; one that holds a run already is refused: never overwritten, never
+    mixed.
+    """
+    left = next((name for name in LEFT_BY_RUNS if (path / name).exists()), None)
+    if left is not None:
+        raise InputError(f"{path} holds a run already ({left}): give another --out, or remove it")
+    return output_folder(path)

@@ -16,9 +16,9 @@
 namespace {
 
 /// What is under way when the user stops the recording still belongs to the run: it goes on until
-/// the line has been quiet this long.
+/// the line has been quiet this long, or for `--tail`.
 constexpr std::int64_t kQuiet_ns = 200'000'000;
-constexpr std::int64_t kDrainLimit_ns = 5'000'000'000;
+constexpr double kTail_s = 5.0;
 
 /// Longer than any message of limber's. LCM hands on sizes of broken datagrams as they come.
 constexpr std::uint32_t kMostBytes = 1U << 20U;
@@ -45,7 +45,7 @@ void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Si
   sink->last_ns = limber::monotonic_ns();
 }
 
-int record(const std::string& path, const std::string& url, double duration_s) {
+int record(const std::string& path, const std::string& url, double duration_s, double tail_s) {
   const auto& stop = limber::stop_on_signals();
   limber::Recorder recorder(path);
   const auto lcm = limber::open_lcm(url);
@@ -59,7 +59,7 @@ int record(const std::string& path, const std::string& url, double duration_s) {
     const std::int64_t now = limber::monotonic_ns();
     if (stopped_ns == 0 && (stop != 0 || (duration_s > 0 && now - start_ns > duration_s * 1e9)))
       stopped_ns = now;
-    if (stopped_ns != 0 && (now - sink.last_ns > kQuiet_ns || now - stopped_ns > kDrainLimit_ns))
+    if (stopped_ns != 0 && (now - sink.last_ns > kQuiet_ns || now - stopped_ns > tail_s * 1e9))
       break;
     if (limber::wait_readable(std::span(&descriptor, 1), now + 50'000'000)) lcm->handle();
     if (!sink.failure.empty()) throw std::runtime_error(sink.failure);
@@ -76,9 +76,12 @@ int main(int argc, char** argv) {
       "Records every message of the user plane to an LCM event log, without dropping any.");
   std::string path;
   double duration_s = 0.0;
+  double tail_s = kTail_s;
   line.text("--out", &path, "log file to write").required();
   line.number("--duration", &duration_s, 0.0, 1e6,
               "stop after this many seconds (default: on Ctrl-C)");
-  return limber::run_program(line, argc, argv,
-                             [&] { return record(path, limber::user_plane_url(), duration_s); });
+  line.number("--tail", &tail_s, 0.0, 60.0,
+              "once stopped, record on until nothing comes, at most this many seconds");
+  return limber::run_program(
+      line, argc, argv, [&] { return record(path, limber::user_plane_url(), duration_s, tail_s); });
 }

@@ -8,6 +8,7 @@
 #include "common/config_error.h"
 #include "common/program.h"
 #include "tools/send/request_sender.h"
+#include "tools/send/running_robot.h"
 
 namespace {
 
@@ -32,7 +33,7 @@ int from_standard_input(limber::RequestSender& sender) {
 }
 
 int run(const std::string& robot, std::int64_t client, const std::vector<std::string>& entries) {
-  const limber::LoadedRobot loaded = limber::load_robot(robot);
+  const limber::LoadedRobot loaded = limber::load_robot(limber::running_robot(robot));
   limber::RequestSender sender(loaded, client);
   if (entries.empty()) return from_standard_input(sender);
   for (const std::string& entry : entries) sender.send_entry(entry);
@@ -46,10 +47,10 @@ int main(int argc, char** argv) {
       "limber-send",
       "Sends a request of a scenario to a running stack: mode, gains, goal, push, wall, payload, "
       "fault.");
-  std::string robot = "openarm";
+  std::string robot;
   std::vector<std::string> entries;
   std::int64_t client = kClient;
-  line.text("--robot", &robot, "shipped robot or folder with robot.yaml");
+  line.text("--robot", &robot, "shipped robot or folder; default: the arm of the running stack");
   line.integer("--client", &client, 1, std::numeric_limits<std::int64_t>::max(),
                "name of the lease");
   line.texts("entries", &entries,

@@ -1,6 +1,7 @@
 #include "tools/send/request_sender.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,6 @@
 #include "common/problem_text.h"
 #include "controller/laws/registry.h"
 #include "lcmtypes/channels.h"
-#include "robots/loader/default_gains.h"
 
 namespace limber {
 namespace {
@@ -35,7 +35,7 @@ std::string as_entry(const std::string& text) {
 RequestSender::RequestSender(const LoadedRobot& robot, std::int64_t client)
     : robot_(robot),
       client_(client),
-      context_{robot_, &controller::law_catalog(), 0.0, default_gains(robot.robot)},
+      context_{robot_, &controller::law_catalog(), 0.0},
       port_(user_plane_url()) {
   port_.subscribe<request_answer_t>(channels::kRequestAnswer, kAnswerQueue,
                                     [this](const request_answer_t& answer) {
@@ -67,7 +67,7 @@ std::int64_t RequestSender::running_controller() {
 
 void RequestSender::send_entry(const std::string& entry) {
   const YamlMap yaml = YamlMap::from_text(as_entry(entry), "request");
-  const TimedMessage timed = *read_entry(yaml, &context_);  // laws are known: nothing is left out
+  const TimedMessage timed = *read_entry(yaml, context_);  // laws are known: nothing is left out
   const bool to_controller = !std::holds_alternative<push_t>(timed.message) &&
                              !std::holds_alternative<scenario_event_t>(timed.message);
   send(timed.message, to_controller ? running_controller() : 0);
@@ -76,6 +76,7 @@ void RequestSender::send_entry(const std::string& entry) {
   if (answer_->accepted == 0) {
     throw ConfigError("refused by the controller: " + refusal_text(answer_->code, answer_->reason));
   }
+  if (!answer_->reason.empty()) spdlog::warn("warning: {}", answer_->reason);
 }
 
 void RequestSender::send(const ScenarioMessage& message, std::int64_t controller) {

@@ -12,7 +12,7 @@
 
 namespace limber {
 
-/// A user with a lease of its own. Gains entries build on each other, the first on robot.yaml.
+/// A user with a lease of its own.
 class RequestSender {
  public:
   /// Throws ConfigError if there is no multicast route.

@@ -27,7 +27,7 @@ std::string why(const Change& change, bool simulated = false) {
   message.num_joints = kJoints;
   change(message);
   const GainsCheck checker(kJoints, simulated);
-  const char* reason = checker.check(message);
+  const char* reason = checker.check(message, message);
   return reason == nullptr ? "" : reason;
 }
 

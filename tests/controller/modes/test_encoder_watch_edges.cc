@@ -122,6 +122,23 @@ TEST(EncoderWatchEdges, AfreshMeansFromTheNewReadingAndItsLoad) {
   EXPECT_EQ(bench.next(1e-6), 1);
 }
 
+// What was held may be held no longer, in both directions; more than it, or the other way, is not.
+TEST(EncoderWatchEdges, BetweenNoLoadAndThatOfBeforeNothingMoves) {
+  for (const double sign : {1.0, -1.0}) {
+    const auto found_at = [sign](double load) {
+      Bench bench;
+      bench.state().theta[1] = 1e-6;
+      bench.state().tau_applied[1] = sign * 8.0;
+      bench.next(1e-3);
+      bench.state().theta[0] = 1.0;
+      bench.state().tau_applied[1] = sign * load;
+      return bench.next(1e3);
+    };
+    for (const double load : {8.0, 4.0, 0.0, -1.99, 9.99}) EXPECT_EQ(found_at(load), -1) << load;
+    for (const double load : {-2.01, 10.01}) EXPECT_EQ(found_at(load), 1) << load;
+  }
+}
+
 TEST(EncoderWatchEdges, AnotherJointMovesByMoreThanAHundredth) {
   for (const int other : {0, 2}) {
     for (const double sign : {1.0, -1.0}) {

@@ -148,7 +148,7 @@ TEST(Trouble, GoalGoesOnAfterAGapFromWhereItWas) {
   Rig rig(arm(), "cartesian_impedance", 60);
   rig.to_active();
   compliance_goal_t goal = rig.goal();
-  goal.offset[0] = 0.2;
+  goal.offset[0] = -0.2;
   ASSERT_EQ(rig.controller.on_goal(goal), nullptr);
   rig.run(0.7);
   const double before = rig.controller.status().p_BD[0];
@@ -156,7 +156,7 @@ TEST(Trouble, GoalGoesOnAfterAGapFromWhereItWas) {
   rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
   EXPECT_EQ(rig.controller.status().states_lost, 59);
-  const double step = rig.controller.status().p_BD[0] - before;
+  const double step = before - rig.controller.status().p_BD[0];
   EXPECT_GT(step, 0.5e-3);
   EXPECT_LT(step, 0.8e-3) << "three periods at a quarter of a metre per second";
   rig.state.seq += 61;

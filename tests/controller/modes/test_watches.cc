@@ -106,14 +106,25 @@ class EncoderWatchTest : public ::testing::Test {
 TEST_F(EncoderWatchTest, NoticesWhenTheFreeJointWouldHaveMoved) {
   // Beyond gravity and friction: 15 - 2 - 3 = 10 N m.
   EXPECT_NEAR(cycles_until_found(15.0, 1.0), predicted_cycles(10.0, 0.5), 1.0);
-  watch_.reset();
-  EXPECT_NEAR(cycles_until_found(-11.0, 1.0), predicted_cycles(10.0, 0.5), 1.0);
+  watch_.reset();  // and beyond no load at all: 20 - 9 + 2 - 3
+  EXPECT_NEAR(cycles_until_found(-20.0, 1.0), predicted_cycles(10.0, 0.5), 1.0);
   watch_.reset();  // without friction in robot.yaml: a twentieth of the limit, 2 N m
   EXPECT_NEAR(cycles_until_found(8.0, 1.0, 1), predicted_cycles(4.0, 0.2), 1.0);
 }
 
 TEST_F(EncoderWatchTest, AnArmThatLeansAgainstSomethingIsLeftAlone) {
   EXPECT_EQ(cycles_until_found(15.0, 0.0), 5000);
+}
+
+// Leaving a wall takes the load off every joint, and friction may keep one of them where it is.
+TEST_F(EncoderWatchTest, ALoadThatGoesIsNoSignOfAStop) {
+  const auto cycles_at_load = [this](double load) {
+    watch_.reset();
+    return cycles_until_found(load - kLoad + kGravity, 1.0);
+  };
+  EXPECT_EQ(cycles_at_load(0.0), 5000) << "from 9 N m to none";
+  EXPECT_EQ(cycles_at_load(-2.9), 5000) << "and friction beyond";
+  EXPECT_LT(cycles_at_load(-3.5), 5000);
 }
 
 TEST_F(EncoderWatchTest, FrictionMayHoldAJoint) { EXPECT_EQ(cycles_until_found(4.9, 1.0), 5000); }

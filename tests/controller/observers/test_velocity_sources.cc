@@ -116,7 +116,7 @@ TEST(VelocitySources, AChangeDoesNotJumpTheTorque) {
   rig.to_active();
   compliance_goal_t circle = rig.goal();
   circle.kind = compliance_goal_t::GOAL_CIRCLE;
-  circle.offset[0] = 0.05;
+  circle.offset[0] = -0.05;
   circle.offset[5] = 1.0;
   circle.duration_s = 1.5;
   ASSERT_EQ(rig.controller.on_goal(circle), nullptr);

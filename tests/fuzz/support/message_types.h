@@ -12,6 +12,7 @@
 #include <limber/mode_request_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/request_answer_t.hpp>
+#include <limber/robot_info_t.hpp>
 #include <limber/scenario_event_t.hpp>
 #include <limber/sim_truth_t.hpp>
 #include <optional>
@@ -54,6 +55,7 @@ inline const MessageType& message_type_of(std::uint8_t number) {
       message_type<mode_request_t>(),
       message_type<push_t>(),
       message_type<request_answer_t>(),
+      message_type<robot_info_t>(),
       message_type<scenario_event_t>(),
       message_type<sim_truth_t>(),
   };

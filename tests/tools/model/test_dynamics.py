@@ -99,3 +99,54 @@ def test_turning_telescope_by_hand(tmp_path):
     tau = arm.torque(np.array([[2.0, 0.3]]), np.array([[w, rate]]), np.array([[0.7, 0.9]]))[0]
     turn = (0.75 + 2.0 * r**2) * 0.7 + 2.0 * 2.0 * r * rate * w
     np.testing.assert_allclose(tau, [turn, 2.0 * (0.9 - r * w**2)], rtol=1e-12)
+
+
+QUIRKS = """<robot name="quirks" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="base"><inertial><mass value="0"/><inertia ixx="1" iyy="1,5" izz="-1"/></inertial>
+  </link>
+  <link name="head"><inertial><mass value="heavy"/></inertial></link>
+  <joint name="neck" type="hinge"><parent link="base"/><child link="head"/>
+    <origin xyz="nan 0 0"/><axis xyz="0 0 0"/><limit lower="low"/></joint>
+  <link name="flange"/>
+  <joint name="bolt" type="fixed"><parent link="base"/><child link="flange"/>
+    <origin xyz="0 0 0.3" rpy="0.1 0.2 0"/><axis xyz="0 0 0"/><limit lower="x"/></joint>
+  <link name="upper"/>
+  <joint name="pan" type="revolute"><parent link="flange"/><child link="upper"/>
+    <axis xyz="0 0 2"/><limit lower="0" upper="0" effort="0" velocity="0"/></joint>
+  <link name="fore"><inertial><origin xyz="0.2 0 0.01"/><mass value="1500"/>
+    <inertia ixx="-0.5" ixy="0" ixz="0" iyy="30" iyz="0" izz="60"/></inertial></link>
+  <joint name="tilt" type="revolute"><parent link="upper"/><child link="fore"/>
+    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="1"/></joint>
+  <link name="rotor"><inertial><mass value="0"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2"/></inertial></link>
+  <joint name="spin" type="continuous"><parent link="fore"/><child link="rotor"/>
+    <origin xyz="0.5 0 0" rpy="0 0 0.4"/><axis xyz="0 0 0"/></joint>
+  <link name="tip"><inertial><mass value="3"/>
+    <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+  <joint name="mount" type="fixed"><parent link="fore"/><child link="tip"/>
+    <origin xyz="0.9 0 0"/><axis xyz="0 0 0"/></joint>
+</robot>"""
+
+
+def test_quirks_of_vendors_are_read_as_the_controller_reads_them(tmp_path):
+    """Slips where they do not count, and inertias that no body has."""
+    path = tmp_path / "quirks.urdf"
+    path.write_text(QUIRKS)
+    chain = Chain(path, "base", "tip")
+    assert chain.limits("pan") == (-np.inf, np.inf)
+    arm = ArmDynamics(path, chain, np.array([0, 0, -9.81]))
+    q, rest = np.array([0.3, -0.7]), np.zeros((2, 2))
+    file = {"urdf": str(path), "base": "base", "tip": "tip"}
+    told = evaluate([case("kin_dyn", file, q=q, v=np.zeros(2))])[0]
+    g = arm.gravity_torque(q[None])[0]
+    np.testing.assert_allclose(g, told["g"], rtol=1e-9)
+    M = arm.torque(np.tile(q, (2, 1)), rest, np.eye(2)) - g
+    np.testing.assert_allclose(M, np.array(told["M"]).reshape(2, 2), rtol=1e-9)
+    np.testing.assert_allclose(chain.forward(q)[:3, 3], told["p"], rtol=1e-9)
+
+
+def test_a_joint_without_a_mass_of_its_own(tmp_path):
+    path = tmp_path / "quirks.urdf"
+    path.write_text(QUIRKS)
+    arm = ArmDynamics(path, Chain(path, "base", "tip"), np.array([0, 0, -9.81]))
+    assert [body.mass for body in arm.bodies] == [0.0, 1503.0]

@@ -158,3 +158,49 @@ def test_rotation_error_is_the_small_angle_and_blind_to_sign():
         error = charts.rotation_error(sign * turned, straight)
         np.testing.assert_allclose(error, [[0, 0, angle]], atol=1e-12)
     np.testing.assert_array_equal(charts.rotation_error(np.zeros((1, 4)), straight), 0)
+
+
+def test_nothing_is_drawn_of_the_time_before_all_drives_have_answered(tmp_path):
+    fresh = messages.message_class("joint_state_t").JOINT_FRESH
+    time_ns = np.arange(COUNT) * 1_000_000
+    state = records("joint_state_t", COUNT, num_joints=2, time_ns=time_ns)
+    state["joint_flags"][30:, 0] = state["joint_flags"][50:, 1] = fresh
+    state["joint_flags"][200, 1] = 0  # a late reply later on changes nothing
+    log = Log(write_log(tmp_path / "run.lcmlog", {"JOINT_STATE": state}))
+    position = charts.build(log, "joint")[0]
+    assert position.t_s[0] == pytest.approx(0.05)
+    assert len(position.t_s) == COUNT - 50 == len(drawn(position, "joint 1"))
+
+
+def test_lock_step_has_no_charts_of_time(log, tmp_path):
+    driver = log.read("DRIVER_STATUS").copy()
+    driver["lockstep"] = 1
+    channels = {"JOINT_STATE": log.read("JOINT_STATE"), "DRIVER_STATUS": driver}
+    channels = {name: as_written(rows, name) for name, rows in channels.items()}
+    quiet = Log(write_log(tmp_path / "run.lcmlog", channels))
+    titles = {chart.title for chart in charts.build(quiet, "timing")}
+    assert titles == {"counted so far", "bus load"}
+    assert "lateness of the cycle, so far" in {c.title for c in charts.build(log, "timing")}
+
+
+def as_written(rows, channel):
+    """With what the reader takes away: order of bytes and fingerprint."""
+    kind = messages.channels()[channel].type_name
+    made = np.zeros(len(rows), messages.dtype_of(kind))
+    made[messages.FINGERPRINT] = messages.fingerprint_of(kind)
+    for field in rows.dtype.names:
+        if field != messages.FINGERPRINT:
+            made[field] = rows[field]
+    return made
+
+
+def test_torque_of_a_push_is_drawn(tmp_path):
+    time_ns = np.arange(COUNT) * 1_000_000
+    status = records("controller_status_t", COUNT, time_ns=time_ns)
+    status["quat_BT"][:, 0] = status["quat_BD"][:, 0] = 1.0
+    truth = records("sim_truth_t", COUNT, time_ns=time_ns)
+    truth["F_push"][100:, 4] = 0.5
+    channels = {"CONTROLLER_STATUS": status, "SIM_TRUTH": truth}
+    built = charts.build(Log(write_log(tmp_path / "run.lcmlog", channels)), "cartesian")
+    torque = next(chart for chart in built if "torque of pushes" in chart.title)
+    assert torque.unit == "N m" and drawn(torque, "y push").max() == 0.5

@@ -47,14 +47,22 @@ def test(
 
 @app.command()
 def docs() -> None:
-    """Write the tables in the docs that come from programs: problems, gains, faults on the bus,
-    fuzzing.
+    """Write the parts of the docs that come from programs: problems, gains, keys of robot.yaml,
+    faults on the bus, fuzzing, Python.
 
     The fault matrix takes minutes: `limber faults report` writes it.
     """
-    from limber.dev import faults_doc, fuzz, gains_doc, troubleshooting_doc
+    from limber.dev import (
+        faults_doc,
+        fuzz,
+        gains_doc,
+        python_doc,
+        robot_keys_doc,
+        troubleshooting_doc,
+    )
 
-    for table in (troubleshooting_doc.TABLE, gains_doc.TABLE, faults_doc.TABLE, fuzz.TABLE):
+    written = (troubleshooting_doc, gains_doc, robot_keys_doc, faults_doc, fuzz, python_doc)
+    for table in (module.TABLE for module in written):
         console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
 
 

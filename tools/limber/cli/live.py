@@ -16,27 +16,28 @@ def send(
         list[str] | None,
         typer.Argument(help="Such as 'mode: active' or 'gains: {law: salisbury}'."),
     ] = None,
-    robot: Annotated[str, typer.Option(help="The running arm: name or folder.")] = "openarm",
+    robot: Annotated[
+        str | None, typer.Option(help="Name or folder; default: the arm of the running stack.")
+    ] = None,
 ) -> None:
     """Send requests (mode, gains, goal, push, wall, ...) to a running stack."""
     from limber.live.network import require_multicast
 
     require_multicast()
-    become("limber-send", "--robot", robot, *(entries or []))
+    become("limber-send", *(["--robot", robot] if robot else []), *(entries or []))
 
 
 @app.command()
 def watch(
-    robot: Annotated[str, typer.Option(help="For joint names and limits.")] = "openarm",
     once: Annotated[bool, typer.Option("--once", help="Print one picture and exit.")] = False,
 ) -> None:
-    """Show mode, joints, tip, faults and channel rates live."""
+    """Show mode, joints, tip, stiffness, faults and channel rates of the running arm live."""
     from limber.live import watch as module
+    from limber.live.gains_table import law_names
     from limber.live.network import require_multicast
-    from limber.model.robot import load_robot
 
     require_multicast()
-    module.watch(load_robot(robot).joints, module.law_names(), once, console)
+    module.watch(law_names(), once, console)
 
 
 @app.command()

@@ -9,7 +9,19 @@ import typer
 from typer.exceptions import TyperException
 
 from limber import __version__
-from limber.cli import can, dev, experiment, faults, identify, incident, live, log, referee, run
+from limber.cli import (
+    can,
+    dev,
+    experiment,
+    faults,
+    identify,
+    incident,
+    live,
+    log,
+    monitor,
+    referee,
+    run,
+)
 from limber.cli.options import console
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
 
@@ -21,7 +33,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for group in (run, live, log, referee, dev):
+for group in (run, live, monitor, log, referee, dev):
     app.add_typer(group.app)
 app.add_typer(can.app, name="can")
 app.add_typer(experiment.app, name="experiment")

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -19,6 +19,9 @@ from limber.cli.options import (
 from limber.errors import InputError
 
 app = typer.Typer()
+Page = Annotated[
+    bool, typer.Option("--page", help="Serve the web page beside it: 3D, charts, STOP.")
+]
 
 
 @app.command()
@@ -31,13 +34,14 @@ def demo(
     no_watch: Annotated[
         bool, typer.Option("--no-watch", help="Show the progress only, not the live view.")
     ] = False,
+    page: Page = False,
     private: Private = False,
 ) -> None:
     """Push a simulated arm on a CAN bus and measure its stiffness: the main job in a minute."""
     from limber.run import demo as module
     from limber.run.options import RunOptions
 
-    options = RunOptions(out, lockstep, live_view=not no_watch, private_network=private)
+    options = RunOptions(out, lockstep, live_view=not no_watch, private_network=private, page=page)
     raise typer.Exit(module.demo(seconds, options, console))
 
 
@@ -60,6 +64,11 @@ def run(
     can: Annotated[
         bool, typer.Option("--can", help="Record the CAN frames, too: run.can.log.")
     ] = False,
+    page: Page = False,
+    record: Annotated[
+        bool | None,
+        typer.Option("--record/--no-record", help="Overrides the scenario's `record`."),
+    ] = None,
     private: Private = False,
 ) -> None:
     """Run a scenario with the real processes, record it, measure it."""
@@ -67,7 +76,15 @@ def run(
     from limber.run.options import RunOptions
 
     options = RunOptions(
-        out, lockstep, tuple(bus or ()), not no_sim, private, rate_hz=rate, record_can=can
+        out,
+        lockstep,
+        tuple(bus or ()),
+        not no_sim,
+        private,
+        rate_hz=rate,
+        record=record,
+        record_can=can,
+        page=page,
     )
     raise typer.Exit(commands.run(scenario, options, console))
 
@@ -141,6 +158,23 @@ def check(
     if picture is not None:
         _bus_picture(arguments, picture)
     become("limber-check", *arguments)
+
+
+@app.command()
+def new(
+    urdf: Annotated[Path, typer.Argument(help="URDF file.")],
+    drives: Annotated[
+        Literal["damiao", "moteus", "cia402"], typer.Option(help="What drives the joints.")
+    ],
+    base: Annotated[str | None, typer.Option(help="Link the arm is fixed by.")] = None,
+    tip: Annotated[str | None, typer.Option(help="Link the arm works with.")] = None,
+    name: Annotated[str | None, typer.Option(help="Of the arm; default: of the file.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder to make.")] = None,
+) -> None:
+    """Write a first robot folder and scenario for your own arm, from its URDF."""
+    from limber.new import write as module
+
+    raise typer.Exit(module.write(urdf, (base, tip), drives, name, out, console))
 
 
 @app.command()

@@ -1,6 +1,7 @@
 """`limber bench`: builds the release preset and runs its benchmarks."""
 
 import subprocess
+import sys
 
 from rich.console import Console
 
@@ -21,6 +22,8 @@ def bench(console: Console) -> int:
     prefix = network.private_command() or []
     for name, arguments in PROGRAMS.items():
         _run([*prefix, str(RELEASE / name), *arguments], console, name)
+    receiver = "limber.dev.bench_receiver"
+    _run([*prefix, sys.executable, "-m", receiver], console, receiver)
     return OK
 
 

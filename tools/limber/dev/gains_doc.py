@@ -1,19 +1,10 @@
 """The tables of gains in scenarios/README.md, written from what the controller lists."""
 
-import json
-import subprocess
 from typing import Any
 
 from limber.dev.written_table import WrittenTable
-from limber.paths import ROOT, program
-
-
-def listing(robot: str | None = None) -> dict[str, Any]:
-    """All gains and laws; with a robot also which laws it cannot run, and why."""
-    command = [str(program("limber-controller")), "--list-laws", "--json"]
-    if robot is not None:
-        command += ["--robot", robot]
-    return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+from limber.live.gains_table import listing
+from limber.paths import ROOT
 
 
 def _number(value: float) -> str:

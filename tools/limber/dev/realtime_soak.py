@@ -15,7 +15,7 @@ from rich.console import Console
 from limber import messages, tables
 from limber.errors import OK, OUT_OF_TOLERANCE, RunError
 from limber.live import network
-from limber.live.client import Client
+from limber.live.arm import Arm
 from limber.model.robot import Robot, load_robot
 from limber.paths import output_folder, program
 from limber.problems import problem
@@ -53,8 +53,9 @@ def run(name: str, hours: float, seed: int, out: Path, console: Console) -> int:
     bus.subscribe("JOINT_STATE", watch.on_state).set_queue_capacity(1)
     with ExitStack() as stack:
         children = [stack.enter_context(_started(name, robot, folder)) for name in PROGRAMS]
-        arm = stack.enter_context(Client(name))
         stack.callback(lambda: [child.terminate() for child in children])
+        _listen(bus, START_S / 2)
+        arm = stack.enter_context(Arm())
         trip = _use(arm, bus, watch, children, hours, np.random.default_rng(seed), robot, console)
     return _report(watch, trip, folder, console)
 
@@ -77,17 +78,14 @@ def _listen(bus: lcm.LCM, seconds: float) -> None:
 def _use(arm, bus, watch, children, hours, random, robot, console) -> str:
     """Goals at random until the time is over; why it ended before, or ""."""
     drive = messages.message_class("joint_state_t")
-    _listen(bus, START_S / 2)
-    for mode in ("hold", "active"):
-        arm.mode(mode)
-        _listen(bus, START_S / 4)
+    arm.activate()
+    arm.gains(law="joint_impedance")
     end = time.monotonic() + 3600 * hours
     with console.status("soak") as status:
         while time.monotonic() < end:
             goal = robot.home + random.uniform(-REACH_RAD, REACH_RAD, len(robot.home))
             low, high = ([getattr(j, end) for j in robot.joints] for end in ("low", "high"))
-            arm.gains(law="joint_impedance")
-            arm.goal(joints_rad=[float(q) for q in np.clip(goal, low, high)], duration_s=PAUSE_S)
+            arm.set_goal(joints_rad=np.clip(goal, low, high), duration_s=PAUSE_S)
             _listen(bus, PAUSE_S)
             dead = [child.args[0] for child in children if child.poll() is not None]
             if dead:

@@ -56,6 +56,9 @@ def _notes(arm: Arm, weights: Weights, used: list[int]) -> list[str]:
 
 
 def _refusal(arm: Arm, motion: Motion, Y: np.ndarray, i: int) -> str:
+    empty = [body.heaviest for body in arm.robot.dynamics.bodies if not body.mass > 0]
+    if empty:
+        return f"the URDF gives no mass to {', '.join(empty)}; give each a mass, however small"
     rows = slow(motion, i)
     if arm.joints[i].two_motors:
         return "two motors pull at this joint"

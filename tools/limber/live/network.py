@@ -64,12 +64,12 @@ def require_multicast() -> None:
         raise RunError(f"no multicast route on this machine, so no message arrives: {CURE}")
 
 
-def require_shared_network(private: bool) -> None:
-    """For runs on the kernel's CAN: its interfaces do not exist in a private network."""
+def require_shared_network(private: bool, lacks: str = "this machine's CAN interfaces") -> None:
+    """For runs that need what a private network lacks."""
     if is_private():
         return
     if private:
-        raise InputError("--private: a private network has none of this machine's CAN interfaces")
+        raise InputError(f"--private: a private network has none of {lacks}")
     if not multicast_works():
         raise RunError(f"no multicast route on this machine, which LCM needs: {CURE}")
 

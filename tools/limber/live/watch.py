@@ -1,6 +1,5 @@
 """`limber watch`: a live view of the arm in a terminal."""
 
-import subprocess
 import time
 from contextlib import closing
 
@@ -13,22 +12,23 @@ from rich.table import Table
 from rich.text import Text
 
 from limber import messages, problems, tables
-from limber.live.listener import Listener
-from limber.model.robot import JointInfo
+from limber.errors import LimberError
+from limber.live.receiver import Receiver
+from limber.model.robot import JointInfo, load_robot
 from limber.model.rotations import rotation_error
-from limber.paths import program
 from limber.problems import Problem, sentence
 
-PERIODIC = ("JOINT_STATE", "JOINT_TORQUE", "CONTROLLER_STATUS", "DRIVER_STATUS", "SIM_TRUTH")
+PERIODIC = (
+    "JOINT_STATE",
+    "JOINT_TORQUE",
+    "CONTROLLER_STATUS",
+    "DRIVER_STATUS",
+    "SIM_TRUTH",
+    "ROBOT_INFO",
+)
 BAR_WIDTH = 16
+CAUSED = ("FAULT", "ESTOP", "SOFT_STOP")  # modes in which what caused them still holds
 GOOD, WARN, BAD = "green", "yellow", "bold red"
-
-
-def law_names() -> list[str]:
-    """In the order of their numbers in CONTROLLER_STATUS."""
-    command = [str(program("limber-controller")), "--list-laws"]
-    lines = subprocess.run(command, capture_output=True, text=True, check=False).stdout.splitlines()
-    return [line.split()[0] for line in lines if line.strip()]
 
 
 def _settings(status: np.void) -> dict[str, str]:
@@ -45,6 +45,10 @@ def _settings(status: np.void) -> dict[str, str]:
     return settings
 
 
+def _mode(status: np.void) -> str:
+    return messages.constants("controller_status_t", "MODE_").get(int(status["mode"]), "unknown")
+
+
 def _sentences(problem: Problem, where: str) -> Text:
     text = Text(problem.code + (f" ({where})" if where else ""), style=BAD)
     return text.append(
@@ -53,38 +57,58 @@ def _sentences(problem: Problem, where: str) -> Text:
 
 
 class View:
-    """Draws the listener's state; `joints` give names and position limits."""
+    """Draws the receiver's state. Names and limits of the joints are those of the arm that the
+    stack names (ROBOT_INFO).
+    """
 
-    def __init__(self, listener: Listener, joints: list[JointInfo], laws: list[str]) -> None:
-        self.listener = listener
+    def __init__(self, receiver: Receiver, laws: list[str]) -> None:
+        self.receiver = receiver
         self.laws = laws
-        self.joints = joints
+        self.robot = ""
+        self.joints: list[JointInfo] = []
+
+    def _find_robot(self) -> None:
+        """Reads its files when the stack names another than before."""
+        data = self.receiver.channels["ROBOT_INFO"].data
+        if not data:
+            return
+        info = messages.decode("robot_info_t", data)
+        named = f"{info.robot}, {'simulated' if info.simulated else 'REAL MOTORS'}"
+        if named == self.robot:
+            return
+        self.robot = named
+        try:
+            self.joints = load_robot(info.folder or info.robot).joints
+        except LimberError:  # on another machine: names alone
+            self.joints = [JointInfo(name, -np.inf, np.inf, 0.0) for name in info.joints]
 
     def render(self) -> Group:
-        state = self.listener.newest("JOINT_STATE")
-        status = self.listener.newest("CONTROLLER_STATUS")
-        panels = [Panel(self._state(state, status), title="arm", width=39)]
+        self._find_robot()
+        state = self.receiver.newest("JOINT_STATE")
+        status = self.receiver.newest("CONTROLLER_STATUS")
+        panels = [Panel(self._state(state, status), title=self.robot or "arm", width=39)]
         panels.append(Panel(self._tip(status), title="tip", width=39))
         return Group(
             Columns(panels),
             *self._problems(state, status),
             self._joints(state) if state is not None else Text("no JOINT_STATE yet", style=WARN),
-            self._buses(self.listener.newest("DRIVER_STATUS")),
+            self._buses(self.receiver.newest("DRIVER_STATUS")),
             self._channels(),
         )
 
     def _problems(self, state: np.void | None, status: np.void | None) -> list[Text]:
         """What is wrong now, each with a sentence and what to do."""
         found = []
-        if state is not None:
+        if state is not None and not self._drives_on(state):
             found.append(self._at(problems.problem("driver", state["fault"]), state["fault_joint"]))
+        if state is not None:
             found += [(problems.problem("sensor", state["sensor_state"]), "")]
             found += [(problems.problem("stop", state["emergency_stop"]), "")]
-        driver = self.listener.newest("DRIVER_STATUS")
+        driver = self.receiver.newest("DRIVER_STATUS")
         if driver is not None:
             states = driver["bus_state"][: int(driver["num_buses"])]
             found += [(problems.problem("bus", s), f"bus {b + 1}") for b, s in enumerate(states)]
-        if status is not None:
+        if status is not None and _mode(status) in CAUSED:
             reason = problems.problem("controller", status["reason"])
             found.append(self._at(reason, status["reason_joint"]))
         return [_sentences(problem, where) for problem, where in found if problem is not None]
@@ -92,8 +116,14 @@ class View:
     def _at(self, problem: Problem | None, joint: int) -> tuple[Problem | None, str]:
         return problem, self._joint_name(int(joint)) if joint >= 0 else ""
 
+    @staticmethod
+    def _drives_on(state: np.void) -> bool:
+        """A fault of before is over."""
+        kinds = messages.message_class("joint_state_t")
+        return int(state["drive_state"]) == kinds.DRIVE_ON
+
     def _stale(self, channel: str) -> bool:
-        last = self.listener.channels[channel]
+        last = self.receiver.channels[channel]
         timeout_s = messages.channels()[channel].timeout_s
         return last.count == 0 or time.monotonic() - last.last_s > max(timeout_s, 0.2)
 
@@ -102,13 +132,13 @@ class View:
         if status is None or self._stale("CONTROLLER_STATUS"):
             table.add_row("mode", Text("STALE: no controller", style=BAD))
         if status is not None:
-            mode = messages.constants("controller_status_t", "MODE_")[int(status["mode"])]
+            mode = _mode(status)
             law = int(status["law"])
             limits = [p.code for p in problems.problems_of_bits("limit", status["limits"])]
             reason = problems.problem("controller", status["reason"])
             table.add_row("mode", Text(mode, style=GOOD if mode in ("HOLD", "ACTIVE") else WARN))
             table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
-            if reason is not None:
+            if reason is not None and mode in CAUSED:
                 table.add_row("because", Text(reason.code, style=BAD))
             table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
             for name, setting in _settings(status).items():
@@ -117,7 +147,8 @@ class View:
             table.add_row("drives", Text("STALE: no driver", style=BAD))
         if state is not None:
             drive = messages.constants("joint_state_t", "DRIVE_")[int(state["drive_state"])]
-            fault = problems.problem("driver", state["fault"])
+            over = self._drives_on(state)
+            fault = None if over else problems.problem("driver", state["fault"])
             table.add_row("drives", Text(drive, style=GOOD if drive == "ON" else WARN))
             shown = "none" if fault is None else fault.code
             table.add_row("fault", Text(shown, style="" if fault is None else BAD))
@@ -135,6 +166,9 @@ class View:
         table.add_row("away", *(f"{v:+.2f}" for v in away), "mm")
         table.add_row("turned", *(f"{v:+.2f}" for v in np.degrees(turned)), "°")
         table.add_row("force", *(f"{v:+.1f}" for v in status["F_law"][:3]), "N")
+        K_x = np.diag(status["K_x"])
+        table.add_row("stiffness", *(f"{k:.0f}" for k in K_x[:3]), "N/m")
+        table.add_row("", *(f"{k:.1f}" for k in K_x[3:]), "N m/rad")
         if status["contact"]:
             table.add_row("contact", *(f"{v:+.1f}" for v in status["F_ext"][:3]), "N")
             table.add_row("", *(f"{v:+.2f}" for v in status["F_ext"][3:]), "N m")
@@ -200,7 +234,7 @@ class View:
 
     def _channels(self) -> Table:
         table = tables.table("<channel", ">Hz", ">age", ">lost", "<", padding=(0, 2))
-        for name, state in self.listener.channels.items():
+        for name, state in self.receiver.channels.items():
             age = f"{time.monotonic() - state.last_s:.2f} s" if state.count else "-"
             stale = Text("STALE" if self._stale(name) else "", style=BAD)
             lost = Text(str(state.lost), style=WARN if state.lost else "")
@@ -208,16 +242,10 @@ class View:
         return table
 
 
-def watch(
-    joints: list[JointInfo],
-    laws: list[str],
-    once: bool,
-    console: Console,
-    rate_hz: float = 10.0,
-) -> None:
+def watch(laws: list[str], once: bool, console: Console, rate_hz: float = 10.0) -> None:
     """Draws until Ctrl-C; with `once`, one picture after one second."""
-    with closing(Listener(*PERIODIC)) as listener:
-        view = View(listener, joints, laws)
+    with closing(Receiver(*PERIODIC)) as receiver:
+        view = View(receiver, laws)
         if once:
             time.sleep(1.0)
             console.print(view.render())

@@ -20,7 +20,6 @@ SYNC = b"\xed\xa1\xda\x01"
 HEADER = struct.Struct(">4sqqii")  # sync word, event number, time stamp in µs, two lengths
 MAX_CHANNEL_BYTES = 255
 MAX_DATA_BYTES = 1 << 26
-SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
 
 
 @dataclass
@@ -154,7 +153,7 @@ class Log:
         except InputError:
             return 0  # of another version: nothing in it is known
         numbers = records[records.dtype.names[1]]
-        sender = next((name for name in SENDERS if name in records.dtype.names), None)
+        sender = next((name for name in messages.SENDERS if name in records.dtype.names), None)
         if sender is None:
             return count_gaps(numbers)
         return sum(count_gaps(numbers[records[sender] == s]) for s in np.unique(records[sender]))

@@ -1,7 +1,7 @@
 """What each moving joint of a chain carries: the masses of a URDF, lumped.
 
 Links joined by fixed joints are one body; whatever branches off the chain belongs to the body it
-hangs from, its own joints at zero.
+hangs from, its own joints at zero. Links that do not move are not read.
 """
 
 import xml.etree.ElementTree as ElementTree
@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from limber.errors import InputError
 from limber.model.urdf import MOVING, Chain, Joint, numbers_of, read_joints
 
 
@@ -42,34 +41,40 @@ class Body:
 
 def bodies(urdf: Path, chain: Chain) -> list[Body]:
     """One for each moving joint of the chain, in order."""
-    joints, inertials = read_joints(urdf), read_inertials(urdf)
+    joints = read_joints(urdf)
     children = [joint.child for joint in chain.joints if joint.kind in MOVING]
     parts: dict[str, list[tuple[str, Inertial, np.ndarray]]] = {child: [] for child in children}
-    for link, inertial in inertials.items():
+    for link, element in _inertial_elements(urdf):
         owner, X = _owner(link, parts, joints)
-        if owner is not None:
+        inertial = _inertial(element) if owner is not None else None
+        if inertial is not None:
             parts[owner].append((link, inertial, X))
     return [_lump(child, parts[child]) for child in children]
 
 
 def read_inertials(urdf: Path) -> dict[str, Inertial]:
-    """By link; links without mass are left out."""
-    found = {}
-    for link in ElementTree.parse(urdf).getroot().findall("link"):
-        element = link.find("inertial")
-        mass = numbers_of(element.find("mass"), "value", "0")[0] if element is not None else 0.0
-        if not mass > 0:
-            continue
-        origin, tensor = element.find("origin"), element.find("inertia")
-        R = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0")).as_matrix()
-        xx, xy, xz, yy, yz, zz = (
-            numbers_of(tensor, key, "0")[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-        )
-        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        found[link.get("name")] = Inertial(
-            mass, numbers_of(origin, "xyz", "0 0 0"), R @ inertia @ R.T
-        )
-    return found
+    """By link; links without mass and inertia are left out."""
+    read = ((link, _inertial(element)) for link, element in _inertial_elements(urdf))
+    return {link: inertial for link, inertial in read if inertial is not None}
+
+
+def _inertial_elements(urdf: Path) -> list[tuple[str, ElementTree.Element]]:
+    links = ElementTree.parse(urdf).getroot().findall("link")
+    found = ((link.get("name"), link.find("inertial")) for link in links)
+    return [(link, element) for link, element in found if element is not None]
+
+
+def _inertial(element: ElementTree.Element) -> Inertial | None:
+    mass = numbers_of(element.find("mass"), "value", "0")[0]
+    origin, tensor = element.find("origin"), element.find("inertia")
+    xx, xy, xz, yy, yz, zz = (
+        numbers_of(tensor, key, "0")[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    if mass == 0 and not inertia.any():
+        return None
+    R = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0")).as_matrix()
+    return Inertial(mass, numbers_of(origin, "xyz", "0 0 0"), R @ inertia @ R.T)
 
 
 def _owner(
@@ -86,8 +91,8 @@ def _owner(
 
 
 def _lump(child: str, parts: list[tuple[str, Inertial, np.ndarray]]) -> Body:
-    if not parts:
-        raise InputError(f"the link '{child}' moves and has no mass")
+    if not parts:  # a frame between two joints
+        parts = [(child, Inertial(0.0, np.zeros(3), np.zeros((3, 3))), np.eye(4))]
     mass, moment, inertia = 0.0, np.zeros(3), np.zeros((3, 3))
     for _, part, X in parts:
         R, c = X[:3, :3], X[:3, :3] @ part.com + X[:3, 3]

@@ -61,13 +61,15 @@ class Scenario:
     duration_s: float = 10.0
     seed: int = 1
     friction: bool = True
+    record: bool = True
     pushes: list[Push] = field(default_factory=list)
     gains: list[Gains] = field(default_factory=list)
     walls: list[Wall] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     event_times: list[float] = field(default_factory=list)
     tolerances: Tolerances = field(default_factory=Tolerances)
-    refused: list[str] = field(default_factory=list)  # requests that will be, by limber-check
+    warnings: list[str] = field(default_factory=list)  # of limber-check
+    notes: list[str] = field(default_factory=list)  # limber-check's, of the robot
 
     def gains_at(self, time_s: float) -> Gains:
         """The requested gains at a time; `gains` starts with the robot's own."""
@@ -87,6 +89,7 @@ def load_scenario(path: Path, robot: Path | None = None) -> Scenario:
             duration_s=float(content["duration_s"]),
             seed=int(content.get("seed", 1)),
             friction=bool(content.get("friction", True)),
+            record=bool(content.get("record", True)),
             gains=[Gains(0.0, DEFAULT_LAW, loaded.K_x, loaded.K_q)],
             tolerances=_tolerances(content.get("measure"), path),
         )
@@ -135,7 +138,9 @@ def _add(scenario: Scenario, entry: dict[str, Any]) -> None:
     if kind == "push":
         scenario.pushes.append(_push(at_s, content))
     elif kind == "gains":
-        scenario.gains.append(_changed(scenario.gains[-1], at_s, content))
+        law = scenario.gains[-1].law  # a reset keeps it
+        before = scenario.gains[0 if content.get("reset") else -1]
+        scenario.gains.append(_changed(before, at_s, {"law": law, **content}))
     elif kind == "wall" and isinstance(content, dict):
         normal = np.asarray(content["normal"], float)
         stiffness = float(content["stiffness_N_per_m"])

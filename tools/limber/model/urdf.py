@@ -6,6 +6,7 @@ measures.
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +19,37 @@ MOVING = ("revolute", "continuous", "prismatic")
 
 @dataclass(frozen=True)
 class Joint:
+    """Numbers are read when they are needed: elsewhere in the file they may be wrong."""
+
     name: str
     kind: str
     parent: str
     child: str
-    X_PF: np.ndarray  # 4x4, joint frame in the parent link at zero
-    axis: np.ndarray  # unit, joint frame
-    low: float  # position limits; infinite for continuous joints
-    high: float
+    element: ElementTree.Element
+
+    @cached_property
+    def X_PF(self) -> np.ndarray:
+        """4x4, joint frame in the parent link at zero."""
+        origin = self.element.find("origin")
+        X = np.eye(4)
+        X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
+        # URDF's rpy: roll about x, pitch about y, yaw about z, all of the parent's axes
+        roll_pitch_yaw = numbers_of(origin, "rpy", "0 0 0")
+        X[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
+        return X
+
+    @cached_property
+    def axis(self) -> np.ndarray:
+        """Unit, joint frame; of a joint that moves."""
+        axis = numbers_of(self.element.find("axis"), "xyz", "1 0 0")
+        return axis / np.linalg.norm(axis)
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Of the position; infinite for continuous joints, and where both are 0 or absent."""
+        limit = self.element.find("limit") if self.kind != "continuous" else None
+        low, high = (numbers_of(limit, key, "0")[0] for key in ("lower", "upper"))
+        return (low, high) if low or high else (-np.inf, np.inf)
 
 
 class Chain:
@@ -41,8 +65,7 @@ class Chain:
         self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
 
     def limits(self, name: str) -> tuple[float, float]:
-        joint = next(joint for joint in self.joints if joint.name == name)
-        return joint.low, joint.high
+        return next(joint for joint in self.joints if joint.name == name).limits
 
     def forward(self, q: np.ndarray) -> np.ndarray:
         """X_BT, 4x4."""
@@ -93,28 +116,17 @@ def read_joints(urdf: Path) -> dict[str, Joint]:
         root = ElementTree.parse(urdf).getroot()
     except (OSError, ElementTree.ParseError) as error:
         raise InputError(f"{urdf} cannot be read as URDF: {error}") from error
-    joints = {}
-    for element in root.findall("joint"):
-        origin = element.find("origin")
-        X_PF = np.eye(4)
-        X_PF[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
-        # URDF's rpy: roll about x, pitch about y, yaw about z, all of the parent's axes
-        roll_pitch_yaw = numbers_of(origin, "rpy", "0 0 0")
-        X_PF[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
-        axis = numbers_of(element.find("axis"), "xyz", "1 0 0")
-        child = element.find("child").get("link")
-        limit = element.find("limit") if element.get("type") != "continuous" else None
-        joints[child] = Joint(
+    return {
+        child: Joint(
             element.get("name"),
             element.get("type"),
             element.find("parent").get("link"),
             child,
-            X_PF,
-            axis / np.linalg.norm(axis),
-            float(limit.get("lower", 0)) if limit is not None else -np.inf,
-            float(limit.get("upper", 0)) if limit is not None else np.inf,
+            element,
         )
-    return joints
+        for element in root.findall("joint")
+        for child in [element.find("child").get("link")]
+    }
 
 
 def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> list[Joint]:

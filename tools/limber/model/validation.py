@@ -12,17 +12,15 @@ from limber.paths import existing_file, program, robot_folder
 def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]:
     """Arguments of limber-check for a robot's name or folder, a URDF, or a scenario."""
     path = Path(what)
-    if path.suffix == ".urdf":
+    if path.suffix in (".urdf", ".xacro"):
         existing_file(path, "URDF file")
-        if base is None or tip is None:
-            raise InputError(
-                f"a bare URDF needs both ends: limber check {path} --base LINK --tip LINK"
-            )
-        return ["urdf", str(path), "--base", base, "--tip", tip]
+        ends = {"--base": base, "--tip": tip}
+        given = [word for end, link in ends.items() if link is not None for word in (end, link)]
+        return ["urdf", str(path), *given]
     if base is not None or tip is not None:
         raise InputError("--base and --tip are for a bare .urdf; a robot's are in its robot.yaml")
-    if path.is_file() and path.suffix in (".yaml", ".yml") and path.name != "robot.yaml":
-        return ["scenario", str(path)]
+    if path.suffix in (".yaml", ".yml") and path.name != "robot.yaml":
+        return ["scenario", str(existing_file(path, "scenario file (.yaml)"))]
     folder = robot_folder(str(path.parent) if path.name == "robot.yaml" else what)
     return ["robot", str(folder)]
 
@@ -41,5 +39,7 @@ def load_checked(path: Path) -> Scenario:
         message = lines[-1] if lines else f"limber-check failed (exit code {done.returncode})"
         raise InputError(message.removeprefix("limber-check: "))
     scenario = load_scenario(path)
-    scenario.refused = json.loads(done.stdout)["refused"]
+    found = json.loads(done.stdout)
+    scenario.warnings = [*found["warnings"], *found["refused"]]
+    scenario.notes = found["notes"]
     return scenario

@@ -1,7 +1,7 @@
 """What a log's charts show: both the PNG and the interactive page are drawn from this."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -23,6 +23,11 @@ class Chart:
     series: dict[str, np.ndarray] = field(default_factory=dict)
     dashed: set[str] = field(default_factory=set)
 
+    def since(self, begin_s: float) -> "Chart":
+        kept = self.t_s >= begin_s
+        series = {name: values[kept] for name, values in self.series.items()}
+        return replace(self, t_s=self.t_s[kept], series=series)
+
     def color_numbers(self) -> list[int]:
         """One for each series; "q desired" has the colour of the "q" before it."""
         numbers: list[int] = []
@@ -35,9 +40,19 @@ class Chart:
 
 
 def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Chart]:
-    """Charts of a topic, leaving out what the log does not hold: none if it holds nothing of it."""
-    charts = TOPICS[what](log, joint_names or [])
+    """Charts of a topic from the first answer of all drives on, leaving out what the log does not
+    hold: none if it holds nothing of it.
+    """
+    begin_s = _begin_s(log.read("JOINT_STATE"))
+    charts = [chart.since(begin_s) for chart in TOPICS[what](log, joint_names or [])]
     return [chart for chart in charts if len(chart.t_s) > 1 and chart.series]
+
+
+def _begin_s(state: np.ndarray) -> float:
+    """When every drive has answered for the first time: before, positions are zeros."""
+    fresh = messages.message_class("joint_state_t").JOINT_FRESH
+    answered = ((state["joint_flags"][:, : _joint_count(state)] & fresh) != 0).all(axis=1)
+    return float(time_s(state)[np.argmax(answered)]) if answered.any() else -np.inf
 
 
 def _joint_count(records: np.ndarray) -> int:
@@ -79,12 +94,15 @@ def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
         Chart("tip away from its goal", "mm", t, _columns(away_mm, list(AXES))),
         Chart("tip turned from its goal", "rad", t, _columns(turned, list(AXES))),
     ]
+    if len(truth) and np.any(truth["F_push"][:, 3:]):
+        torque = _columns(truth["F_push"][:, 3:], [f"{axis} push" for axis in AXES])
+        charts.append(Chart("torque of pushes on the arm", "N m", time_s(truth), torque))
     if len(truth):
-        force = Chart("force on the arm (simulator)", "N", time_s(truth))
+        force = Chart("force of walls and pushes on the arm", "N", time_s(truth))
         for i, axis in enumerate(AXES):
-            force.series[f"push {axis}"] = truth["F_push"][:, i]
-            force.series[f"contact {axis}"] = truth["F_contact"][:, i]
-            force.dashed.add(f"push {axis}")
+            force.series[axis] = truth["F_contact"][:, i]
+            force.series[f"{axis} push"] = truth["F_push"][:, i]
+            force.dashed.add(f"{axis} push")
         charts.append(force)
     energy = {"kinetic, arm": status["kinetic_energy_J"], "spring": status["spring_energy_J"]}
     return [*charts, Chart("energy", "J", t, energy)]
@@ -156,6 +174,9 @@ def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
     }
     buses = int(driver["num_buses"].max(initial=0))
     load = {f"bus {i + 1}": driver["bus_load_counted"][:, i] * 100 for i in range(buses)}
+    counted = [Chart("counted so far", "cycles", t, counts), Chart("bus load", "%", t, load)]
+    if len(driver) and driver[-1]["lockstep"]:  # no clock: nothing is early or late
+        return counted
     loop = {"controller cycle": status["cycle_ns"] * 1e-3}
     step = np.diff(state["time_ns"], prepend=state["time_ns"][:1]) * 1e-6
     return [
@@ -163,8 +184,7 @@ def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
         Chart("lateness of the cycle, so far", "µs", t, quantiles("lateness", *QUANTILES)),
         Chart("state to torque, so far", "µs", t, quantiles("answer", "p50", "p99", "max")),
         Chart("controller's own time", "µs", time_s(status), loop),
-        Chart("counted so far", "cycles", t, counts),
-        Chart("bus load", "%", t, load),
+        *counted,
     ]
 
 

@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 
+from limber import messages
 from limber.errors import InputError
+from limber.live.gains_table import law_names
 from limber.log.reader import Log
 from limber.model.robot import load_robot
 from limber.paths import output_folder
@@ -52,7 +55,26 @@ def _save_png(built: dict[str, list[charts.Chart]], title: str, folder: Path) ->
 
 
 def _title(log: Log) -> str:
-    return f"{log.path.parent.name}/{log.path.name}" if log.path.parent.name else log.path.name
+    """The run, and of which arm, law and stiffness it is."""
+    name = f"{log.path.parent.name}/{log.path.name}" if log.path.parent.name else log.path.name
+    return " · ".join([name, *_subject(log)])
+
+
+def _subject(log: Log) -> list[str]:
+    infos, status = log.decode("ROBOT_INFO"), log.read("CONTROLLER_STATUS")
+    facts = [info.robot for info in infos[:1]]
+    active = status[status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE]
+    if not len(active):
+        return facts
+    last, names = active[-1], law_names()
+    if 0 <= last["law"] < len(names):
+        facts.append(names[int(last["law"])])
+    K_x = np.diag(last["K_x"])
+    for part, unit in ((K_x[:3], "N/m"), (K_x[3:], "N m/rad")):
+        if part.any():
+            values = part[:1] if np.ptp(part) == 0 else part
+            facts.append("/".join(f"{value:.4g}" for value in values) + f" {unit}")
+    return facts
 
 
 def _joint_names(folder: Path) -> list[str]:

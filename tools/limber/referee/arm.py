@@ -58,7 +58,7 @@ def read_arm(name_or_path: str, addresses: dict[str, str] | None = None) -> Arm:
     content = read_yaml(file)
     try:
         buses = _buses(content, addresses or {}, file)
-        limits = _urdf_limits(robot.urdf)
+        limits = _urdf_limits(robot.urdf, content["joints"])
         motors = [
             motor
             for joint in robot.joints
@@ -84,12 +84,13 @@ def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> di
     return buses
 
 
-def _urdf_limits(urdf: Path) -> dict[str, tuple[float, float]]:
-    """Velocity and effort of each joint."""
+def _urdf_limits(urdf: Path, joints: dict[str, Any]) -> dict[str, tuple[float, float]]:
+    """Velocity and effort of those joints of robot.yaml that do not ignore them."""
     found = {}
     for joint in ElementTree.parse(urdf).getroot().findall("joint"):
         limit = joint.find("limit")
-        if limit is not None:
+        own = joints.get(joint.get("name"), {"urdf_limits": "ignore"})
+        if limit is not None and own.get("urdf_limits") != "ignore":
             found[joint.get("name")] = (float(limit.get("velocity")), float(limit.get("effort")))
     return found
 

@@ -12,7 +12,7 @@ from limber.measure.results import Summary, load_header
 from limber.measure.summarize import measure
 from limber.model.scenario import Scenario, load_scenario
 from limber.model.validation import load_checked
-from limber.paths import existing_file, output_folder
+from limber.paths import existing_file, run_folder
 from limber.run import buses, runner
 from limber.run.options import FinishedRun, RunOptions
 
@@ -26,8 +26,14 @@ def next_folder(name: str) -> Path:
 
 def _load(path: Path, console: Console) -> Scenario:
     scenario = load_checked(path)
-    for line in scenario.refused:
-        console.print(line, style="yellow", markup=False, highlight=False, soft_wrap=True)
+    for line in scenario.warnings:
+        console.print(
+            f"warning: {line}", style="yellow", markup=False, highlight=False, soft_wrap=True
+        )
+    if scenario.notes:
+        count = "1 note" if len(scenario.notes) == 1 else f"{len(scenario.notes)} notes"
+        line = f"{count} on {scenario.robot.folder}: limber check {path} lists them"
+        console.print(line, style="dim", markup=False, highlight=False, soft_wrap=True)
     return scenario
 
 
@@ -35,17 +41,19 @@ def run(path: Path, options: RunOptions, console: Console) -> int:
     scenario = _load(path, console)
     addresses = buses.addresses(scenario.robot, options.buses)
     buses.warn_of_motion(addresses, options.with_simulator, console)
-    if buses.real(addresses):
+    if options.page:
+        network.require_shared_network(options.private_network, "the ports that a browser opens")
+    elif buses.real(addresses):
         network.require_shared_network(options.private_network)
     else:
         network.ensure_multicast(options.private_network)
-    folder = output_folder(options.out or next_folder(scenario.name))
+    folder = run_folder(options.out or next_folder(scenario.name))
     return report(runner.run(scenario, folder, options, console), scenario, console)
 
 
 def lab(path: Path, out: Path | None, record_can: bool, console: Console) -> int:
     scenario = _load(path, console)
-    folder = output_folder(out or next_folder(scenario.name))
+    folder = run_folder(out or next_folder(scenario.name))
     return report(runner.lab(scenario, folder, console, record_can), scenario, console)
 
 
@@ -62,6 +70,10 @@ def measure_again(folder: Path, console: Console) -> int:
 
 def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
     """Measures the log, writes summary.json and prints it; returns the exit code."""
+    if not finished.recorded:
+        ending = "stopped by you" if finished.stopped_early else "ended"
+        console.print(f"{scenario.name} {ending}; not recorded, so nothing is measured.")
+        return OK
     summary, _ = summarize(finished, scenario)
     console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
     show_faults(summary, console)

@@ -8,6 +8,7 @@ import numpy as np
 from limber.log.reader import Log, time_s
 from limber.measure.pushes import BEFORE_S, MeasuredPush
 from limber.model.scenario import Scenario
+from limber.plot import stick_figure
 from limber.plot.style import COLORS, STYLE, name_axes, note
 
 TERMS = {
@@ -17,7 +18,7 @@ TERMS = {
     "gravity": "gravity",
     "coriolis": "Coriolis",
 }
-AXIS_COLORS = {"x": COLORS[1], "y": COLORS[2], "z": COLORS[0]}
+AXIS_COLORS = dict(zip("xyz", COLORS, strict=False))
 
 
 def save(log: Log, scenario: Scenario, pushes: list[MeasuredPush], path: Path) -> None:
@@ -28,7 +29,8 @@ def save(log: Log, scenario: Scenario, pushes: list[MeasuredPush], path: Path) -
         grid = fig.add_gridspec(3, 3)
         _moved(fig.add_subplot(grid[0, :2]), truth, linear)
         _softness(fig.add_subplot(grid[0, 2]), linear)
-        _forces(fig.add_subplot(grid[1, :]), truth, scenario)
+        _forces(fig.add_subplot(grid[1, :2]), truth, scenario)
+        _arm(fig.add_subplot(grid[1, 2]), scenario, linear)
         _torques(fig.add_subplot(grid[2, :]), status, scenario)
         friction = "with" if scenario.friction else "without"
         fig.suptitle(
@@ -103,6 +105,34 @@ def _softness(ax: plt.Axes, pushes: list[MeasuredPush]) -> None:
         ax.legend(loc="lower right", fontsize=8)
 
 
+def _arm(ax: plt.Axes, scenario: Scenario, pushes: list[MeasuredPush]) -> None:
+    """The arm from the side, with the pushes that lie in the picture, and the wall."""
+    robot = scenario.robot
+    points = stick_figure.arm_points(robot, robot.home)
+    view = stick_figure.View.of(points, -robot.gravity, margin_m=0.2)
+    places = view.project(points)
+    ax.plot(places[:, 0], places[:, 1], "-", color="0.55", lw=5, solid_capstyle="round")
+    ax.plot(places[1:-1, 0], places[1:-1, 1], "o", color="0.25", ms=6)
+    tip = places[-1]
+    for measured in pushes:
+        along = view.project(measured.direction[:3])
+        if np.linalg.norm(along) > 0.5:
+            arrow = {"arrowstyle": "->", "color": _color(measured), "lw": 2}
+            end = tip + 0.17 * along
+            ax.annotate("", end, tip, arrowprops=arrow)
+            note(ax, measured.axis, end, (4, 4), color=_color(measured), fontsize=8)
+    for wall in scenario.walls:
+        normal = view.project(wall.normal)
+        if np.linalg.norm(normal) > 0.9:
+            place, face = view.project(wall.point), np.array([-normal[1], normal[0]])
+            ends = np.array([place - 0.12 * face, place + 0.12 * face])
+            ax.plot(ends[:, 0], ends[:, 1], color=COLORS[3], lw=3, label="wall")
+            ax.legend(loc="upper right", fontsize=8)
+    ax.set(aspect="equal", xlim=(view.low[0], view.high[0]), ylim=(view.low[1], view.high[1]))
+    ax.set_title("The arm from the side", loc="left")
+    name_axes(ax, "along the floor (m)", "height (m)")
+
+
 def _forces(ax: plt.Axes, truth: np.ndarray, scenario: Scenario) -> None:
     t = time_s(truth)
     push = np.linalg.norm(truth["F_push"][:, :3], axis=1)
@@ -112,7 +142,7 @@ def _forces(ax: plt.Axes, truth: np.ndarray, scenario: Scenario) -> None:
     if contact.any():
         peak = int(contact.argmax())
         place, style = (t[peak], contact[peak]), {"va": "center", "color": COLORS[3]}
-        note(ax, f"peak {contact[peak]:.1f} N", place, (-8, 0), ha="right", **style)
+        note(ax, f"peak {contact[peak]:.1f} N", place, (8, 0), ha="left", **style)
     for wall in scenario.walls:
         ax.axvline(wall.at_s, color="0.5", ls=":", lw=1)
         ax.annotate(" wall put up", (wall.at_s, 0), va="bottom", color="0.4", fontsize=8)

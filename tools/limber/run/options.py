@@ -17,7 +17,9 @@ class RunOptions:
     private_network: bool = False
     live_view: bool = False  # show the arm, not only the progress
     rate_hz: float | None = None  # None: robot.yaml's
+    record: bool | None = None  # None: as the scenario says
     record_can: bool = False  # the frames, too
+    page: bool = False  # `limber monitor` beside it
 
 
 @dataclass
@@ -25,6 +27,7 @@ class FinishedRun:
     folder: Path
     mode: str  # lockstep, realtime or lab
     stopped_early: bool = False
+    recorded: bool = True
     recorder: dict[str, Any] = field(default_factory=dict)  # the report of limber-record
 
     @property

@@ -3,6 +3,7 @@
 import json
 import shutil
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 from rich.console import Console
 
 from limber.errors import RunError
-from limber.live.listener import driver_is_running
+from limber.live.receiver import driver_is_running
 from limber.model.scenario import Scenario
 from limber.paths import program
 from limber.run.display import display
@@ -20,7 +21,8 @@ from limber.run.processes import Child, ProcessGroup, process_group
 START_TIMEOUT_S = 10.0
 STOP_TIMEOUT_S = 5.0
 TELLERS = ("limber-driver", "limber-controller", "limber-lab")
-RECORDERS = ("limber-record", "limber-can")  # never a reason to stop an arm
+MONITOR = "limber-monitor"
+LISTENERS = ("limber-record", "limber-can", MONITOR)  # never a reason to stop an arm
 
 
 def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> FinishedRun:
@@ -30,14 +32,17 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
             "another driver is publishing on this machine: stop it, or run beside it with --private"
         )
     lockstep = scenario.lockstep if options.lockstep is None else options.lockstep
-    commands = _commands(scenario, folder, options, lockstep)
+    recorded = scenario.record if options.record is None else options.record
+    commands = _commands(scenario, folder, options, lockstep, recorded)
     copy_inputs(scenario, folder)
-    result = FinishedRun(folder, "lockstep" if lockstep else "realtime")
+    result = FinishedRun(folder, "lockstep" if lockstep else "realtime", recorded=recorded)
     with process_group(folder) as group, _sigterm_as_interrupt():
         for name, command in commands.items():
-            _start(group, name, command)
+            _start(group, name, command, console)
         driver = group.children["limber-driver"]
-        code = _follow(group, display(scenario, console, options.live_view), result, console)
+        code = _follow(
+            group, display(scenario, result.log, console, options.live_view), result, console
+        )
         _tell(group, console)
         if code != 0 and not result.stopped_early:
             raise driver.failure()
@@ -79,7 +84,7 @@ def _last_line(child: Child) -> str:
 
 
 def _commands(
-    scenario: Scenario, folder: Path, options: RunOptions, lockstep: bool
+    scenario: Scenario, folder: Path, options: RunOptions, lockstep: bool, recorded: bool
 ) -> dict[str, list[str]]:
     """Program -> command line in the order of starting: the driver, the clock, is last."""
     buses = [word for bus in options.buses for word in ("--bus", bus)]
@@ -89,7 +94,9 @@ def _commands(
         rate_hz = options.rate_hz or scenario.robot.rate_hz
         duration = ["--cycles", str(round(scenario.duration_s * rate_hz))]
     rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
-    commands = {"limber-record": ["--out", str(folder / LOG_NAME)]}
+    commands: dict[str, list[str]] = {}
+    if recorded:
+        commands["limber-record"] = ["--out", str(folder / LOG_NAME)]
     if options.record_can:
         can_log = str(folder / CAN_LOG_NAME)
         commands["limber-can"] = ["record", robot, "--out", can_log, *buses]
@@ -100,14 +107,26 @@ def _commands(
     commands["limber-driver"] = ["--robot", robot, *buses, *rate, *duration]
     if lockstep:
         commands["limber-driver"].append("--lockstep")
-    return {name: [str(program(name)), *words] for name, words in commands.items()}
+    started = {name: [str(program(name)), *words] for name, words in commands.items()}
+    if options.page:
+        started = {MONITOR: _monitor(path, robot, options.with_simulator), **started}
+    return started
 
 
-def _start(group: ProcessGroup, name: str, command: list[str]) -> None:
+def _monitor(scenario: str, robot: str, simulated: bool) -> list[str]:
+    """The page may move simulated arms only; a real one by `limber monitor --control`."""
+    command = [sys.executable, "-m", "limber", "monitor", "--robot", robot, "--scenario", scenario]
+    return [*command, *(["--control"] if simulated else [])]
+
+
+def _start(group: ProcessGroup, name: str, command: list[str], console: Console) -> None:
     """Waits until the program is ready, which its first line of output shows."""
-    child = group.start(name, command, spared=name in RECORDERS)
+    child = group.start(name, command, spared=name in LISTENERS)
     if name != "limber-driver":
         group.wait_for_line(child, "\n", START_TIMEOUT_S)
+    if name == MONITOR:
+        for line in child.last_lines(2):  # its address
+            console.print(line, markup=False, soft_wrap=True)
 
 
 def _follow(
@@ -142,13 +161,15 @@ def _tell(group: ProcessGroup, console: Console) -> None:
 
 def _stop_others(group: ProcessGroup) -> dict:
     """Ends the rest, the recorder last, so that its log is complete; returns its report."""
-    for name in ("limber-controller", "limber-sim"):
+    for name in (MONITOR, "limber-controller", "limber-sim"):
         if name in group.children:
             group.stop(name, signal.SIGTERM, STOP_TIMEOUT_S)
     for name, end in (("limber-can", signal.SIGTERM), ("limber-record", signal.SIGINT)):
         if name in group.children and group.stop(name, end, 2 * STOP_TIMEOUT_S) != 0:
             raise group.children[name].failure()
-    recorder = group.children["limber-record"]
+    recorder = group.children.get("limber-record")
+    if recorder is None:
+        return {}
     try:
         return json.loads(recorder.last_lines(1)[0])
     except (IndexError, json.JSONDecodeError) as error:

@@ -1,0 +1,173 @@
+#include "robots/loader/required_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "common/complaints.h"
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+namespace {
+
+constexpr RequiredKey kRequired[] = {
+    {"", "format", "", "`limber-robot/1`"},
+    {"", "name", "", "of the arm, for people"},
+    {"", "urdf", "", "file beside robot.yaml: `robot.urdf`"},
+    {"", "base", "", "link of the URDF that the arm is fixed by"},
+    {"", "tip", "", "link of the URDF that the arm works with"},
+    {"", "rate_hz", "", "control rate; 1000 where the bus carries it"},
+    {"", "buses", "", "list of the CAN buses"},
+    {"", "watchdog", "", "what the drives do without commands"},
+    {"", "motors", "", "one entry a model of motor"},
+    {"", "joints", "", "one entry a joint, named as in the URDF"},
+    {"", "gains", "", "what the controller starts with"},
+    {"buses[]", "name", "", "that the joints name it by"},
+    {"buses[]", "can", "", "`virtual:NAME` (simulated) or `socketcan:INTERFACE`"},
+    {"buses[]", "bitrate_bps", "", "bit rate; of CAN-FD in the arbitration phase"},
+    {"buses[]", "data_bitrate_bps", "fd: true", "bit rate of CAN-FD's data phase"},
+    {"watchdog", "timeout_s", "", "without a command for so long, a drive stops by itself"},
+    {"watchdog", "reaction", "", "of the simulated drives: `damp` or `off`"},
+    {"motors.*", "protocol", "", "of its drive: `damiao_mit`, `moteus` or `cia402`"},
+    {"motors.*", "gear_ratio", "", "rotor turns per turn of the joint"},
+    {"motors.*", "rotor_inertia_kgm2", "", "of the rotor itself, before the gear"},
+    {"motors.*", "rotor_torque_constant_Nm_per_A", "", "before the gear"},
+    {"motors.*", "phase_resistance_ohm", "", "of the winding"},
+    {"motors.*", "peak_torque_Nm", "", "largest torque of the drive, at the joint"},
+    {"motors.*", "encoder_bits", "damiao_mit", "encoder counts per turn of the joint, as bits"},
+    {"motors.*", "encoder_bits", "moteus", "encoder counts per turn of the joint, as bits"},
+    {"motors.*", "encoder_bits|counts_per_turn", "cia402", "encoder counts per turn of the joint"},
+    {"motors.*", "mit_range", "damiao_mit", "ranges stored in the drive"},
+    {"motors.*", "pid_position", "moteus", "gains configured in the drive"},
+    {"motors.*", "rated_torque_Nm", "cia402", "object 6076h, at the joint"},
+    {"motors.*.mit_range", "position_rad", "", "PMAX of the drive"},
+    {"motors.*.mit_range", "velocity_rad_per_s", "", "VMAX of the drive"},
+    {"motors.*.mit_range", "torque_Nm", "", "TMAX of the drive"},
+    {"motors.*.mit_range", "kp_Nm_per_rad", "", "500 in Damiao drives"},
+    {"motors.*.mit_range", "kd_Nms_per_rad", "", "5 in Damiao drives"},
+    {"motors.*.pid_position", "kp_Nm_per_turn", "", "servo.pid_position.kp of the drive"},
+    {"motors.*.pid_position", "kd_Nms_per_turn", "", "servo.pid_position.kd of the drive"},
+    {"joints.*", "motor", "", "name of one of the motors"},
+    {"joints.*", "bus", "", "name of one of the buses"},
+    {"joints.*", "id", "", "number of the drive on its bus, as 1 or 0x01"},
+    {"joints.*", "reply_id", "damiao_mit", "identifier of the drive's replies (MST_ID)"},
+    {"joints.*", "home_rad|home_m", "", "pose that scenarios and the simulator start from"},
+    {"joints.*", "hold", "", "how the driver holds the joint without a controller"},
+    {"joints.*.hold", "kp_Nm_per_rad|kp_N_per_m", "", "stiffness of holding"},
+    {"joints.*.hold", "kd_Nms_per_rad|kd_Ns_per_m", "", "damping of holding"},
+    {"gains", "K_q_Nm_per_rad", "", "joint stiffness; one number or one a joint"},
+    {"gains", "joint_damping_ratio", "", "of the joint stiffness; 0.7 settles fast"},
+    {"gains", "K_x_translation_N_per_m", "", "stiffness of the tip"},
+    {"gains", "K_x_rotation_Nm_per_rad", "", "stiffness of the tip's orientation"},
+    {"gains", "damping_ratio", "", "of the tip's stiffness"},
+    {"gains", "K_null_Nm_per_rad", "", "stiffness of the null space; one number or one a joint"},
+    {"gains", "D_null_Nms_per_rad", "", "damping of the null space; one number or one a joint"},
+};
+
+std::vector<std::string> alternatives(const std::string& key) {
+  const auto bar = key.find('|');
+  if (bar == std::string::npos) return {key};
+  return {key.substr(0, bar), key.substr(bar + 1)};
+}
+
+/// What is not readable at all is left to the reader, which complains of it.
+void if_readable(const std::function<void()>& part) {
+  try {
+    part();
+  } catch (const ConfigError&) {
+  }
+}
+
+class Search {
+ public:
+  explicit Search(const std::string& file) : complaints_(file) {}
+
+  /// Keys of a section; of rows with a condition those whose condition is `only`.
+  void check(const YamlMap& map, const std::string& section, const std::string& only = "") {
+    for (const RequiredKey& row : kRequired) {
+      if (section != row.section || (*row.only != '\0' && only != row.only)) continue;
+      const auto keys = alternatives(row.key);
+      if (std::ranges::any_of(keys, [&](const std::string& key) { return map.has(key); })) continue;
+      complaints_.collect([&] { map.refuse_missing(keys.front(), row.what); });
+    }
+  }
+  /// A mapping below, if it is there.
+  void check_below(const YamlMap& map, const std::string& key, const std::string& section) {
+    if (map.is_map(key)) check(map.map(key), section);
+  }
+  void finish() const { complaints_.throw_if_any(); }
+
+ private:
+  Complaints complaints_;
+};
+
+/// The protocol of each motor.
+std::map<std::string, std::string> check_motors(const YamlMap& motors, Search* search) {
+  std::map<std::string, std::string> protocols;
+  for (const std::string& name : motors.keys()) {
+    if (!motors.is_map(name)) continue;
+    const YamlMap motor = motors.map(name);
+    if (motor.has("protocol"))
+      if_readable([&] { protocols[name] = motor.word("protocol", protocol_words()); });
+    search->check(motor, "motors.*", protocols[name]);
+    for (const char* part : {"mit_range", "pid_position"})
+      search->check_below(motor, part, std::string("motors.*.") + part);
+  }
+  return protocols;
+}
+
+void check_joints(const YamlMap& joints, const std::map<std::string, std::string>& protocols,
+                  Search* search) {
+  std::vector<std::string> motors;
+  for (const auto& [motor, protocol] : protocols) motors.push_back(motor);
+  for (const std::string& name : joints.keys()) {
+    if (!joints.is_map(name)) continue;
+    const YamlMap joint = joints.map(name);
+    std::string protocol;
+    if_readable([&] { protocol = protocols.at(joint.word("motor", motors)); });
+    search->check(joint, "joints.*", protocol);
+    search->check_below(joint, "hold", "joints.*.hold");
+  }
+}
+
+void check_buses(const YamlMap& yaml, Search* search) {
+  for (const YamlMap& bus : yaml.maps("buses")) {
+    bool fd = false;
+    if_readable([&] { fd = bus.boolean_or("fd", false); });
+    search->check(bus, "buses[]", fd ? "fd: true" : "");
+  }
+}
+
+}  // namespace
+
+std::span<const RequiredKey> required_keys() { return kRequired; }
+
+void check_required_keys(const YamlMap& yaml) {
+  Search search(yaml.file());
+  search.check(yaml, "");
+  if (yaml.is_list("buses")) if_readable([&] { check_buses(yaml, &search); });
+  search.check_below(yaml, "watchdog", "watchdog");
+  std::map<std::string, std::string> protocols;
+  if (yaml.is_map("motors")) protocols = check_motors(yaml.map("motors"), &search);
+  if (yaml.is_map("joints")) check_joints(yaml.map("joints"), protocols, &search);
+  search.check_below(yaml, "gains", "gains");
+  search.finish();
+}
+
+std::string required_keys_table() {
+  std::string table = "| where | key | what it is |\n|---|---|---|\n";
+  for (const RequiredKey& row : kRequired) {
+    std::string keys;
+    for (const std::string& key : alternatives(row.key))
+      keys += fmt::format("{}`{}`", keys.empty() ? "" : " or ", key);
+    const std::string where = *row.section == '\0' ? "" : fmt::format("`{}`", row.section);
+    const std::string only = *row.only == '\0' ? "" : fmt::format(" (`{}` only)", row.only);
+    table += fmt::format("| {} | {} | {}{} |\n", where, keys, row.what, only);
+  }
+  return table;
+}
+
+}  // namespace limber

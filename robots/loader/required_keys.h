@@ -1,0 +1,28 @@
+// The keys that every robot.yaml has to have, in one table: checked here, and written into
+// docs/own_arm.md.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "common/yaml_reader.h"
+
+namespace limber {
+
+struct RequiredKey {
+  const char* section;  ///< "" for the top, "motors.*" for each motor, ...
+  const char* key;      ///< alternatives separated by |: one of them has to be there
+  const char* only;     ///< a protocol, or "fd: true"; "": always
+  const char* what;     ///< what it is
+};
+
+std::span<const RequiredKey> required_keys();
+
+/// Throws ConfigError with every required key that is missing, one a line. Values are not looked
+/// at. Set-up only.
+void check_required_keys(const YamlMap& yaml);
+
+/// The table in Markdown.
+std::string required_keys_table();
+
+}  // namespace limber

@@ -1,0 +1,178 @@
+"""`limber monitor` in a headless browser, with a stack behind it: for tests and for pictures.
+
+The stack runs in lock step and behind the browser: drawing without a graphics card takes all the
+processor that a control loop in real time would need.
+"""
+
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from contextlib import closing, contextmanager
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.model.robot import load_robot
+from limber.monitor.live_feed import LiveFeed
+from limber.monitor.scene import camera
+from limber.monitor.shapes import figure
+from stack import BIN, ROOT
+
+CHROMIUM = shutil.which("chromium")
+# Other flags than these draw ten times slower without a graphics card.
+FLAGS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+SIZE = {"width": 1200, "height": 660}
+ROBOT = "openarm"
+FOV = np.radians(75)  # vertical, the page's default
+
+
+class Arm:
+    """The three processes, and what they and the page have sent."""
+
+    def __init__(self, directory) -> None:
+        self.directory, self.feed = directory, LiveFeed()
+        self.processes: dict[str, subprocess.Popen] = {}
+        self.sent = defaultdict(list)
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+
+    def _listen(self) -> None:
+        while not self._end.wait(0.02):
+            for name, found in self.feed.take().objects.items():
+                self.sent[name] += found
+
+    def start(self, name: str, *arguments: str) -> None:
+        command = ["nice", "-n", "19", BIN / f"limber-{name}", "--robot", ROBOT, *arguments]
+        with open(self.directory / f"{name}.log", "a", encoding="utf-8") as log:
+            self.processes[name] = subprocess.Popen(command, stdout=log, stderr=log)
+
+    def start_all(self) -> None:
+        self.start("sim", "--lockstep")
+        self.start("controller", "--lockstep")
+        time.sleep(0.5)
+        self.start("driver", "--lockstep")
+
+    def newest(self, channel: str):
+        return self.feed.newest.get(channel)
+
+    @property
+    def status(self):
+        return self.newest("CONTROLLER_STATUS")
+
+    @property
+    def mode(self) -> int | None:
+        return None if self.status is None else int(self.status["mode"])
+
+    def until(self, condition, what: str, seconds: float = 60.0) -> None:
+        end = time.monotonic() + seconds
+        while not condition():
+            assert time.monotonic() < end, f"waited {seconds:g} s in vain for: {what}"
+            time.sleep(0.02)
+
+    def kill(self, name: str) -> None:
+        self.processes[name].kill()
+        self.processes[name].wait()
+
+    def close(self) -> None:
+        for name in self.processes:
+            self.kill(name)
+        self._end.set()
+        self._thread.join()
+        self.feed.close()
+
+
+def free_port() -> int:
+    with closing(socket.socket()) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@contextmanager
+def monitor(*arguments: str):
+    """The address of a page that is being served."""
+    port = free_port()
+    command = [sys.executable, "-m", "limber", "monitor", "--port", str(port), *arguments]
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        assert "http://" in process.stdout.readline()
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        process.terminate()
+        assert process.wait(timeout=20) == 0
+
+
+@contextmanager
+def launched(driver):
+    browser = driver.chromium.launch(executable_path=CHROMIUM, headless=True, args=FLAGS)
+    yield browser
+    browser.close()
+
+
+@contextmanager
+def opened(browser, url: str, size: dict = SIZE):
+    """A page; none of its requests leaves the machine."""
+    page, outside = browser.new_page(viewport=size), []
+    page.set_default_timeout(60_000)
+    local = (url, "data:", "blob:")
+    page.on("request", lambda r: None if r.url.startswith(local) else outside.append(r.url))
+    page.goto(url)
+    yield page
+    page.close()
+    assert outside == []
+
+
+def activate(page, stack: Arm) -> None:
+    """ACTIVE, by the page's own buttons."""
+    page.get_by_text("limber ·").first.click()  # no field has the focus
+    end = time.monotonic() + 60
+    while stack.mode != Status.MODE_ACTIVE and time.monotonic() < end:
+        faulty = stack.mode in (Status.MODE_FAULT, Status.MODE_ESTOP)
+        word = "acknowledge" if faulty else "active" if stack.mode == Status.MODE_HOLD else "hold"
+        page.get_by_role("button", name=word, exact=True).click()
+        time.sleep(0.5)
+    assert stack.mode == Status.MODE_ACTIVE
+    page.get_by_text("ACTIVE", exact=True).wait_for()
+
+
+def screen(page, point: np.ndarray) -> tuple[float, float]:
+    """Where a point in the base frame is seen, as long as nobody has moved the camera."""
+    robot = load_robot(ROBOT)
+    eye = camera(robot, figure(robot))
+    z = (eye.look_at - eye.position) / np.linalg.norm(eye.look_at - eye.position)
+    x = np.cross(z, eye.up) / np.linalg.norm(np.cross(z, eye.up))
+    away = np.asarray(point) - eye.position
+    box = page.locator("canvas").first.bounding_box()
+    scale = 0.5 * box["height"] / np.tan(0.5 * FOV) / (away @ z)
+    middle = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+    return middle[0] + scale * (away @ x), middle[1] - scale * (away @ np.cross(x, z))
+
+
+def drag(page, start: tuple, end: tuple, hold_s: float = 0.0, let_go: bool = True) -> None:
+    page.mouse.move(*start)
+    time.sleep(0.3)  # the page has to see what is under the pointer
+    page.mouse.down()
+    for share in np.linspace(0.1, 1.0, 10):
+        page.mouse.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
+        time.sleep(0.05)
+    time.sleep(hold_s)
+    if let_go:
+        page.mouse.up()
+
+
+def upper_arm(page, stack) -> tuple[float, float]:
+    """Its middle on the screen."""
+    made, X, places = figure(load_robot(ROBOT)), np.eye(4), []
+    for joint, X_PF, q in zip(
+        made.joints, made.X_PF, stack.newest("JOINT_STATE")["q"], strict=False
+    ):
+        turn = np.eye(4)
+        turn[:3, :3] = Rotation.from_rotvec(q * joint.axis).as_matrix()
+        X = X @ X_PF @ turn
+        places.append(X[:3, 3])
+    return screen(page, 0.5 * (places[2] + places[3]))

@@ -1,0 +1,86 @@
+"""Charts fed batch by batch."""
+
+import numpy as np
+
+from conftest import records
+from limber import messages
+from limber.monitor.charts import ChartPanel, Keeper
+from limber.monitor.feed import Batch
+
+MS = 10**6
+WINDOWS = (10.0, 60.0)
+
+
+def batches(count: int, size: int, start: int = 0, **fields):
+    for first in range(start, start + count, size):
+        rows = records("joint_state_t", size, num_joints=2, period_ns=MS, **fields)
+        rows["time_ns"] = (first + np.arange(size)) * MS
+        rows["q"][:, 0] = np.arange(first, first + size)
+        driver = records("driver_status_t", 1, time_ns=first * MS, num_buses=1)
+        yield Batch(
+            {
+                "JOINT_STATE": rows.astype(messages.native_dtype_of("joint_state_t")),
+                "DRIVER_STATUS": driver.astype(messages.native_dtype_of("driver_status_t")),
+            }
+        )
+
+
+def test_the_curves_are_those_of_the_messages():
+    keeper = Keeper(["a", "b"], WINDOWS)
+    for batch in batches(3000, 30):
+        keeper.add(batch)
+    position = keeper.kept["joints"]["joint position"]
+    assert list(position.chart.series) == ["a", "b"]
+    _, curves = position.bins[10.0].curves()
+    assert (curves[0].min(), curves[0].max()) == (0, 2999)
+    step = keeper.kept["timing and buses"]["time from state to state"]
+    _, curves = step.bins[10.0].curves()
+    assert np.allclose(curves[0][2:], 1.0), "no false step where two batches meet"
+
+
+def test_another_session_begins_anew():
+    keeper = Keeper([], WINDOWS)
+    for batch in (*batches(2000, 100, start=50_000), *batches(2000, 100)):
+        keeper.add(batch)
+    _, curves = keeper.kept["joints"]["joint position"].bins[10.0].curves()
+    assert curves[0].max() == 1999
+
+
+def test_a_jump_in_a_log_begins_anew():
+    keeper = Keeper([], WINDOWS)
+    for batch in batches(2000, 100, start=5000):
+        keeper.add(batch)
+    (jumped,) = batches(100, 100)
+    jumped.restart = True
+    keeper.add(jumped)
+    _, curves = keeper.kept["joints"]["joint position"].bins[10.0].curves()
+    assert curves[0].max() == 99
+
+
+def test_the_panel_draws_what_is_chosen(served):
+    keeper = Keeper(["a", "b"], WINDOWS)
+    panel = ChartPanel(served.gui, keeper, WINDOWS)
+    panel.draw()
+    for batch in batches(2000, 100):
+        keeper.add(batch)
+    panel.draw()
+    drawn = panel.handles["joint position"]
+    assert drawn.data[0].min() >= -10.0 and drawn.data[0].max() <= 0.0
+    assert drawn.data[1].max() == 1999
+    assert all(len(column) == len(drawn.data[0]) for column in drawn.data)
+    panel.topic.value = "timing and buses"
+    panel.draw()
+    assert "joint position" not in panel.handles
+    assert "time from state to state" in panel.handles
+
+
+def test_drives_that_fall_silent_leave_no_gap():
+    keeper = Keeper(["a", "b"], WINDOWS)
+    for number, batch in enumerate(batches(2000, 100)):
+        flags = batch.arrays["JOINT_STATE"]["joint_flags"]
+        flags[:, :2] = 1  # JOINT_FRESH
+        if number >= 10:
+            flags[:99, 0] = 0
+        keeper.add(batch)
+    t, _ = keeper.kept["joints"]["joint position"].bins[10.0].curves()
+    assert len(t) == 2 * 2.0 / (10.0 / 200), "every bin of the two seconds has its points"

@@ -1,0 +1,86 @@
+"""The demo in words, in a terminal of 80 by 24."""
+
+import io
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from limber.model.scenario import load_scenario
+from limber.paths import ROOT
+from limber.plot import stick_figure
+from limber.run import story
+from limber.run.demo_view import DemoView
+
+
+@pytest.fixture(scope="module")
+def demo():
+    return load_scenario(ROOT / "scenarios" / "demo.yaml")
+
+
+def test_each_event_of_the_demo_has_a_sentence(demo):
+    lines = story.story(demo)
+    assert [line.time_s for line in lines] == sorted(line.time_s for line in lines)
+    told = {line.time_s: line.text for line in lines}
+    assert "9 N along +x" in told[2.0] and "500 N/m gives way 18 mm" in told[2.0]
+    assert "friction" in told[2.0]
+    assert "lets go" in told[4.0]
+    assert "wall is put up" in told[11.0]
+    assert "70 mm along +x" in told[11.5] and "presses" in told[11.5]
+    assert "wall" not in told[16.0], "on its way back"
+    assert story.at(lines, 0.1) is None
+    assert story.at(lines, 3.0).time_s == 2.0
+
+
+def test_without_friction_nothing_is_held_back(demo):
+    from dataclasses import replace
+
+    lines = story.story(replace(demo, friction=False))
+    assert not any("friction" in line.text for line in lines)
+
+
+class Receiver:
+    def __init__(self, robot) -> None:
+        self.records = {
+            "JOINT_STATE": {"q": robot.home, "time_ns": 2.5e9},
+            "CONTROLLER_STATUS": {"mode": 4, "p_BD": np.array([0.274, 0, 0.5])},
+            "SIM_TRUTH": {
+                "p_BT": np.array([0.285, 0, 0.5]),
+                "F_push": np.array([9.0, 0, 0, 0, 0, 0]),
+                "F_contact": np.zeros(6),
+            },
+        }
+
+    def newest(self, channel):
+        return self.records.get(channel)
+
+
+def test_it_fits_the_terminal(demo):
+    receiver = Receiver(demo.robot)
+    view = DemoView(receiver, demo)
+    for there in (True, False):
+        if not there:
+            receiver.records.clear()
+        console = Console(width=80, record=True, file=io.StringIO())
+        console.print(view.render())
+        lines = console.export_text().splitlines()
+        assert len(lines) <= 22 and max(len(line) for line in lines) <= 80
+    receiver.records.update(Receiver(demo.robot).records)
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(view.render())
+    text = console.export_text()
+    assert "9.0 N" in text and "11.0 mm" in text and "ACTIVE" in text
+
+
+def test_a_stick_figure_shows_where_the_arm_is(demo):
+    """Two points, a line: every cell between them has dots, no other."""
+    view = stick_figure.View(
+        np.array([1.0, 0, 0]), np.array([0, 0, 1.0]), np.array([0.0, 0.0]), np.array([1.0, 1.0])
+    )
+    canvas = stick_figure.Canvas(20, 10)
+    canvas.line(view, np.array([0.0, 0.5]), np.array([1.0, 0.5]))
+    rows = np.flatnonzero(canvas.cells.any(axis=1))
+    assert len(rows) == 1 and canvas.cells[rows[0]].all()
+    points = stick_figure.arm_points(demo.robot, demo.robot.home)
+    assert points.shape == (len(demo.robot.joints) + 2, 3)
+    assert np.allclose(points[-1], demo.robot.chain.forward(demo.robot.home)[:3, 3])

@@ -1,0 +1,42 @@
+"""`limber monitor`: the web page of a running arm or of a recorded run."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from limber.cli.options import console
+from limber.errors import InputError
+
+app = typer.Typer()
+
+
+@app.command()
+def monitor(
+    log: Annotated[
+        Path | None, typer.Argument(help="A log or the folder of a run; none: the running arm.")
+    ] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(help="The arm: name or folder. Default: the one that runs."),
+    ] = None,
+    control: Annotated[
+        bool,
+        typer.Option("--control", help="The page may move the arm, not only show and stop it."),
+    ] = False,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="On this machine only.")] = 8080,
+    scenario: Annotated[
+        Path | None, typer.Option(help="The running scenario, whose walls are shown.")
+    ] = None,
+) -> None:
+    """Show a running arm, or a recorded run, in the browser: 3D, charts, faults, STOP."""
+    from limber.live.network import require_multicast
+    from limber.monitor import commands
+
+    if log is not None:
+        if control or scenario is not None:
+            raise InputError("--control and --scenario are for a running arm: a log cannot move")
+        commands.play(log, robot, port, console)
+        return
+    require_multicast()
+    commands.live(robot, port, control, scenario, console)

@@ -1,0 +1,72 @@
+"""Modes of a running arm: enabled, held, soft, stopped."""
+
+from typing import Any
+
+from limber.live.arm_base import POWER_S, ArmBase, check_fault
+from limber.live.arm_errors import StackLostError
+from limber.messages import message_class
+
+
+class Modes(ArmBase):
+    """Requests of modes; each returns when the arm is in it."""
+
+    def activate(self, timeout_s: float = POWER_S) -> None:
+        """Enables the drives if need be, and starts the control law; returns when it runs.
+
+        Raises FaultError in FAULT and ESTOP: see acknowledge().
+        """
+        if self.mode != "active":
+            self.hold(timeout_s)
+        self._mode("ACTIVE")
+        self.wait(mode="active", timeout_s=timeout_s)
+
+    def hold(self, timeout_s: float = POWER_S) -> None:
+        """Holds the arm where it is, with the drives enabled; a motion is stopped within 0.3 s."""
+        asked_s = float("-inf")
+        for state in self._link.statuses(timeout_s, "to be held"):
+            check_fault(state)
+            if state.mode == "hold" and state.drives == "on":
+                break
+            if state.mode in ("idle", "active") and state.time_s > asked_s + 0.1:
+                self._mode("HOLD")
+                asked_s = state.time_s
+        self._mode("HOLD")
+
+    def idle(self, timeout_s: float = POWER_S) -> None:
+        """Disables the drives. An arm without brakes sinks."""
+        if self.mode in ("active", "soft_stop"):
+            self.hold(timeout_s)
+        self._mode("IDLE")
+        self.wait(mode="idle", until=lambda state: state.drives != "on", timeout_s=timeout_s)
+
+    def stop(self) -> None:
+        """Stops the motion within 0.3 s, then the arm is held. Needs no lease; from any thread.
+
+        No emergency stop: that one cuts motor power.
+        """
+        for attempt in range(3):
+            try:
+                self._port.send(_request("STOP"), timeout_s=0.3)
+                return
+            except StackLostError:
+                if attempt == 2:
+                    raise
+
+    def acknowledge(self) -> None:
+        """Ends FAULT or ESTOP, once the cause is gone; then the arm is in idle."""
+        self._mode("ACKNOWLEDGE")
+        self.wait(mode="idle", timeout_s=POWER_S)
+
+    def release(self) -> None:
+        """Gives the lease back; the arm stays as it is."""
+        self._mode("RELEASE")
+        self._requested = False
+
+    def _mode(self, word: str) -> None:
+        self._send(_request(word))
+
+
+def _request(word: str) -> Any:
+    message = message_class("mode_request_t")()
+    message.request = getattr(message, f"REQUEST_{word}")
+    return message

@@ -1,0 +1,84 @@
+"""Requests to the controller, each answered by REQUEST_ANSWER."""
+
+import os
+import threading
+import time
+import warnings
+from typing import Any
+
+from limber import messages
+from limber.live.arm_errors import RefusedError, StackLostError
+from limber.live.stack_link import StackLink
+from limber.problems import problem
+
+ANSWER_S = 1.0
+CHANNELS = {
+    "mode_request_t": "MODE_REQUEST",
+    "compliance_goal_t": "COMPLIANCE_GOAL",
+    "compliance_gains_t": "COMPLIANCE_GAINS",
+    "push_t": "PUSH",
+    "scenario_event_t": "SCENARIO_EVENT",
+}
+# A controller knows 64 clients in a run. Scripts share these numbers, so that any number of them
+# can come and go; two at the same time have different ones, but for processes 32 apart.
+FIRST_CLIENT, NUM_CLIENTS = messages.SCRIPT_CLIENT, messages.NUM_SCRIPT_CLIENTS
+
+
+class RequestPort:
+    """One client of the controller. `client`: number of its lease. From any thread."""
+
+    def __init__(self, link: StackLink, client: int | None = None) -> None:
+        self.client = FIRST_CLIENT + os.getpid() % NUM_CLIENTS if client is None else client
+        self._link = link
+        self._answers = link.receiver.stream("REQUEST_ANSWER")
+        self._turn = threading.Lock()
+        self._seq = 0
+
+    def send(self, message: Any, timeout_s: float = ANSWER_S) -> Any:
+        """Returns the answer; RefusedError with its reason, or StackLostError if none comes."""
+        with self._turn:
+            self._answers.raw()
+            self._publish(message)
+            message_seq, end_s = self._seq, time.monotonic() + timeout_s
+            while (left_s := end_s - time.monotonic()) > 0 and self._answers.wait(left_s):
+                for data in self._answers.raw():
+                    answer = _answer(data)
+                    if answer and (answer.client, answer.seq) == (self.client, message_seq):
+                        return _accepted(answer)
+        raise StackLostError(
+            f"the controller has not answered a request within {timeout_s:g} s: see whether "
+            "limber-controller and limber-driver still run"
+        )
+
+    def post(self, message: Any) -> None:
+        """Sends to the simulator, which answers nothing."""
+        with self._turn:
+            self._publish(message)
+
+    def _publish(self, message: Any) -> None:
+        # Greater than that of any sender with this client's number before.
+        self._link.check()
+        self._seq = max(self._seq + 1, time.monotonic_ns())
+        message.seq, message.time_ns = self._seq, time.monotonic_ns()
+        if hasattr(message, "client"):
+            message.client = self.client
+            message.controller = int(self._link.records()[1]["controller"])
+        self._link.receiver.publish(CHANNELS[type(message).__name__], message)
+
+
+def _answer(data: bytes) -> Any:
+    try:
+        return messages.decode("request_answer_t", data)
+    except ValueError:
+        return None
+
+
+def _accepted(answer: Any) -> Any:
+    if answer.accepted:
+        if answer.reason:
+            warnings.warn(f"taken, but: {answer.reason}", stacklevel=5)
+        return answer
+    cause = problem("request", answer.code)
+    if cause is None:
+        raise RefusedError("request", answer.reason)
+    raise RefusedError(cause.code, answer.reason, cause.remedy)

@@ -1,0 +1,109 @@
+"""The connection of a script to a running driver and controller."""
+
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+from limber import messages
+from limber.live.arm_errors import NoStackError, StackLostError, WaitTimeoutError
+from limber.live.arm_state import State
+from limber.live.receiver import Receiver
+
+CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO", "REQUEST_ANSWER")
+SENDERS = {
+    "JOINT_STATE": "limber-driver",
+    "CONTROLLER_STATUS": "limber-controller",
+    "ROBOT_INFO": "limber-controller",
+}
+FOUND_S = 1.0  # within this time the stack is heard, or there is none
+SILENT_S = 1.0  # after this time it is lost; a busy machine stands still for tenths of a second
+INTERVAL_S = 0.002  # age of the newest values, at most, beside the channel's own period
+
+
+class StackLink:
+    """Finds the stack and its robot. `robot`: refuse any other.
+
+    `name`, `joints`, `simulated`: the robot's name in robot.yaml, its joints' names, and whether
+    all of its buses are simulated. Raises NoStackError.
+    """
+
+    def __init__(self, robot: str | None = None) -> None:
+        self.receiver = Receiver(*CHANNELS, interval_s=INTERVAL_S)
+        self._closed = False
+        try:
+            self._find(robot)
+        except BaseException:
+            self.receiver.close()
+            raise
+
+    def _find(self, robot: str | None) -> None:
+        heard = [self.receiver.channels[name] for name in SENDERS]
+        if not self.receiver.wait_for(lambda: all(state.count for state in heard), FOUND_S):
+            silent = next(who for name, who in SENDERS.items() if not self._count(name))
+            raise NoStackError(
+                f"{silent} is not heard at {messages.user_plane_url().split('?')[0]}: start a "
+                "stack, such as `limber run scenarios/ready.yaml`, on this machine and in this "
+                "network namespace"
+            )
+        data = self.receiver.channels["ROBOT_INFO"].data
+        info = messages.decode("robot_info_t", data)
+        if robot is not None and robot != info.robot:
+            raise NoStackError(f"the running stack is that of {info.robot}, not of {robot}")
+        self.name: str = info.robot
+        self.joints: tuple[str, ...] = tuple(info.joints)
+        self.simulated = bool(info.simulated)
+
+    def _count(self, channel: str) -> int:
+        return self.receiver.channels[channel].count
+
+    def records(self) -> tuple[np.void, np.void]:
+        """The newest JOINT_STATE and CONTROLLER_STATUS; StackLostError if one has become old."""
+        self.check()
+        state = self.receiver.newest("JOINT_STATE")
+        status = self.receiver.newest("CONTROLLER_STATUS")
+        assert state is not None and status is not None
+        return state, status
+
+    def check(self) -> None:
+        """Raises StackLostError if driver or controller are silent, or this end is closed."""
+        if self._closed:
+            raise StackLostError("this Arm is closed: make another")
+        for channel in ("JOINT_STATE", "CONTROLLER_STATUS"):
+            age_s = self.receiver.channels[channel].age_s()
+            if age_s > SILENT_S:
+                raise StackLostError(
+                    f"{SENDERS[channel]} has been silent for {age_s:.1f} s: see whether it still "
+                    "runs, and its log"
+                )
+
+    def state(self) -> State:
+        return State(*self.records(), self.joints)
+
+    def statuses(self, timeout_s: float, what: str) -> Iterator[State]:
+        """A state for every CONTROLLER_STATUS from now on, none left out.
+
+        Raises StackLostError, or WaitTimeoutError with `what` after `timeout_s`.
+        """
+        stream = self.receiver.stream("CONTROLLER_STATUS")
+        end_s = time.monotonic() + timeout_s
+        try:
+            while True:
+                stream.wait(min(0.1, timeout_s))
+                self.check()
+                for status in stream.read():
+                    joint_state = self.receiver.newest("JOINT_STATE")
+                    assert joint_state is not None
+                    yield State(joint_state, status, self.joints)
+                if time.monotonic() > end_s:
+                    raise WaitTimeoutError(f"{what}: not within {timeout_s:g} s")
+        finally:
+            stream.close()
+
+    def lost(self) -> dict[str, int]:
+        """Messages that were sent and did not arrive, by channel."""
+        return {name: state.lost for name, state in self.receiver.channels.items()}
+
+    def close(self) -> None:
+        self._closed = True
+        self.receiver.close()

@@ -1,0 +1,52 @@
+"""Numbers from a script, checked before they become a message."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limber.errors import InputError
+
+
+def numbers(key: str, value: ArrayLike, shape: tuple[int, ...], one_for_all: bool = False):
+    """`value` as finite floats of `shape`; with `one_for_all` a single number stands for each."""
+    try:
+        given = np.asarray(value, float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{key}: {value!r} is no number or array of numbers") from error
+    if one_for_all and given.ndim == 0:
+        given = np.full(shape, given)
+    if given.shape != shape:
+        wanted = " x ".join(map(str, shape)) or "one"
+        raise InputError(f"{key}: expected {wanted} numbers, got shape {given.shape}")
+    if not np.isfinite(given).all():
+        raise InputError(f"{key}: {value!r} is not finite")
+    return given
+
+
+def number(key: str, value: float, low: float = -np.inf, high: float = np.inf) -> float:
+    """`value`, if it is finite and within low..high."""
+    given = float(numbers(key, value, ()))
+    if not low <= given <= high:
+        raise InputError(f"{key}: {given:g} is out of range; expected {low:g} to {high:g}")
+    return given
+
+
+def unit(key: str, value: ArrayLike, size: int) -> np.ndarray:
+    """A vector of length 1 within rounding, made exactly so."""
+    given = numbers(key, value, (size,))
+    length = float(np.linalg.norm(given))
+    if not abs(length - 1.0) <= 1e-3:
+        raise InputError(f"{key}: has length {length:g}; expected 1")
+    return given / length
+
+
+def one_of(what: str, word: str, known: Iterable[str]) -> str:
+    """`word`, if it is known; else an error with the nearest, or all."""
+    known = list(known)
+    if word in known:
+        return word
+    near = get_close_matches(str(word), known, 1)
+    hint = f"did you mean {near[0]!r}?" if near else f"expected one of: {', '.join(known)}"
+    raise InputError(f"{what} {word!r} is not known; {hint}")

@@ -1,0 +1,1 @@
+"""`limber monitor`: a running arm, or a recorded run, in the browser."""

@@ -1,0 +1,167 @@
+"""Charts of the last seconds: those of `limber plot`, fed as messages come."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from viser import uplot
+
+from limber.monitor.bins import Bins
+from limber.monitor.feed import Batch
+from limber.plot.charts import TOPICS as CHARTS
+from limber.plot.charts import Chart
+
+BINS = 200
+HISTORY_S = 60.0
+PADDING, OTHER_PADDING = (10, 12, 0, 0), (10, 12, 0, 1)  # another one makes a chart again
+MADE_AGAIN_S = 1.0
+TOPICS = {
+    "joints": "joint",
+    "tip": "cartesian",
+    "torque": "torque",
+    "springs": "spring",
+    "timing and buses": "timing",
+}
+# Eight colours that stay apart for colour-blind readers (Okabe and Ito, 2008), without the yellow
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444", "#8B4513")
+
+
+@dataclass
+class Kept:
+    """One chart's history: bins of the full history and of each shorter window."""
+
+    chart: Chart  # without values: title, unit, names
+    bins: dict[float, Bins]
+    newest_s: float = -np.inf
+
+
+class Keeper:
+    """The history of all charts, for each of the windows."""
+
+    def __init__(self, joint_names: list[str], windows_s: tuple[float, ...]) -> None:
+        self._names, self._windows = joint_names, windows_s
+        self.kept: dict[str, dict[str, Kept]] = {topic: {} for topic in TOPICS}
+        self._tails: dict[str, np.ndarray] = {}
+
+    def add(self, batch: Batch) -> None:
+        if batch.restart:
+            self.__init__(self._names, self._windows)
+        joined = self._with_tails(batch)
+        for topic, what in TOPICS.items():
+            if what == "timing" and not len(joined.read("DRIVER_STATUS")):
+                continue  # it tells whether there is a clock
+            for chart in CHARTS[what](joined, self._names):
+                if len(chart.t_s) > 1 and chart.series:
+                    self._add(self.kept[topic], chart)
+
+    def _with_tails(self, batch: Batch) -> Batch:
+        """Each channel with the message before, so that differences have something to begin at."""
+        joined = Batch(self._tails)
+        joined.add(batch)
+        self._tails = {channel: rows[-1:] for channel, rows in joined.arrays.items()}
+        return joined
+
+    def _add(self, kept: dict[str, Kept], chart: Chart) -> None:
+        one = kept.get(chart.title)
+        if one is None or list(one.chart.series) != list(chart.series):
+            head = Chart(chart.title, chart.unit, chart.t_s[:0], dict(chart.series), chart.dashed)
+            bins = {w: Bins(w / BINS, BINS, len(chart.series)) for w in self._windows}
+            one = kept[chart.title] = Kept(head, bins)
+        if chart.t_s[-1] < one.newest_s - 1.0:  # another session of the driver: time begins again
+            del kept[chart.title]
+            return
+        new = chart.t_s > one.newest_s
+        if new.any():
+            values = np.array(list(chart.series.values()))[:, new]
+            for bins in one.bins.values():
+                bins.add(chart.t_s[new], values)
+            one.newest_s = float(chart.t_s[-1])
+
+
+class ChartPanel:
+    """Draws the charts of one topic; what is not shown costs nothing but its history."""
+
+    def __init__(self, gui: viser.GuiApi, keeper: Keeper, windows_s: tuple[float, ...]) -> None:
+        self._gui, self._keeper = gui, keeper
+        self.topic = gui.add_dropdown("show", tuple(TOPICS), initial_value="joints")
+        self._joint = gui.add_dropdown("of", ("-",), visible=False)
+        labels = tuple(f"{window:g} s" for window in windows_s)
+        self._window = gui.add_dropdown("last", labels, initial_value=labels[0])
+        self._windows = dict(zip(labels, windows_s, strict=True))
+        self._place = gui.add_folder(None)
+        self._nothing = gui.add_markdown("no messages yet")
+        self.handles: dict[str, viser.GuiUplotHandle] = {}
+        self._drawn: tuple = ()
+        self._made_again_s = 0.0
+
+    def make_again(self) -> None:
+        """In a moment. uPlot draws no time axis into a chart that was made before its place on the
+        page had a width, as in a browser that has just connected.
+        """
+        self._made_again_s = time.monotonic() + MADE_AGAIN_S
+
+    def draw(self) -> None:
+        topic, window_s = self.topic.value, self._windows[self._window.value]
+        shown = self._chosen(list(self._keeper.kept[topic].values()), topic)
+        key = (topic, window_s, *((one.chart.title, *one.chart.series) for one in shown))
+        if key != self._drawn:
+            self._rebuild(shown, window_s)
+            self._drawn = key
+            self.make_again()
+        for one in shown:
+            t, values = one.bins[window_s].curves()
+            if len(t):
+                self.handles[one.chart.title].data = (t, *values)
+        if 0 < self._made_again_s < time.monotonic():
+            self._made_again_s = 0.0
+            for handle in self.handles.values():
+                handle.padding = OTHER_PADDING if handle.padding == PADDING else PADDING
+
+    def _chosen(self, kept: list[Kept], topic: str) -> list[Kept]:
+        """Of the torques, those of one joint and whatever belongs to none."""
+        names = [one.chart.title.removeprefix("torque of ") for one in kept]
+        joints = [n for n, one in zip(names, kept, strict=True) if n != one.chart.title]
+        self._joint.visible = topic == "torque" and bool(joints)
+        if not self._joint.visible:
+            return kept
+        if self._joint.options != tuple(joints):
+            self._joint.options = tuple(joints)
+        return [
+            one
+            for n, one in zip(names, kept, strict=True)
+            if n == one.chart.title or n == self._joint.value
+        ]
+
+    def _rebuild(self, shown: list[Kept], window_s: float) -> None:
+        for handle in self.handles.values():
+            handle.remove()
+        self._nothing.visible = not shown
+        self._nothing.content = f"nothing to show of: {self.topic.value}"
+        with self._place:
+            self.handles = {one.chart.title: self._chart(one, window_s) for one in shown}
+
+    def _chart(self, one: Kept, window_s: float) -> viser.GuiUplotHandle:
+        chart = one.chart
+        series = [uplot.Series(label="s")]
+        for name, number in zip(chart.series, chart.color_numbers(), strict=True):
+            line = uplot.Series(
+                label=name,
+                stroke=COLORS[number % len(COLORS)],
+                width=1.2,
+                points=uplot.Series_Points(show=False),
+            )
+            if name in chart.dashed:
+                line["dash"] = (6, 4)
+            series.append(line)
+        t, values = one.bins[window_s].curves()
+        return self._gui.add_uplot(
+            (t, *values),
+            tuple(series),
+            title=f"{chart.title} / {chart.unit}",
+            scales={"x": uplot.Scale(time=False, auto=False, range=(-window_s, 0.0))},
+            axes=(uplot.Axis(size=34), uplot.Axis(size=56)),
+            padding=PADDING,
+            height=170,
+            legend=uplot.Legend(show=True, live=False),
+        )

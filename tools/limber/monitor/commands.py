@@ -1,0 +1,153 @@
+"""`limber monitor`: serves the page of a running stack, or of a log, until Ctrl-C."""
+
+import os
+import signal
+import time
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import InputError
+from limber.log.reader import Log, log_file
+from limber.messages import MONITOR_CLIENT
+from limber.model.robot import load_robot
+from limber.monitor import server
+from limber.monitor.control import ControlPanel
+from limber.monitor.goal_handle import GoalHandle
+from limber.monitor.guard import Guard
+from limber.monitor.laws import list_laws
+from limber.monitor.live_feed import LiveFeed
+from limber.monitor.log_feed import LogFeed
+from limber.monitor.page import DRAW_S, HISTORY_S, Page
+from limber.monitor.playback import PlaybackPanel
+from limber.monitor.push_tool import PushTool
+from limber.monitor.requests import Requests
+from limber.monitor.running_arm import RunningArm, choose_robot
+from limber.monitor.stop import StopButtons
+from limber.monitor.view_options import add_view_options
+from limber.monitor.walls import wall_changes
+
+NICENESS = 5  # the control loop goes first
+
+
+def live(
+    named: str | None, port: int, control: bool, scenario: Path | None, console: Console
+) -> None:
+    """`named`: the arm, else the one that runs. `control`: the page may move it; else it shows,
+    and can stop.
+    """
+    os.nice(NICENESS)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    walls = wall_changes(scenario) if scenario else []
+    running = RunningArm()
+    with closing(LiveFeed()) as feed:
+        if named is None:
+            running.wait(feed)
+        while True:
+            robot = choose_robot(named, running, console)
+            served = _serve(port, console)
+            console.print(f"{served.url}  [dim]{_kind(control)}; Ctrl-C ends it[/]", soft_wrap=True)
+            page = Page(served, robot, list_laws(robot.folder), feed, walls, Guard(console))
+            if not _show(page, feed, running, control, follow=named is None):
+                return
+            console.print(f"another arm is running: {running.name}", style="yellow")
+            port = served.get_port()  # the browser connects again by itself
+
+
+def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow: bool) -> bool:
+    """Until Ctrl-C: False, or, with `follow`, until another arm runs: True."""
+    served, robot, laws, gui = page.server, page.robot, page.laws, page.server.gui
+    requests = Requests(feed, MONITOR_CLIENT + served.get_port())
+    stop = StopButtons(gui, requests)
+    parts: list[Callable[[], None]] = [stop.draw]
+    goal = None
+    tabs = gui.add_tab_group()
+    if control:
+        with tabs.add_tab("control"):
+            parts.append(ControlPanel(gui, robot, laws, requests, feed).draw)
+        with tabs.add_tab("push"):
+            parts.append(PushTool(gui, page.scene.arm, feed, requests).draw)
+        size_m = 0.35 * page.scene.figure.reach_m
+        goal = GoalHandle(served.scene, size_m, feed, laws, requests)
+    with tabs.add_tab("view"):
+        add_view_options(gui, page.scene)
+    page.add_charts()
+
+    def draw() -> bool:
+        batch = page.draw()
+        outcomes = requests.collect(batch)
+        page.tell(outcomes)
+        for part in parts:
+            page.guard(part)
+        if goal is not None:
+            page.guard(goal.draw, outcomes)
+        running.note(batch)
+        page.other_arm = running.name if running.name not in ("", robot.name) else ""
+        return not (follow and page.other_arm)
+
+    with closing(requests):
+        return _loop(draw, served)
+
+
+def _kind(control: bool) -> str:
+    if control:
+        return "the page can move the arm"
+    return "read only, but for STOP; --control lets it move the arm"
+
+
+def play(path: Path, robot_name: str | None, port: int, console: Console) -> None:
+    """Of a recorded run. The robot and the walls are those beside the log, if they are there."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    file = log_file(path)
+    folder = file.parent
+    if robot_name is None and not (folder / "robot.yaml").is_file():
+        raise InputError(f"{folder} holds no robot.yaml: name the arm with --robot")
+    robot = load_robot(robot_name or str(folder.resolve()))
+    feed = LogFeed(Log(file), HISTORY_S)
+    laws = list_laws(robot.folder)
+    scenario = folder / "scenario.yaml"
+    served = _serve(port, console)
+    walls = wall_changes(scenario) if scenario.is_file() else []
+    page = Page(served, robot, laws, feed, walls, Guard(console))
+    panel = PlaybackPanel(served, feed, Log(file), robot.joint_names, laws)
+    with served.gui.add_folder("view", expand_by_default=False):
+        add_view_options(served.gui, page.scene)
+    page.add_charts()
+    console.print(f"{served.url}  [dim]{file}; Ctrl-C ends it[/]", soft_wrap=True)
+    last = time.monotonic()
+
+    def draw() -> bool:
+        nonlocal last
+        now = time.monotonic()
+        feed.advance(now - last)
+        last = now
+        page.draw()
+        page.guard(panel.draw)
+        return True
+
+    _loop(draw, served)
+
+
+def _serve(port: int, console: Console) -> server.Server:
+    served = server.start(port)
+    if served.get_port() != port:
+        console.print(f"port {port} is taken; using {served.get_port()}", style="yellow")
+    return served
+
+
+def _loop(draw: Callable[[], bool], served: server.Server) -> bool:
+    """Thirty pictures a second, fewer on a busy machine, while `draw` returns True; returns True
+    when it no longer does, False after Ctrl-C or `kill`, which are its good end.
+    """
+    try:
+        begun = time.monotonic()
+        while draw():
+            time.sleep(max(DRAW_S - (time.monotonic() - begun), 0.2 * DRAW_S))
+            begun = time.monotonic()
+        return True
+    except KeyboardInterrupt:
+        return False
+    finally:
+        served.close()

@@ -1,0 +1,165 @@
+"""One widget for each number or choice that the controller lists."""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import viser
+
+from limber.monitor.laws import Gain
+
+REACH = 4.0  # a slider goes so many times as far as the value it begins with
+AXES = ("x", "y", "z")
+Changed = Callable[[str, Any], None]
+
+
+class Widget(Protocol):
+    """`show` displays a value without sending it."""
+
+    def show(self, value: Any) -> None: ...
+
+
+def make(gui: viser.GuiApi, gain: Gain, start: Any, joints: list[str], changed: Changed) -> Widget:
+    """`start`: the value that holds now; `changed` is called with key and new value."""
+    if gain.kind in ("choice", "switch"):
+        return _Choice(gui, gain, start, changed)
+    if gain.kind == "number":
+        return _Number(gui, gain, gain.label, float(start), lambda v: changed(gain.key, v))
+    if gain.kind == "periods":
+        return _Several(gui, gain, list(gain.words), start, changed, as_mapping=True)
+    if gain.kind == "tip_matrix":
+        axes = [*AXES, *(f"about {axis}" for axis in AXES)]
+        return _Several(gui, gain, axes, start, changed, as_matrix=True)
+    labels = list(AXES) if gain.kind == "blocks" else joints
+    return _Several(gui, gain, labels, start, changed)
+
+
+def slider_end(gain: Gain, value: float) -> float:
+    """Where a slider ends: the range if it is short, else some times the value."""
+    if gain.high <= 10.0 or gain.high <= REACH * abs(value):
+        return gain.high
+    if value > 0:
+        return float(min(gain.high, REACH * value))
+    return float(min(gain.high, 100.0))
+
+
+class _Number:
+    """A slider; a value beyond its end moves the end."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        gain: Gain,
+        label: str,
+        start: float,
+        changed: Callable[[float], None],
+    ) -> None:
+        self._gain = gain
+        end = slider_end(gain, start)
+        whole = gain.kind == "periods"
+        step = 1.0 if whole else max((end - gain.low) / 200, 1e-6)
+        self.slider = gui.add_slider(
+            label, float(gain.low), end, step, float(np.clip(start, gain.low, end)), hint=gain.hint
+        )
+
+        @self.slider.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None and accepted(gain, self.slider.value):
+                changed(float(self.slider.value))
+
+    def show(self, value: float) -> None:
+        if not np.isfinite(value):
+            return
+        if value > self.slider.max:
+            self.slider.max = float(min(max(self._gain.high, value), REACH * value))
+        self.slider.value = float(value)
+
+
+class _Several:
+    """One slider for all components, and one for each in a folder."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        gain: Gain,
+        labels: list[str],
+        start: Any,
+        changed: Changed,
+        as_mapping: bool = False,
+        as_matrix: bool = False,
+    ) -> None:
+        self._gain, self._labels, self._changed = gain, labels, changed
+        self._mapping, self._matrix = as_mapping, as_matrix
+        self.values = self._components(start)
+        mixed = as_mapping or as_matrix  # one number for all would mean nothing
+        self._all = None
+        if not mixed:
+            self._all = _Number(gui, gain, gain.label, float(self.values.max()), self._set_all)
+        name = gain.label if mixed else "one by one"
+        with gui.add_folder(name, expand_by_default=False):
+            self._each = [
+                _Number(gui, gain, label, float(value), self._setter(i))
+                for i, (label, value) in enumerate(zip(labels, self.values, strict=True))
+            ]
+
+    def _components(self, value: Any) -> np.ndarray:
+        if isinstance(value, dict):
+            value = [value.get(label, self._gain.low) for label in self._labels]
+        array = np.asarray(value, float)
+        if self._matrix and array.shape == (6, 6):
+            array = np.diag(array)
+        return np.broadcast_to(array, len(self._labels)).copy()
+
+    def _setter(self, index: int) -> Callable[[float], None]:
+        def set_one(value: float) -> None:
+            self.values[index] = value
+            self._send()
+
+        return set_one
+
+    def _set_all(self, value: float) -> None:
+        self.values[:] = value
+        self.show(self.values)
+        self._send()
+
+    def _send(self) -> None:
+        values: Any = self.values.tolist()
+        if self._mapping:
+            values = {label: int(v) for label, v in zip(self._labels, values, strict=True)}
+        elif self._matrix:
+            values = np.diag(self.values).tolist()
+        self._changed(self._gain.key, values)
+
+    def show(self, value: Any) -> None:
+        self.values = self._components(value)
+        for each, one in zip(self._each, self.values, strict=True):
+            each.show(float(one))
+        if self._all is not None:
+            self._all.show(float(self.values.max()))
+
+
+class _Choice:
+    def __init__(self, gui: viser.GuiApi, gain: Gain, start: Any, changed: Changed) -> None:
+        self._words = gain.words
+        if gain.kind == "switch":
+            self._handle: Any = gui.add_checkbox(
+                gain.label, start in (True, "true"), hint=gain.hint
+            )
+        else:
+            first = start if start in gain.words else gain.words[0]
+            self._handle = gui.add_dropdown(gain.label, gain.words, initial_value=first)
+            self._handle.hint = gain.hint
+
+        @self._handle.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                changed(gain.key, self._handle.value)
+
+    def show(self, value: Any) -> None:
+        if isinstance(value, bool) or value in self._words:
+            self._handle.value = value
+
+
+def accepted(gain: Gain, value: float) -> bool:
+    """A browser may send anything; NaN fails."""
+    return bool(gain.low <= value <= gain.high)

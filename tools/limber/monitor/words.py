@@ -1,0 +1,113 @@
+"""What is going on, in words: mode, faults and limits that act, each with what to do."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from limber import problems
+from limber.messages import constants
+from limber.monitor.feed import NEVER_S, Feed
+from limber.problems import Problem, sentence
+
+STALE_S = 0.5
+GOOD, WARN, BAD = "good", "warn", "bad"
+WANTED = ("driver.REQUESTED", "controller.STOP_REQUESTED")  # by the user: no fault
+MODE_WORDS = {
+    "BOOT": "waiting for the driver",
+    "INIT": "checking the arm's state",
+    "IDLE": "ready; the drives are off",
+    "HOLD": "holds its position",
+    "ACTIVE": "a control law is running",
+    "SOFT_STOP": "coming to rest",
+    "FAULT": "stopped by a fault; acknowledge when its cause is gone",
+    "ESTOP": "the emergency stop is pressed; release it, then acknowledge",
+}
+
+
+@dataclass(frozen=True)
+class Note:
+    """`code` may be looked up in docs/troubleshooting.md; `do` may be empty."""
+
+    level: str
+    code: str
+    what: str
+    do: str = ""
+
+
+@dataclass
+class Situation:
+    level: str
+    headline: str
+    detail: str
+    notes: list[Note] = field(default_factory=list)
+
+
+def situation(feed: Feed, joints: list[str], limits: int = 0) -> Situation:
+    """Of the newest messages and their age; a stack that is silent is dead. `limits`: bits that
+    acted lately.
+    """
+    ages = {name: feed.age_s(name) for name in ("JOINT_STATE", "CONTROLLER_STATUS")}
+    if all(age == NEVER_S for age in ages.values()):
+        return Situation(BAD, "NO STACK", "No messages on this machine. Start one: limber demo")
+    if ages["JOINT_STATE"] > STALE_S:
+        return _silent("NO DRIVER", "JOINT_STATE", ages, _notes(feed, joints))
+    if ages["CONTROLLER_STATUS"] > STALE_S:
+        return _silent("NO CONTROLLER", "CONTROLLER_STATUS", ages, _notes(feed, joints))
+    status = feed.newest["CONTROLLER_STATUS"]
+    mode = constants("controller_status_t", "MODE_").get(int(status["mode"]), "UNKNOWN")
+    notes = _notes(feed, joints)
+    for problem in problems.problems_of_bits("limit", limits | int(status["limits"])):
+        notes += _note(WARN, problem)
+    level = GOOD if mode in ("HOLD", "ACTIVE") else WARN
+    if mode in ("FAULT", "ESTOP") or any(note.level == BAD for note in notes):
+        level = BAD
+    return Situation(level, mode.replace("_", " "), MODE_WORDS.get(mode, ""), notes)
+
+
+def _silent(headline: str, channel: str, ages: dict[str, float], notes: list[Note]) -> Situation:
+    age = ages[channel]
+    ago = "no message yet" if age == NEVER_S else f"last message {age:.1f} s ago"
+    detail = f"{channel}: {ago}. What is shown is old."
+    return Situation(BAD, headline, detail, notes)
+
+
+def _notes(feed: Feed, joints: list[str]) -> list[Note]:
+    state, status = feed.newest.get("JOINT_STATE"), feed.newest.get("CONTROLLER_STATUS")
+    found: list[Note] = []
+    if state is not None:
+        where = _joint(joints, int(state["fault_joint"]))
+        found += _note(BAD, problems.problem("driver", state["fault"]), where)
+        found += _note(BAD, problems.problem("stop", state["emergency_stop"]))
+        found += _note(WARN, problems.problem("sensor", state["sensor_state"]))
+        for i in range(int(state["num_joints"])):
+            for problem in problems.problems_of_bits("joint", state["joint_flags"][i]):
+                found += _note(WARN, problem, _joint(joints, i))
+    if status is not None:
+        where = _joint(joints, int(status["reason_joint"]))
+        found += _note(BAD, problems.problem("controller", status["reason"]), where)
+    found += _bus_notes(feed.newest.get("DRIVER_STATUS"))
+    return found
+
+
+def _bus_notes(driver: np.void | None) -> list[Note]:
+    found: list[Note] = []
+    if driver is not None:
+        for bus, value in enumerate(driver["bus_state"][: int(driver["num_buses"])]):
+            found += _note(BAD, problems.problem("bus", value), f"bus {bus + 1}")
+    return found
+
+
+def _note(level: str, problem: Problem | None, where: str = "") -> list[Note]:
+    if problem is None:
+        return []
+    if problem.code in WANTED:
+        level = WARN
+    code = problem.code + (f" ({where})" if where else "")
+    do = sentence(problem.remedy) if problem.remedy else ""
+    return [Note(level, code, sentence(problem.what), do)]
+
+
+def _joint(names: list[str], index: int) -> str:
+    if index < 0:
+        return ""
+    return names[index] if index < len(names) else f"joint {index + 1}"

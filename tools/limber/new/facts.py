@@ -1,0 +1,102 @@
+"""What a URDF and its check tell of an arm, before anybody has described its drives."""
+
+import json
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from limber.errors import InputError
+from limber.model.dynamics import ArmDynamics
+from limber.model.urdf import Chain
+from limber.model.validation import checker_arguments, run_checker
+
+
+@dataclass(frozen=True)
+class JointFacts:
+    """Limits of the URDF, infinite where it has none. Units: rad, N m; m, N of a prismatic one.
+
+    `gravity`: most torque that the weight needs, at home and anywhere; `inertia` at home.
+    """
+
+    name: str
+    kind: str
+    low: float
+    high: float
+    velocity: float
+    effort: float
+    gravity_home: float
+    gravity: float
+    inertia: float
+
+    @property
+    def slides(self) -> bool:
+        return self.kind == "prismatic"
+
+
+@dataclass(frozen=True)
+class ArmFacts:
+    urdf: Path
+    base: str
+    tip: str
+    mass_kg: float  # of all that moves
+    home: np.ndarray
+    jacobian: np.ndarray  # 6xn at home
+    joints: list[JointFacts]
+
+
+def read(urdf: Path, base: str | None, tip: str | None) -> ArmFacts:
+    """Raises InputError with limber-check's complaints, or the arms to choose from, if several."""
+    done = run_checker([*checker_arguments(str(urdf), base, tip), "--json"])
+    if done.returncode != 0:
+        if not json.loads(done.stdout or "{}").get("chains"):
+            raise InputError(done.stderr.strip())
+        listed = run_checker(checker_arguments(str(urdf), base, tip))
+        raise InputError(f"{listed.stderr.strip()}\n{listed.stdout.rstrip()}")
+    found = json.loads(done.stdout)
+    chain = Chain(urdf, found["base"], found["tip"])
+    home = np.array([_home(joint) for joint in found["joints"]])
+    dynamics = ArmDynamics(urdf, chain, np.array(found["gravity_m_per_s2"]))
+    weight = dynamics.gravity_torque(home[None])[0]
+    accelerated = np.tile(home, (len(home), 1))
+    M = dynamics.torque(accelerated, np.zeros_like(accelerated), np.eye(len(home))) - weight
+    facts = zip(found["joints"], weight, np.diag(M), strict=True)
+    return ArmFacts(
+        urdf,
+        found["base"],
+        found["tip"],
+        found["moving_mass_kg"],
+        home,
+        chain.jacobian(home),
+        [_joint(joint, abs(g), inertia) for joint, g, inertia in facts],
+    )
+
+
+def _joint(found: dict[str, Any], gravity: float, inertia: float) -> JointFacts:
+    return JointFacts(
+        found["name"],
+        found["type"],
+        _number(found["position_min"], -inf),
+        _number(found["position_max"], inf),
+        _number(found["velocity_limit"], inf),
+        _number(found["torque_limit_Nm"], inf),
+        gravity,
+        max(gravity, found["worst_gravity_Nm"]),
+        inertia,
+    )
+
+
+def _number(value: float | None, otherwise: float) -> float:
+    """JSON has no infinity."""
+    return otherwise if value is None else value
+
+
+def _home(found: dict[str, Any]) -> float:
+    """Zero, or as near to it as leaves a tenth of the travel to either end."""
+    low, high = _number(found["position_min"], -inf), _number(found["position_max"], inf)
+    if not np.isfinite(high - low):
+        return 0.0
+    margin = 0.1 * (high - low)
+    return round(float(np.clip(0.0, low + margin, high - margin)), 3)

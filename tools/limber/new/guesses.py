@@ -1,0 +1,145 @@
+"""Starting values for what a URDF does not tell: drives, limits where it has none, gains.
+
+They are made to give a soft, stable simulation, not to be right: each is marked in robot.yaml.
+"""
+
+from dataclasses import dataclass
+from math import isfinite, pi, sqrt
+
+import numpy as np
+
+from limber.new.facts import ArmFacts, JointFacts
+
+SOFT_rad_per_s = 2.0 * pi  # natural frequency of the joints on their springs
+RATIO = 0.7
+GRAVITY_IN_s = 0.12  # the weight's torque comes within half a second, steepest in the middle
+LEAST_RATE_per_s = 1000.0  # N m/s or N/s; without a key of robot.yaml the gate allows no more
+SPARE = 2.0  # torque, as a multiple of what the weight needs
+GEAR = {"damiao": 10.0, "moteus": 9.0, "cia402": 100.0}
+ROTOR_kgm2_per_Nm = 4e-4  # reflected rotor inertia per peak torque; that of common geared drives
+PEAK_A = 30.0  # current at peak torque
+WINDING_ohm = 0.3
+MIT_POSITION_rad, MIT_KP, MIT_KD = 12.5, 500.0, 5.0  # as Damiao drives are delivered
+
+
+def three(value: float) -> float:
+    """Three significant digits."""
+    return float(f"{value:.3g}")
+
+
+def number(value: float) -> str:
+    """As every YAML reader takes it: 4.0e-05, as 4e-05 is text to some."""
+    text = f"{value:.6g}"
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text
+
+
+@dataclass(frozen=True)
+class JointGuess:
+    """`ignores`: the URDF's limits are placeholders or too low; these count instead."""
+
+    facts: JointFacts
+    motor: str
+    low: float
+    high: float
+    velocity: float
+    torque: float
+    ignores: bool
+    K_q: float
+    D_null: float
+    hold_kp: float
+    hold_kd: float
+
+    @property
+    def torque_rate(self) -> float | None:
+        """If carrying a heavy arm needs more than the default."""
+        needed = three(self.facts.gravity / GRAVITY_IN_s)
+        return needed if needed > LEAST_RATE_per_s else None
+
+
+@dataclass(frozen=True)
+class MotorGuess:
+    """Of all joints with the same torque and velocity. Torque at the joint, the rest before the
+    gear; `kp`, `kd`: the largest holding gains of its joints.
+    """
+
+    name: str
+    slides: bool
+    peak: float
+    velocity: float
+    gear: float
+    rotor: float
+    constant: float
+    kp: float
+    kd: float
+
+
+@dataclass(frozen=True)
+class Guesses:
+    joints: list[JointGuess]
+    motors: list[MotorGuess]
+    K_x: float
+    K_rotation: float
+
+
+def guess(arm: ArmFacts, drives: str) -> Guesses:
+    names: dict[tuple[bool, float, float], str] = {}
+    joints = [_joint(facts, drives, names) for facts in arm.joints]
+    motors = [
+        _motor(name, key, drives, [joint for joint in joints if joint.motor == name])
+        for key, name in names.items()
+    ]
+    K_x = three(float(np.clip(10.0 * arm.mass_kg, 5.0, 1000.0)))
+    return Guesses(joints, motors, K_x, three(0.05 * K_x) if len(joints) >= 6 else 0.0)
+
+
+def _joint(
+    facts: JointFacts, drives: str, names: dict[tuple[bool, float, float], str]
+) -> JointGuess:
+    weak = facts.effort < 1.2 * facts.gravity_home
+    needed = three(max(SPARE * facts.gravity, 20.0 * facts.inertia, 0.5))
+    torque = facts.effort if isfinite(facts.effort) and not weak else needed
+    velocity = facts.velocity if isfinite(facts.velocity) else (0.3 if facts.slides else 2.0)
+    turns = facts.kind == "continuous"
+    low, high = facts.low, facts.high
+    if not turns and not isfinite(high - low):
+        low, high = (-0.2, 0.2) if facts.slides else (-3.0, 3.0)
+    if drives == "damiao" and not facts.slides:  # whose frames carry no more
+        most = 2.0 * pi if turns else MIT_POSITION_rad
+        low, high = max(low, -three(most)), min(high, three(most))
+    inertia = facts.inertia + ROTOR_kgm2_per_Nm * torque
+    K_q = three(min(SOFT_rad_per_s**2 * inertia, 1e4))
+    kp = three(min(4.0 * K_q, MIT_KP if drives == "damiao" else 5000.0))
+    kd = three(min(2.0 * RATIO * sqrt(kp * inertia), MIT_KD if drives == "damiao" else 500.0))
+    key = (facts.slides, torque, velocity)
+    limits = (facts.effort, facts.velocity) if turns else (facts.effort, facts.velocity, facts.high)
+    return JointGuess(
+        facts,
+        names.setdefault(key, f"motor_{len(names) + 1}"),
+        low,
+        high,
+        velocity,
+        torque,
+        weak or not all(isfinite(limit) for limit in limits),
+        K_q,
+        three(0.6 * sqrt(K_q * inertia)),
+        kp,
+        kd,
+    )
+
+
+def _motor(
+    name: str, key: tuple[bool, float, float], drives: str, joints: list[JointGuess]
+) -> MotorGuess:
+    slides, peak, velocity = key
+    gear = GEAR[drives]
+    return MotorGuess(
+        name,
+        slides,
+        peak,
+        velocity,
+        gear,
+        three(ROTOR_kgm2_per_Nm * peak / gear**2),
+        three(peak / (PEAK_A * gear)),
+        max(joint.hold_kp for joint in joints),
+        max(joint.hold_kd for joint in joints),
+    )

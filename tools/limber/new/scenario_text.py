@@ -1,0 +1,58 @@
+"""A first scenario: hold, joint impedance, one small push."""
+
+import numpy as np
+
+from limber.new.facts import ArmFacts
+from limber.new.guesses import Guesses, number, three
+
+DEFLECTION_m = 0.02
+TORQUE_SHARE = 0.2  # of each joint's torque, for the push
+
+TEXT = """\
+# First steps of {name}, in simulation: the arm is held, gets soft at its joints, is pushed once at
+# the tip and returns. `limber lab {file}` measures how far it gives way.
+format: limber-scenario/1
+name: {stem}
+description: hold, joint impedance, one small push
+robot: {folder}
+mode: lockstep
+duration_s: 9
+seed: 1
+friction: false # nobody has measured it
+integrator: reference # for any inertia; the default, ode, is faster and wants those of real bodies
+measure: {{stiffness: 0.1}} # relative tolerance
+
+timeline:
+  - {{at_s: 0.3, mode: hold}}
+  - {{at_s: 0.5, gains: {{law: joint_pd, ramp_s: 0.2}}}} # K_q of robot.yaml
+  - {{at_s: 0.8, mode: active}}
+  # about {deflection:.2g} m, in the direction in which the tip gives way most
+  - {{at_s: 2.0, push: {{force_N: [{force}], ramp_s: 0.5, for_s: 4}}}}
+"""
+
+
+def text(name: str, folder: str, file: str, arm: ArmFacts, guesses: Guesses) -> str:
+    force, deflection = _push(arm, guesses)
+    return TEXT.format(
+        name=name,
+        stem=file.removesuffix(".yaml"),
+        folder=folder,
+        file=file,
+        deflection=deflection,
+        force=", ".join(number(three(x)) for x in force),
+    )
+
+
+def _push(arm: ArmFacts, guesses: Guesses) -> tuple[np.ndarray, float]:
+    """Force in base axes, and how far the tip moves: C = J K_q⁻¹ Jᵀ."""
+    J = arm.jacobian[:3]
+    C = (J / np.array([joint.K_q for joint in guesses.joints])) @ J.T
+    compliance, axes = np.linalg.eigh(C)
+    direction = np.where(np.abs(axes[:, -1]) < 1e-3, 0.0, axes[:, -1])
+    direction /= np.linalg.norm(direction)
+    most = min(
+        TORQUE_SHARE * joint.torque / max(abs(torque), 1e-9)
+        for joint, torque in zip(guesses.joints, J.T @ direction, strict=True)
+    )
+    force = min(DEFLECTION_m / compliance[-1], most)
+    return force * direction, float(force * compliance[-1])
