@@ -33,7 +33,7 @@ def watch(
 ) -> None:
     """Show mode, joints, tip, stiffness, faults and channel rates of the running arm live."""
     from limber.live import watch as module
-    from limber.live.gains_table import law_names
+    from limber.model.gains_table import law_names
     from limber.live.network import require_multicast
 
     require_multicast()

@@ -41,7 +41,7 @@ def bus_words(buses: list[str] | None) -> list[str]:
 
 def names_of(robot: str | None) -> "Names":
     """Of the laws, and of a robot's joints; None: they are numbered."""
-    from limber.live.gains_table import law_names
+    from limber.model.gains_table import law_names
     from limber.log.events import Names
     from limber.model.robot import load_robot
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from limber.dev.written_table import WrittenTable
-from limber.live.gains_table import listing
+from limber.model.gains_table import listing
 from limber.paths import ROOT
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
-from limber.live.gains_table import law_names
+from limber.model.gains_table import law_names
 from limber.messages import bit_names, constants
 from limber.problems import problem, problems_of_bits, sentence
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from limber.errors import InputError
-from limber.live.gains_table import law_names, listing
+from limber.model.gains_table import law_names, listing
 from limber.live.values import number, numbers, one_of
 from limber.messages import message_class
 

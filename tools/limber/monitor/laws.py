@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from limber.live.gains_table import listing
+from limber.model.gains_table import listing
 
 
 @dataclass(frozen=True)

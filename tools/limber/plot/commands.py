@@ -7,7 +7,7 @@ from rich.console import Console
 
 from limber import messages
 from limber.errors import InputError
-from limber.live.gains_table import law_names
+from limber.model.gains_table import law_names
 from limber.log.reader import Log
 from limber.model.robot import load_robot
 from limber.paths import output_folder
