@@ -5,7 +5,7 @@ The logs are made from statics: the tip is where the spring K_true lets the push
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
+from scipy.optimize import fsolve, linprog
 from scipy.spatial.transform import Rotation
 
 from conftest import RATE_HZ, records, write_log
@@ -13,6 +13,7 @@ from limber.log.reader import Log
 from limber.measure import statics
 from limber.measure.pushes import measure_pushes, stiffness_matrix
 from limber.measure.summarize import measure
+from limber.model.robot import SpringPair, load_robot
 
 HOME = np.array([0.3, 0.3, 0.0, 1.4, 0.0, 0.0, 0.0])
 AXES = {
@@ -247,6 +248,39 @@ def test_response_solves_the_balance_of_torques(law):
     np.testing.assert_allclose(G @ (J.T @ F + torque), J @ dq, rtol=1e-8)
     if law == statics.CARTESIAN:
         np.testing.assert_allclose(G @ J.T, np.linalg.inv(K_x), rtol=1e-7, atol=1e-12)
+
+
+def test_springs_of_two_rods_under_a_wish_alike_in_x_and_y():
+    """Jᵀ k J of a planar arm has k |p|² and k l₂² on its diagonal; its springs bound it."""
+    q1, q2, a1, a2, k = 0.5, 1.0, 0.5, 0.4, 400.0
+    p = np.array([a1 * np.cos(q1) + a2 * np.cos(q1 + q2), a1 * np.sin(q1) + a2 * np.sin(q1 + q2)])
+    elbow = a2 * np.array([np.cos(q1 + q2), np.sin(q1 + q2)])
+    J = np.zeros((6, 2))
+    J[:2] = np.column_stack([[-p[1], p[0]], [-elbow[1], elbow[0]]])
+    K_x = np.diag([k, k, k, 0, 0, 0])
+    pairs = [SpringPair(400.0, 0.75)] * 2
+    free = statics.springs_fitted(J, K_x, np.zeros(2), pairs)
+    np.testing.assert_allclose(free, [k * p @ p, k * a2**2], rtol=1e-12)
+    loaded = statics.springs_fitted(J, 0.01 * K_x, np.array([-8.0, 2.0]), pairs)
+    np.testing.assert_allclose(loaded, [80.0, 40.0], rtol=1e-12)  # sqrt(2 * 400 * 8), of 2
+    np.testing.assert_allclose(statics.springs_fitted(J, 9 * K_x, np.zeros(2), pairs)[0], 600.0)
+
+
+def test_springs_response_solves_the_balance_with_the_weight():
+    """Springs σ whose motors stand still, under the weight: rests found by solving for q."""
+    robot = load_robot("antagonist2r")
+    sigma, q_0, F = np.array([250.0, 70.0]), np.array([0.5, 1.0]), np.array([0.2, 0.1, 0, 0, 0, 0])
+    weight = robot.dynamics.gravity_torque
+
+    def out_of_balance(q):
+        push = robot.chain.jacobian(q).T @ F
+        return sigma * (q - q_0) + weight(q[None])[0] - weight(q_0[None])[0] - push
+
+    q_1 = fsolve(out_of_balance, q_0, xtol=1e-12)
+    moved = robot.chain.forward(q_1)[:2, 3] - robot.chain.forward(q_0)[:2, 3]
+    J = robot.chain.jacobian((q_0 + q_1) / 2)
+    G = statics.springs_response(J, sigma, robot.dynamics.gravity_slope((q_0 + q_1) / 2))
+    np.testing.assert_allclose((G @ J.T @ F)[:2], moved, rtol=2e-3)
 
 
 WALL = """friction: false

@@ -33,8 +33,8 @@ def watch(
 ) -> None:
     """Show mode, joints, tip, stiffness, faults and channel rates of the running arm live."""
     from limber.live import watch as module
-    from limber.model.gains_table import law_names
     from limber.live.network import require_multicast
+    from limber.model.gains_table import law_names
 
     require_multicast()
     module.watch(law_names(), once, console)

@@ -41,8 +41,8 @@ def bus_words(buses: list[str] | None) -> list[str]:
 
 def names_of(robot: str | None) -> "Names":
     """Of the laws, and of a robot's joints; None: they are numbered."""
-    from limber.model.gains_table import law_names
     from limber.log.events import Names
+    from limber.model.gains_table import law_names
     from limber.model.robot import load_robot
 
     return Names([] if robot is None else load_robot(robot).joint_names, law_names())

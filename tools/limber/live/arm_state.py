@@ -6,8 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
-from limber.model.gains_table import law_names
 from limber.messages import bit_names, constants
+from limber.model.gains_table import law_names
 from limber.problems import problem, problems_of_bits, sentence
 
 

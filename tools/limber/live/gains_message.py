@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from limber.errors import InputError
-from limber.model.gains_table import law_names, listing
 from limber.live.values import number, numbers, one_of
 from limber.messages import message_class
+from limber.model.gains_table import law_names, listing
 
 _BLOCKS = {"K_x_translation_N_per_m": 0, "K_x_rotation_Nm_per_rad": 3}
 

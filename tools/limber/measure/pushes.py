@@ -28,6 +28,7 @@ class MeasuredPush:
     friction_bound: float  # most of the push that joint friction can hold at a rest, N or N m
     friction_took: float  # what it did hold, by the simulator's friction torques
     offset_after_m: float  # how far from where it was the tip came to rest after the release
+    wished: float | None = None  # requested of springs, which come as near as they can
 
     @property
     def span(self) -> tuple[float, float]:
@@ -118,8 +119,9 @@ def _measure(
         return None
     gains = scenario.gains_at(push.at_s)
     n = len(scenario.robot.joints)
-    J = scenario.robot.chain.jacobian(rests.mean(truth, "q"))
-    G = statics.tip_response(gains.law, J, gains.K_x, gains.K_q)
+    q = {when: rests.mean(truth, "q", when)[:n] for when in ("before", "during")}
+    J = scenario.robot.chain.jacobian(q["during"])
+    G = _response(scenario, push, q)
     direction = _direction(push.wrench)
     if G is None or not direction @ G @ J.T @ direction > 0:
         return None
@@ -141,7 +143,22 @@ def _measure(
         bound,
         took,
         _offset_after(truth, rests, scenario),
+        float(direction @ gains.K_x @ direction) if gains.law == statics.SPRINGS else None,
     )
+
+
+def _response(scenario: Scenario, push: Push, q: dict[str, np.ndarray]) -> np.ndarray | None:
+    """G of the law at the push, 6xn. Springs are fitted where the arm was before it."""
+    robot, gains = scenario.robot, scenario.gains_at(push.at_s)
+    J = robot.chain.jacobian(q["during"])
+    if gains.law != statics.SPRINGS:
+        return statics.tip_response(gains.law, J, gains.K_x, gains.K_q)
+    pairs = [joint.pair for joint in robot.joints if joint.pair is not None]
+    if scenario.friction or len(pairs) < len(robot.joints):
+        return None  # what friction in the motors holds back is not predicted here
+    weight = robot.dynamics.gravity_torque(q["before"][None])[0]
+    sigma = statics.springs_fitted(robot.chain.jacobian(q["before"]), gains.K_x, weight, pairs)
+    return statics.springs_response(J, sigma, robot.dynamics.gravity_slope(q["during"]))
 
 
 def _direction(wrench: np.ndarray) -> np.ndarray:
@@ -188,6 +205,8 @@ def _results_of(measured: MeasuredPush, tolerance: float) -> list[Result]:
     unit, force_unit = ("N m/rad", "N m") if measured.angular else ("N/m", "N")
     name = f"stiffness {measured.axis}"
     note = f"{measured.force:.3g} {force_unit} at {measured.push.at_s:g} s"
+    if measured.wished is not None:
+        note += f"; requested {measured.wished:.4g}, as near as the springs come"
     allowed = tolerance * measured.expected
     if measured.friction_bound == 0.0:
         return [close_to(name, measured.stiffness, unit, measured.expected, allowed, note)]

@@ -6,12 +6,18 @@ At rest the law's torque, the push F and all other joint torque τ (friction, nu
 so the tip moves by Δx = G (Jᵀ F + τ) with G = J (Jᵀ K_x J)⁺ or G = J K_q⁻¹, and its compliance is
 C = G Jᵀ. For six or more joints under Cartesian impedance that is K_x⁻¹.
 (Salisbury, "Active stiffness control of a manipulator in Cartesian coordinates", 1980.)
+
+Two motors a joint (variable_stiffness): the springs σ are the law, the motors stand still, and the
+weight g changes as the joints bend:      (diag σ + ∂g/∂q) Δq = Jᵀ F + τ
 """
 
 import numpy as np
 
+from limber.model.robot import SpringPair
+
 CARTESIAN = "cartesian_impedance"
 JOINT = "joint_pd"
+SPRINGS = "variable_stiffness"
 
 
 def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> np.ndarray | None:
@@ -21,6 +27,23 @@ def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> n
     if law == CARTESIAN:
         return J @ np.linalg.pinv(J.T @ K_x @ J, rcond=1e-9, hermitian=True)
     return None
+
+
+def springs_fitted(
+    J: np.ndarray, K_x: np.ndarray, weight: np.ndarray, pairs: list[SpringPair]
+) -> np.ndarray:
+    """σ, N m/rad: the diagonal nearest to Jᵀ K_x J that two quadratic springs a joint can give.
+
+    Both springs pull while σ² >= 2 k2 |τ| for the torque τ that the joint carries, here its weight.
+    """
+    k2 = np.array([pair.k2_Nm_per_rad2 for pair in pairs])
+    most = 2.0 * k2 * np.array([pair.preload_max_rad for pair in pairs])
+    return np.clip(np.diag(J.T @ K_x @ J), np.sqrt(2.0 * k2 * np.abs(weight)), most)
+
+
+def springs_response(J: np.ndarray, sigma: np.ndarray, weight_slope: np.ndarray) -> np.ndarray:
+    """G, 6xn, of springs σ in the joints; `weight_slope` is ∂g/∂q, N m/rad."""
+    return J @ np.linalg.inv(np.diag(sigma) + weight_slope)
 
 
 def stiffness_along(C: np.ndarray, direction: np.ndarray) -> float:

@@ -16,6 +16,8 @@ from scipy.spatial.transform import Rotation
 from limber.model.bodies import Body, bodies
 from limber.model.urdf import MOVING, Chain
 
+STEP_RAD = 1e-5
+
 
 @dataclass(frozen=True)
 class Frames:
@@ -47,6 +49,12 @@ class ArmDynamics:
     def gravity_torque(self, q: np.ndarray) -> np.ndarray:
         zero = np.zeros_like(q)
         return self.torque(q, zero, zero)
+
+    def gravity_slope(self, q: np.ndarray) -> np.ndarray:
+        """∂g/∂q of one posture, n x n, N m/rad, by central differences."""
+        steps = STEP_RAD * np.eye(len(q))
+        change = self.gravity_torque(q + steps) - self.gravity_torque(q - steps)
+        return change.T / (2 * STEP_RAD)
 
     def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""

@@ -17,6 +17,14 @@ EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
 
 
 @dataclass(frozen=True)
+class SpringPair:
+    """Two motors that pull a joint through quadratic springs: stiffness 2 k2 c at preload c."""
+
+    k2_Nm_per_rad2: float
+    preload_max_rad: float
+
+
+@dataclass(frozen=True)
 class JointInfo:
     """Position limits and the friction that holds it at rest: rad and N m, or m and N."""
 
@@ -24,6 +32,7 @@ class JointInfo:
     low: float
     high: float
     friction: float
+    pair: SpringPair | None = None
 
 
 @dataclass(frozen=True)
@@ -119,7 +128,15 @@ def _joint(name: str, content: dict[str, Any], limits: tuple[float, float]) -> J
             _either(friction, "coulomb_Nm", "coulomb_N", otherwise=0.0),
             _either(friction, "static_Nm", "static_N", otherwise=0.0),
         ),
+        _pair(content.get("transmission") or {}),
     )
+
+
+def _pair(transmission: dict[str, Any]) -> SpringPair | None:
+    spring = transmission.get("spring") or {}
+    if transmission.get("kind") != "antagonistic" or spring.get("law") != "quadratic":
+        return None
+    return SpringPair(float(spring["k2_Nm_per_rad2"]), float(transmission["preload_max_rad"]))
 
 
 def _either(mapping: dict[str, Any], *keys: str, otherwise: float) -> float:

@@ -7,8 +7,8 @@ from rich.console import Console
 
 from limber import messages
 from limber.errors import InputError
-from limber.model.gains_table import law_names
 from limber.log.reader import Log
+from limber.model.gains_table import law_names
 from limber.model.robot import load_robot
 from limber.paths import output_folder
 from limber.plot import charts, page
