@@ -84,8 +84,8 @@ def test_limits_pushes_and_contacts_are_one_line_each_with_their_length(tmp_path
         (0.5, "limit.TORQUE for 0.02 s"),
         (0.5, "limit.SPRING for 0.02 s"),
     ]
-    assert (0.2, "world", "push for 0.499 s, up to 9 N and 0 N m") in found
-    assert (0.8, "world", "contact for 0.099 s, up to 12 N and 0 N m") in found
+    assert (0.2, "world", "push for 0.499 s, up to 9 N") in found
+    assert (0.8, "world", "contact for 0.099 s, up to 12 N") in found
 
 
 def test_buses_stops_sensors_and_the_gate(tmp_path):

@@ -33,7 +33,7 @@ def test_the_curves_are_those_of_the_messages():
     assert list(position.chart.series) == ["a", "b"]
     _, curves = position.bins[10.0].curves()
     assert (curves[0].min(), curves[0].max()) == (0, 2999)
-    step = keeper.kept["timing and buses"]["time from state to state"]
+    step = keeper.kept["timing"]["time from state to state"]
     _, curves = step.bins[10.0].curves()
     assert np.allclose(curves[0][2:], 1.0), "no false step where two batches meet"
 
@@ -68,7 +68,7 @@ def test_the_panel_draws_what_is_chosen(served):
     assert drawn.data[0].min() >= -10.0 and drawn.data[0].max() <= 0.0
     assert drawn.data[1].max() == 1999
     assert all(len(column) == len(drawn.data[0]) for column in drawn.data)
-    panel.topic.value = "timing and buses"
+    panel.topic.value = "timing"
     panel.draw()
     assert "joint position" not in panel.handles
     assert "time from state to state" in panel.handles

@@ -12,7 +12,10 @@ from conftest import records, write_log
 from limber import messages
 from limber.log.reader import Log
 from limber.plot import charts, page, png
+from limber.plot.chart import Chart
 from limber.plot.commands import plot
+from limber.plot.drawing import Drawing
+from limber.plot.marks import Mark, Span
 
 COUNT = 400
 
@@ -54,7 +57,7 @@ def test_charts_hold_the_logs_numbers(log):
     assert away.unit == "mm"
     torque = charts.build(log, "torque")[4]
     np.testing.assert_allclose(drawn(torque, "gravity"), 2.5)
-    counted = next(c for c in charts.build(log, "timing") if c.title.startswith("counted"))
+    counted = next(c for c in charts.build(log, "timing") if c.title.startswith("late,"))
     np.testing.assert_array_equal(drawn(counted, "late cycles"), [0, 1, 1, 3])
 
 
@@ -97,14 +100,16 @@ def test_contact_only_where_there_is_a_source(log, tmp_path):
 @pytest.mark.parametrize("topic", [t for t in charts.TOPICS if t != "spring"])
 def test_every_axis_has_name_and_unit(log, topic):
     built = charts.build(log, topic)
-    fig = png.figure(built, "title")
-    assert len(fig.axes) == len(built) >= 4
+    fig = png.figure(topic, Drawing("title", {topic: built}))
+    assert len(fig.axes) == len(built) >= 3
     for ax, chart in zip(fig.axes, built, strict=True):
         label = ax.get_ylabel().replace("\n", " ")
         assert label == f"{chart.title} ({chart.unit})"
         assert chart.unit
-        assert [text.get_text() for text in ax.get_legend().get_texts()] == list(chart.series)
-    assert fig.axes[-1].get_xlabel() == "arm time (s)"
+        assert {text.get_text() for text in ax.get_legend().get_texts()} == set(chart.series)
+    assert fig.axes[-1].get_xlabel() == built[-1].x
+    over_time = [ax for ax, chart in zip(fig.axes, built, strict=True) if chart.over_time]
+    assert over_time[-1].get_xlabel() == "arm time (s)"
 
 
 def test_files(log, tmp_path):
@@ -118,11 +123,11 @@ def test_files(log, tmp_path):
 
 
 def data_of(page: str) -> dict:
-    return json.loads(re.search(r"const topics = (\{.*\});\n", page)[1])
+    return json.loads(re.search(r"const data = (\{.*\});\n", page)[1])["run"]
 
 
 def test_page_needs_nothing_from_outside(log):
-    html = page.page({"joint": charts.build(log, "joint")}, "a <title>")
+    html = page.page(Drawing("a <title>", {"joint": charts.build(log, "joint")}))
     assert not re.search(r"(src|href)\s*=|url\(|@import|fetch\(|XMLHttp", html)
     assert "a &lt;title&gt;" in html
     assert "Permission is hereby granted" in html, "the licence of the drawing code goes with it"
@@ -131,7 +136,7 @@ def test_page_needs_nothing_from_outside(log):
 
 def test_page_holds_the_numbers(log):
     built = charts.build(log, "joint")
-    chart = data_of(page.page({"joint": built}, "t"))["joint"][0]
+    chart = data_of(page.page(Drawing("t", {"joint": built})))["topics"]["joint"][0]
     values = np.frombuffer(base64.b64decode(chart["series"][2]["values"]), "<f4")
     np.testing.assert_allclose(values, np.sin(np.arange(COUNT) * 0.05), atol=1e-6)
     times = np.frombuffer(base64.b64decode(chart["t"]), "<f4")
@@ -143,7 +148,7 @@ def test_thinning_keeps_every_spike():
     values = np.zeros(count)
     spikes = [0, 12345, 333_333, count - 1]
     values[spikes] = [5, -7, 9, 11]
-    chart = charts.Chart("x", "N", np.arange(count) * 1e-3, {"x": values})
+    chart = Chart("x", "N", np.arange(count) * 1e-3, {"x": values})
     thin = page.thinned(chart)
     assert len(thin.t_s) <= page.MAX_POINTS
     assert {5, -7, 9, 11} <= set(thin.series["x"])
@@ -178,8 +183,8 @@ def test_lock_step_has_no_charts_of_time(log, tmp_path):
     channels = {"JOINT_STATE": log.read("JOINT_STATE"), "DRIVER_STATUS": driver}
     channels = {name: as_written(rows, name) for name, rows in channels.items()}
     quiet = Log(write_log(tmp_path / "run.lcmlog", channels))
-    titles = {chart.title for chart in charts.build(quiet, "timing")}
-    assert titles == {"counted so far", "bus load"}
+    assert charts.build(quiet, "timing") == []
+    assert {"counted so far", "bus load"} <= {c.title for c in charts.build(quiet, "bus")}
     assert "lateness of the cycle, so far" in {c.title for c in charts.build(log, "timing")}
 
 
@@ -204,3 +209,61 @@ def test_torque_of_a_push_is_drawn(tmp_path):
     built = charts.build(Log(write_log(tmp_path / "run.lcmlog", channels)), "cartesian")
     torque = next(chart for chart in built if "torque of pushes" in chart.title)
     assert torque.unit == "N m" and drawn(torque, "y push").max() == 0.5
+
+
+def test_stacked_terms_end_where_their_sum_is():
+    terms = {"a": np.array([1.0, 2, -1]), "b": np.array([3.0, -1, -2])}
+    chart = Chart("torque", "N m", np.arange(3.0), terms, stacked={"a", "b"})
+    edges = {name: (low, high) for name, low, high in chart.areas()}
+    np.testing.assert_allclose(edges["a"], [[0, 0, 0], [1, 2, -1]])
+    np.testing.assert_allclose(edges["b"], [[1, 0, -1], [4, -1, -3]], err_msg="each sign apart")
+
+
+def lines_at(ax) -> list[float]:
+    """Where vertical lines are drawn."""
+    return [line.get_xdata()[0] for line in ax.lines if len(set(line.get_xdata())) == 1]
+
+
+def test_events_and_faults_are_marked_on_every_time_axis(log):
+    built = charts.build(log, "cartesian")
+    told = [Mark(1, 0.1, "gains: taken", False), Mark(2, 0.3, "gate.STEP: refused", True)]
+    drawing = Drawing("run", {"overview": built}, told, [Span(0.0, 0.05, False)])
+    fig = png.figure("overview", drawing)
+    for ax in fig.axes[: len(built)]:
+        assert lines_at(ax) == [0.1, 0.3]
+    words = [text.get_text() for text in fig.axes[-1].texts]
+    assert any("gains: taken" in line for line in words)
+    assert any("0.300 s  gate.STEP: refused" in line for line in words)
+    data = data_of(page.page(drawing))
+    assert [mark["bad"] for mark in data["marks"]] == [False, True]
+
+
+def test_verdict_names_what_failed(log):
+    good, bad = {"name": "faults", "pass": True}, {"name": "stiffness +x", "pass": False}
+    told = {"name": "cycles", "pass": None}
+    assert Drawing("", {}, results=[good, told]).verdict == "all 1 checks passed"
+    failed = Drawing("", {}, results=[good, bad, told])
+    assert failed.verdict == "failed: stiffness +x (1 of 2 checks)"
+    assert Drawing("", {}, results=[]).verdict == "", "a log alone is not judged"
+
+
+def test_another_run_is_drawn_dotted_in_the_same_axes(log):
+    chart = Chart("tip", "mm", np.arange(3.0), {"x": np.ones(3), "x goal": np.ones(3)}, {"x goal"})
+    slower = Chart("tip", "mm", np.arange(5.0), {"x": 2 * np.ones(5), "x goal": np.ones(5)})
+    one, two = (Drawing(n, {"joint": [c]}) for n, c in (("one", chart), ("two", slower)))
+    fig = png.figure("joint", one, two)
+    dotted = [line for line in fig.axes[0].lines if line.get_linestyle() == ":"]
+    assert [list(line.get_ydata()) for line in dotted] == [[2.0] * 5]
+    assert dotted[0].get_color() == fig.axes[0].lines[0].get_color()
+    assert "dotted: two" in fig.get_suptitle()
+
+
+def test_tail_is_the_share_of_cycles_that_take_longer():
+    step_ms, cycle_ns = np.ones(1000), np.full(1000, 5_000)
+    step_ms[:10] = 1.5  # one in a hundred 500 us late
+    (tail,) = charts._tail(step_ms, cycle_ns)
+    late = np.asarray(tail.series["state later than its period"])
+    np.testing.assert_allclose(late[tail.t_s < 499], 0.01)
+    assert np.isnan(late[tail.t_s >= 501]).all(), "nothing is that late"
+    own = np.asarray(tail.series["controller's own time"])
+    assert (own[tail.t_s < 4.9] == 1.0).all() and np.isnan(own[tail.t_s > 5.1]).all()

@@ -76,11 +76,16 @@ def plot(
     path: LogPath,
     what: Annotated[
         list[str] | None,
-        typer.Option(help="joint, cartesian, torque, spring or timing; default: all available."),
+        typer.Option(
+            help="overview, joint, cartesian, torque, spring, timing or bus; default: all."
+        ),
     ] = None,
     out: Out = None,
+    compare: Annotated[
+        Path | None, typer.Option(help="Another log, or folder of a run, drawn dotted beside it.")
+    ] = None,
 ) -> None:
     """Draw a log: one PNG a topic, and one interactive page that works offline."""
     from limber.plot import commands
 
-    commands.plot(path, what or [], out, console)
+    commands.plot(path, what or [], out, console, compare)

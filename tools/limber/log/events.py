@@ -212,4 +212,5 @@ def _contacts(truth: np.ndarray) -> Iterator[Event]:
 
 def _most(wrench: np.ndarray) -> str:
     force, moment = (np.linalg.norm(part, axis=1).max() for part in (wrench[:, :3], wrench[:, 3:]))
-    return f"up to {force:.3g} N and {moment:.3g} N m"
+    parts = [f"{force:.3g} N"] * bool(force) + [f"{moment:.3g} N m"] * bool(moment)
+    return f"up to {' and '.join(parts)}"

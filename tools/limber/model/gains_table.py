@@ -8,6 +8,9 @@ from typing import Any
 from limber.errors import RunError
 from limber.paths import program
 
+MAPPED = ("salisbury", "congruence_stiffness", "mapped_joint_impedance", "variable_stiffness")
+"""Laws with a goal for joints whose stiffness is K_x."""
+
 
 @cache
 def listing(robot: str | None = None) -> dict[str, Any]:
@@ -24,3 +27,9 @@ def listing(robot: str | None = None) -> dict[str, Any]:
 def law_names() -> list[str]:
     """In the order of their numbers in CONTROLLER_STATUS."""
     return [law["name"] for law in listing()["laws"]]
+
+
+def acts_at_joints(law: str) -> bool:
+    """Whether K_q is the law's stiffness, instead of K_x."""
+    found = next((entry for entry in listing()["laws"] if entry["name"] == law), None)
+    return found is not None and "joints" in found["goal"] and law not in MAPPED

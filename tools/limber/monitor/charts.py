@@ -9,8 +9,8 @@ from viser import uplot
 
 from limber.monitor.bins import Bins
 from limber.monitor.feed import Batch
+from limber.plot.chart import Chart
 from limber.plot.charts import TOPICS as CHARTS
-from limber.plot.charts import Chart
 
 BINS = 200
 HISTORY_S = 60.0
@@ -21,7 +21,8 @@ TOPICS = {
     "tip": "cartesian",
     "torque": "torque",
     "springs": "spring",
-    "timing and buses": "timing",
+    "timing": "timing",
+    "buses": "bus",
 }
 # Eight colours that stay apart for colour-blind readers (Okabe and Ito, 2008), without the yellow
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444", "#8B4513")
@@ -52,7 +53,7 @@ class Keeper:
             if what == "timing" and not len(joined.read("DRIVER_STATUS")):
                 continue  # it tells whether there is a clock
             for chart in CHARTS[what](joined, self._names):
-                if len(chart.t_s) > 1 and chart.series:
+                if chart.over_time and len(chart.t_s) > 1 and chart.series:
                     self._add(self.kept[topic], chart)
 
     def _with_tails(self, batch: Batch) -> Batch:

@@ -1,55 +1,39 @@
 """What a log's charts show: both the PNG and the interactive page are drawn from this."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from limber import messages
 from limber.log.reader import Log, time_s
+from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.rotations import rotation_error
+from limber.plot.chart import Chart
 
 AXES = ("x", "y", "z")
+OVERVIEW = (
+    "tip away from its goal",
+    "tip behind the springs away from its goal",
+    "force of walls and pushes on the arm",
+    "torque of pushes on the arm",
+)
+SPRINGS_FROM_RAD = 1e-4
+TERMS = ("stiffness", "damping", "null", "gravity", "coriolis", "friction")
 QUANTILES = {"p50": "median", "p99": "99 %", "p999": "99.9 %", "max": "greatest"}
-
-
-@dataclass
-class Chart:
-    """Lines over time. `t_s` is arm time; every series has one value for each of its entries."""
-
-    title: str
-    unit: str
-    t_s: np.ndarray
-    series: dict[str, np.ndarray] = field(default_factory=dict)
-    dashed: set[str] = field(default_factory=set)
-
-    def since(self, begin_s: float) -> "Chart":
-        kept = self.t_s >= begin_s
-        series = {name: values[kept] for name, values in self.series.items()}
-        return replace(self, t_s=self.t_s[kept], series=series)
-
-    def color_numbers(self) -> list[int]:
-        """One for each series; "q desired" has the colour of the "q" before it."""
-        numbers: list[int] = []
-        before = None
-        for name in self.series:
-            paired = before is not None and name.startswith(f"{before} ")
-            numbers.append(numbers[-1] if paired else max(numbers, default=-1) + 1)
-            before = name
-        return numbers
 
 
 def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Chart]:
     """Charts of a topic from the first answer of all drives on, leaving out what the log does not
     hold: none if it holds nothing of it.
     """
-    begin_s = _begin_s(log.read("JOINT_STATE"))
-    charts = [chart.since(begin_s) for chart in TOPICS[what](log, joint_names or [])]
+    begin = begin_s(log)
+    charts = [chart.since(begin) for chart in TOPICS[what](log, joint_names or [])]
     return [chart for chart in charts if len(chart.t_s) > 1 and chart.series]
 
 
-def _begin_s(state: np.ndarray) -> float:
+def begin_s(log: Log) -> float:
     """When every drive has answered for the first time: before, positions are zeros."""
+    state = log.read("JOINT_STATE")
     fresh = messages.message_class("joint_state_t").JOINT_FRESH
     answered = ((state["joint_flags"][:, : _joint_count(state)] & fresh) != 0).all(axis=1)
     return float(time_s(state)[np.argmax(answered)]) if answered.any() else -np.inf
@@ -79,6 +63,28 @@ def _joint_charts(log: Log, names: list[str]) -> list[Chart]:
     return [Chart(title, unit, t, _columns(state[key], labels)) for key, title, unit in fields]
 
 
+def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
+    """What was asked for, what came of it, and what acted on the arm."""
+    status = log.read("CONTROLLER_STATUS")
+    t, n = time_s(status), _joint_count(status)
+    moved = [chart for chart in _cartesian_charts(log, names) if chart.title in OVERVIEW]
+    K_x, K_q = np.diagonal(status["K_x"], axis1=1, axis2=2)[:, :3], status["K_q"][:, :n]
+    laws = law_names()
+    ran = np.unique(status["law"][_active(status)])
+    at_joints = {acts_at_joints(laws[law]) for law in ran if 0 <= law < len(laws)}
+    stiffness = []
+    if False in at_joints and K_x.any():
+        stiffness.append(Chart("K_x in effect", "N/m", t, _columns(K_x, list(AXES))))
+    if True in at_joints and K_q.any():
+        stiffness.append(Chart("K_q in effect", "N m/rad", t, _columns(K_q, _labels(n, names))))
+    sent = _columns(status["tau_sent"], _labels(n, names))
+    return [*moved, *stiffness, Chart("torque sent to the joints", "N m", t, sent)]
+
+
+def _active(status: np.ndarray) -> np.ndarray:
+    return status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE
+
+
 def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
     status, truth = log.read("CONTROLLER_STATUS"), log.read("SIM_TRUTH")
     t = time_s(status)
@@ -94,6 +100,7 @@ def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
         Chart("tip away from its goal", "mm", t, _columns(away_mm, list(AXES))),
         Chart("tip turned from its goal", "rad", t, _columns(turned, list(AXES))),
     ]
+    charts += _link_charts(status, truth)
     if len(truth) and np.any(truth["F_push"][:, 3:]):
         torque = _columns(truth["F_push"][:, 3:], [f"{axis} push" for axis in AXES])
         charts.append(Chart("torque of pushes on the arm", "N m", time_s(truth), torque))
@@ -108,6 +115,20 @@ def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
     return [*charts, Chart("energy", "J", t, energy)]
 
 
+def _link_charts(status: np.ndarray, truth: np.ndarray) -> list[Chart]:
+    """Where joints have springs, the tip is not where the motors are: the simulator knows it."""
+    n = _joint_count(truth)
+    bend = np.abs(truth["theta"][:, :n] - truth["q"][:, :n]).max(initial=0.0)
+    if bend < SPRINGS_FROM_RAD or not len(status):
+        return []
+    t = time_s(truth)
+    goal = np.column_stack([np.interp(t, time_s(status), g) for g in status["p_BD"].T])
+    away_mm = (truth["p_BT"] - goal) * 1e3
+    return [
+        Chart("tip behind the springs away from its goal", "mm", t, _columns(away_mm, list(AXES)))
+    ]
+
+
 def _contact_charts(status: np.ndarray) -> list[Chart]:
     t, F_ext, axes = time_s(status), status["F_ext"], list(AXES)
     return [
@@ -117,16 +138,19 @@ def _contact_charts(status: np.ndarray) -> list[Chart]:
 
 
 def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
-    """The terms of every joint's torque; one chart a joint. Contact, if it has a source."""
+    """The terms of every joint's torque on top of each other; one chart a joint. Contact, if it has
+    a source.
+    """
     status = log.read("CONTROLLER_STATUS")
-    terms = ["stiffness", "damping", "null", "gravity", "coriolis", "friction", "sent"]
+    lines = ["sent"]
     charts = []
     if status["contact"].any():
-        terms.append("ext")
+        lines.append("ext")
         charts = _contact_charts(status)
     for i, label in enumerate(_labels(_joint_count(status), names)):
-        series = {term: status[f"tau_{term}"][:, i] for term in terms}
-        charts.append(Chart(f"torque of {label}", "N m", time_s(status), series))
+        series = {term: status[f"tau_{term}"][:, i] for term in (*TERMS, *lines)}
+        title = f"torque of {label}"
+        charts.append(Chart(title, "N m", time_s(status), series, stacked=set(TERMS)))
     return charts
 
 
@@ -158,47 +182,78 @@ def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
 
 
 def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
+    """Nothing in lock step: without a clock nothing is early or late."""
     status, driver = log.read("CONTROLLER_STATUS"), log.read("DRIVER_STATUS")
     state = log.read("JOINT_STATE")
     t = time_s(driver)
+    if len(driver) and driver[-1]["lockstep"]:
+        return []
 
     def quantiles(of: str, *names: str) -> dict[str, np.ndarray]:
         return {QUANTILES[name]: driver[f"{of}_{name}_ns"] * 1e-3 for name in names}
 
-    counts = {
-        "late cycles": driver["late_cycles"],
-        "overruns": driver["overrun_cycles"],
-        "cycles without answer": driver["commands_missing"],
-        "commands refused": driver["commands_refused"][:, 1:].sum(axis=1),
-        "replies lost": driver["replies_lost"].sum(axis=1),
-    }
-    buses = int(driver["num_buses"].max(initial=0))
-    load = {f"bus {i + 1}": driver["bus_load_counted"][:, i] * 100 for i in range(buses)}
-    counted = [Chart("counted so far", "cycles", t, counts), Chart("bus load", "%", t, load)]
-    if len(driver) and driver[-1]["lockstep"]:  # no clock: nothing is early or late
-        return counted
     loop = {"controller cycle": status["cycle_ns"] * 1e-3}
     step = np.diff(state["time_ns"], prepend=state["time_ns"][:1]) * 1e-6
+    counts = {"late cycles": driver["late_cycles"], "overruns": driver["overrun_cycles"]}
     return [
         Chart("time from state to state", "ms", time_s(state), {"step": step}),
         Chart("lateness of the cycle, so far", "µs", t, quantiles("lateness", *QUANTILES)),
         Chart("state to torque, so far", "µs", t, quantiles("answer", "p50", "p99", "max")),
         Chart("controller's own time", "µs", time_s(status), loop),
-        *counted,
+        Chart("late, counted so far", "cycles", t, counts),
+        *_tail(step[1:], status["cycle_ns"]),
+    ]
+
+
+def _tail(step_ms: np.ndarray, cycle_ns: np.ndarray) -> list[Chart]:
+    """How seldom a cycle takes longer than x: the tail that averages hide."""
+    if len(step_ms) < 2 or len(cycle_ns) < 2:
+        return []
+    late_us = np.maximum(step_ms - np.median(step_ms), 0.0) * 1e3
+    x = np.geomspace(1.0, max(late_us.max(), cycle_ns.max() * 1e-3, 10.0), 200)
+    seldom = {
+        "state later than its period": np.array([(late_us > value).mean() for value in x]),
+        "controller's own time": np.array([(cycle_ns * 1e-3 > value).mean() for value in x]),
+    }
+    shown = {n: np.where(share > 0, share, np.nan) for n, share in seldom.items() if share.any()}
+    if not shown:
+        return []
+    return [Chart("share of cycles that take longer", "1", x, shown, x="time (µs)", log=True)]
+
+
+def _bus_charts(log: Log, _names: list[str]) -> list[Chart]:
+    driver = log.read("DRIVER_STATUS")
+    t, n = time_s(driver), _joint_count(driver)
+    buses = [f"bus {i + 1}" for i in range(int(driver["num_buses"].max(initial=0)))]
+    counts = {
+        "cycles without answer": driver["commands_missing"],
+        "commands refused": driver["commands_refused"][:, 1:].sum(axis=1),
+        "replies lost": driver["replies_lost"][:, :n].sum(axis=1),
+        "replies late": driver["replies_late"][:, :n].sum(axis=1),
+    }
+    load = _columns(driver["bus_load_counted"] * 100, buses)
+    return [
+        Chart("bus load", "%", t, load),
+        Chart("counted so far", "cycles", t, counts),
+        Chart("error frames so far", "frames", t, _columns(driver["error_frames"], buses)),
     ]
 
 
 SOURCES = {
+    "overview": ("CONTROLLER_STATUS", "SIM_TRUTH"),
     "joint": ("JOINT_STATE",),
     "cartesian": ("CONTROLLER_STATUS", "SIM_TRUTH"),
     "torque": ("CONTROLLER_STATUS",),
     "spring": ("JOINT_STATE of arms with link encoders, torque sensors or two motors a joint",),
-    "timing": ("JOINT_STATE", "DRIVER_STATUS", "CONTROLLER_STATUS"),
+    "timing": ("JOINT_STATE, DRIVER_STATUS and CONTROLLER_STATUS of a run that had a clock",),
+    "bus": ("DRIVER_STATUS",),
 }
 TOPICS: dict[str, Callable[[Log, list[str]], list[Chart]]] = {
+    "overview": _overview_charts,
     "joint": _joint_charts,
     "cartesian": _cartesian_charts,
     "torque": _torque_charts,
     "spring": _spring_charts,
     "timing": _timing_charts,
+    "bus": _bus_charts,
 }

@@ -1,4 +1,4 @@
-"""Charts as one HTML page that needs nothing else, to zoom and read values in.
+"""A drawing as one HTML page that needs nothing else, to zoom and read values in.
 
 The drawing is uPlot's (MIT, assets/uPlot.LICENSE); the numbers are in the page as base64 float32.
 """
@@ -6,12 +6,15 @@ The drawing is uPlot's (MIT, assets/uPlot.LICENSE); the numbers are in the page 
 import base64
 import html
 import json
+from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from limber.paths import ASSETS
-from limber.plot.charts import Chart
+from limber.plot.chart import Chart
+from limber.plot.drawing import Drawing
 from limber.plot.style import COLORS
 
 MAX_POINTS = 60_000
@@ -28,24 +31,28 @@ def thinned(chart: Chart) -> Chart:
     for name, values in chart.series.items():
         ends = (np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts))
         series[name] = np.column_stack(ends).ravel()
-    return Chart(chart.title, chart.unit, t, series, chart.dashed)
+    return replace(chart, t_s=t, series=series)
 
 
 def _base64(values: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(values, "<f4").tobytes()).decode("ascii")
 
 
-def _as_dict(chart: Chart) -> dict:
+def _as_dict(chart: Chart) -> dict[str, Any]:
     chart = thinned(chart)
     return {
         "title": chart.title,
         "unit": chart.unit,
+        "x": chart.x,
+        "over_time": chart.over_time,
+        "log": chart.log,
         "t": _base64(chart.t_s),
         "series": [
             {
                 "name": name,
                 "color": COLORS[number % len(COLORS)],
                 "dashed": name in chart.dashed,
+                "stacked": name in chart.stacked,
                 "values": _base64(values),
             }
             for (name, values), number in zip(
@@ -55,15 +62,29 @@ def _as_dict(chart: Chart) -> dict:
     }
 
 
-def page(topics: dict[str, list[Chart]], title: str) -> str:
-    data = {topic: [_as_dict(chart) for chart in charts] for topic, charts in topics.items()}
+def _data(drawing: Drawing) -> dict[str, Any]:
+    """JSON has no infinity and no NaN: `results` are read from JSON that had none."""
+    return {
+        "title": drawing.title,
+        "verdict": drawing.verdict,
+        "results": drawing.results,
+        "marks": [asdict(mark) for mark in drawing.marks],
+        "spans": [asdict(span) for span in drawing.spans],
+        "topics": {
+            topic: [_as_dict(c) for c in charts] for topic, charts in drawing.topics.items()
+        },
+    }
+
+
+def page(drawing: Drawing, other: Drawing | None = None) -> str:
+    data = {"run": _data(drawing), "other": _data(other) if other else None}
     parts = {
-        "TITLE": html.escape(title),
+        "TITLE": html.escape(drawing.title),
         "UPLOT_CSS": (ASSETS / "uPlot.min.css").read_text(encoding="utf-8"),
         "UPLOT_JS": (ASSETS / "uPlot.iife.min.js").read_text(encoding="utf-8"),
         "UPLOT_LICENSE": (ASSETS / "uPlot.LICENSE").read_text(encoding="utf-8"),
         # "</" would end the script element early
-        "DATA": json.dumps(data).replace("</", "<\\/"),
+        "DATA": json.dumps(data, allow_nan=False).replace("</", "<\\/"),
     }
     text = (ASSETS / "plot.html").read_text(encoding="utf-8")
     for key, value in parts.items():
@@ -71,5 +92,5 @@ def page(topics: dict[str, list[Chart]], title: str) -> str:
     return text
 
 
-def save(topics: dict[str, list[Chart]], title: str, path: Path) -> None:
-    path.write_text(page(topics, title), encoding="utf-8")
+def save(drawing: Drawing, path: Path, other: Drawing | None = None) -> None:
+    path.write_text(page(drawing, other), encoding="utf-8")

@@ -1,0 +1,57 @@
+"""One chart: lines over arm time, or another x."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+ARM_TIME = "arm time (s)"
+
+
+@dataclass
+class Chart:
+    """Lines over `t_s`, arm time; every series has one value for each of its entries.
+
+    `stacked`: these are drawn as areas on top of each other, negative values below zero; the others
+    as lines. `x`: what `t_s` is if it is not arm time. `log`: logarithmic y.
+    """
+
+    title: str
+    unit: str
+    t_s: np.ndarray
+    series: dict[str, np.ndarray] = field(default_factory=dict)
+    dashed: set[str] = field(default_factory=set)
+    stacked: set[str] = field(default_factory=set)
+    x: str = ARM_TIME
+    log: bool = False
+
+    @property
+    def over_time(self) -> bool:
+        return self.x == ARM_TIME
+
+    def since(self, begin_s: float) -> "Chart":
+        if not self.over_time:
+            return self
+        kept = self.t_s >= begin_s
+        series = {name: values[kept] for name, values in self.series.items()}
+        return replace(self, t_s=self.t_s[kept], series=series)
+
+    def color_numbers(self) -> list[int]:
+        """One for each series; "q desired" has the colour of the "q" before it."""
+        numbers: list[int] = []
+        before = None
+        for name in self.series:
+            paired = before is not None and name.startswith(f"{before} ")
+            numbers.append(numbers[-1] if paired else max(numbers, default=-1) + 1)
+            before = name
+        return numbers
+
+    def areas(self) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+        """Name, lower and upper edge of each stacked series; positive and negative values apart."""
+        above, below = np.zeros(len(self.t_s)), np.zeros(len(self.t_s))
+        for name, values in self.series.items():
+            if name not in self.stacked:
+                continue
+            base = np.where(values >= 0, above, below)
+            yield name, base, base + values
+            above, below = above + np.maximum(values, 0), below + np.minimum(values, 0)

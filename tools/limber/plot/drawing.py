@@ -1,0 +1,96 @@
+"""All that is drawn of one run."""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from limber import messages
+from limber.errors import InputError
+from limber.log.events import Names
+from limber.log.reader import Log
+from limber.model.gains_table import acts_at_joints, law_names
+from limber.model.robot import load_robot
+from limber.plot import charts
+from limber.plot.chart import Chart
+from limber.plot.marks import Mark, Span, marks, spans
+
+
+@dataclass
+class Drawing:
+    """`title`: the run, and of which arm, law and stiffness it is. `results`: of its summary.json,
+    empty beside a log that has none.
+    """
+
+    title: str
+    topics: dict[str, list[Chart]]
+    marks: list[Mark] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+    results: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def verdict(self) -> str:
+        judged = [result for result in self.results if result.get("pass") is not None]
+        failed = [result["name"] for result in judged if not result["pass"]]
+        if failed:
+            return f"failed: {', '.join(failed)} ({len(failed)} of {len(judged)} checks)"
+        return f"all {len(judged)} checks passed" if judged else ""
+
+
+def drawing(path: Path, topics: list[str]) -> Drawing:
+    """`topics`: empty for all that the log has something of."""
+    log = Log(path)
+    folder = log.path.parent
+    names = Names(_joint_names(folder), law_names())
+    built = {topic: charts.build(log, topic, names.joints) for topic in topics or charts.TOPICS}
+    if topics or not any(built.values()):
+        _refuse_empty(built, log)
+    built = {topic: drawn for topic, drawn in built.items() if drawn}
+    begin_s = charts.begin_s(log)
+    return Drawing(_title(log), built, marks(log, names, begin_s), spans(log), _results(folder))
+
+
+def _refuse_empty(built: dict[str, list[Chart]], log: Log) -> None:
+    for topic, drawn in built.items():
+        if not drawn:
+            source = ", ".join(charts.SOURCES[topic])
+            there = ", ".join(sorted(log.channels))
+            raise InputError(f"--what {topic} is drawn from {source}; {log.path} holds {there}")
+
+
+def _title(log: Log) -> str:
+    name = f"{log.path.parent.name}/{log.path.name}" if log.path.parent.name else log.path.name
+    return " · ".join([name, *_subject(log)])
+
+
+def _subject(log: Log) -> list[str]:
+    infos, status = log.decode("ROBOT_INFO"), log.read("CONTROLLER_STATUS")
+    facts = [info.robot for info in infos[:1]]
+    active = status[status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE]
+    if not len(active):
+        return facts
+    last, laws = active[-1], law_names()
+    law = laws[int(last["law"])] if 0 <= last["law"] < len(laws) else ""
+    K_x, K_q = np.diag(last["K_x"]), last["K_q"][: int(last["num_joints"])]
+    parts = ((K_x[:3], "N/m"), (K_x[3:], "N m/rad"))
+    for part, unit in ((K_q, "N m/rad"),) if acts_at_joints(law) else parts:
+        if part.any():
+            values = part[:1] if np.ptp(part) == 0 else part
+            facts.append("/".join(f"{value:.4g}" for value in values) + f" {unit}")
+    return [*facts[:1], law, *facts[1:]] if law else facts
+
+
+def _joint_names(folder: Path) -> list[str]:
+    """From the copy of the robot that a run leaves beside its log; none beside other logs."""
+    if not (folder / "robot.yaml").is_file():
+        return []
+    return load_robot(str(folder.resolve())).joint_names
+
+
+def _results(folder: Path) -> list[dict[str, Any]]:
+    try:
+        return list(json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
