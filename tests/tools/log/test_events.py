@@ -112,3 +112,16 @@ def test_buses_stops_sensors_and_the_gate(tmp_path):
     assert (0.7, ["stop.PRESSED", "the emergency stop is pressed"]) in told
     assert [at for at, words in told if words[0] == "sensor.ERROR"] == [0.1]
     assert not [words for _, words in told if words[0].startswith("bus 1")]
+
+
+def test_the_end_that_somebody_wanted_is_no_fault(tmp_path):
+    """The drives go to DAMP by request, and the controller's FAULT follows from it."""
+    status = records("controller_status_t", 200, mode=Status.MODE_ACTIVE, reason_joint=-1)
+    status["time_ns"] = np.arange(200) * 5 * MS
+    status["mode"][100:], status["reason"][100:] = Status.MODE_FAULT, Status.REASON_DRIVER_FAULT
+    for fault, bad in ((State.FAULT_REQUESTED, False), (State.FAULT_POSITION, True)):
+        state = states(drive_state=State.DRIVE_ON)
+        state["drive_state"][500:], state["fault"][500:] = State.DRIVE_DAMP, fault
+        log = write_log(tmp_path / str(fault), {"JOINT_STATE": state, "CONTROLLER_STATUS": status})
+        found = [event for event in events(Log(log), NAMES) if "mode FAULT" in event.text]
+        assert [event.bad for event in found] == [bad]

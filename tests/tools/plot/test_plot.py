@@ -11,6 +11,7 @@ from rich.console import Console
 from conftest import records, write_log
 from limber import messages
 from limber.log.reader import Log
+from limber.messages import message_class
 from limber.plot import charts, page, png
 from limber.plot.chart import Chart
 from limber.plot.commands import plot
@@ -267,3 +268,17 @@ def test_tail_is_the_share_of_cycles_that_take_longer():
     assert np.isnan(late[tail.t_s >= 501]).all(), "nothing is that late"
     own = np.asarray(tail.series["controller's own time"])
     assert (own[tail.t_s < 4.9] == 1.0).all() and np.isnan(own[tail.t_s > 5.1]).all()
+
+
+def test_a_goal_is_not_taken_from_the_time_before_a_state_was_known(tmp_path):
+    """Behind springs: the arm is at rest at its goal, and the controller began with zeros."""
+    status_t = message_class("controller_status_t")
+    status = records("controller_status_t", COUNT, time_ns=np.arange(COUNT) * 1_000_000)
+    status["mode"][:50], status["mode"][50:] = status_t.MODE_INIT, status_t.MODE_HOLD
+    status["p_BD"][50:, 0] = 0.7
+    truth = records("sim_truth_t", COUNT, num_joints=2, time_ns=np.arange(COUNT) * 1_000_000)
+    truth["p_BT"][:, 0], truth["theta"][:, 0] = 0.701, 0.02
+    path = write_log(tmp_path / "log", {"CONTROLLER_STATUS": status, "SIM_TRUTH": truth})
+    built = charts.build(Log(path), "cartesian")
+    behind = next(chart for chart in built if "behind the springs" in chart.title)
+    np.testing.assert_allclose(drawn(behind, "x"), 1.0, atol=1e-9)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.log.reader import Log, time_s
-from limber.messages import CLIENTS, constants
+from limber.messages import CLIENTS, constants, message_class
 from limber.problems import Problem, groups, problem
 
 PAUSE_S = 0.1  # what acts again within this time has acted all the time
@@ -44,7 +44,7 @@ def events(log: Log, names: Names) -> list[Event]:
         *_flags(state, names),
         *_buses(driver),
         *_refused_commands(driver),
-        *_modes(status, names),
+        *_modes(status, names, _requested_s(state)),
         *_laws(status, names),
         *_limits(status),
         *_pushes(truth),
@@ -162,7 +162,14 @@ def _refused_commands(driver: np.ndarray) -> Iterator[Event]:
                 yield Event(float(t[row]), "driver", text, bad=True)
 
 
-def _modes(status: np.ndarray, names: Names) -> Iterator[Event]:
+def _requested_s(state: np.ndarray) -> np.ndarray:
+    """When the drives hold or brake because somebody wanted it."""
+    requested = state["fault"] == message_class("joint_state_t").FAULT_REQUESTED
+    return time_s(state)[requested]
+
+
+def _modes(status: np.ndarray, names: Names, requested_s: np.ndarray) -> Iterator[Event]:
+    """A mode that follows what somebody wanted of the drives is no fault of the arm."""
     words = constants("controller_status_t", "MODE_")
     t, reason = time_s(status), 0
     for row in _changes(status, "mode", "reason"):
@@ -170,7 +177,9 @@ def _modes(status: np.ndarray, names: Names) -> Iterator[Event]:
         cause = problem("controller", now) if now != reason else None
         text = f"mode {words.get(int(status['mode'][row]), 'unknown')}"
         text += _because(cause, int(status["reason_joint"][row]), names)
-        bad = cause is not None and cause.code != "controller.STOP_REQUESTED"
+        wanted = np.any(np.abs(requested_s - t[row]) < PAUSE_S)
+        fine = ("controller.STOP_REQUESTED", "controller.DRIVER_FAULT" if wanted else "")
+        bad = cause is not None and cause.code not in fine
         yield Event(float(t[row]), "controller", text, bad)
         reason = now
 

@@ -13,7 +13,8 @@ class Chart:
     """Lines over `t_s`, arm time; every series has one value for each of its entries.
 
     `stacked`: these are drawn as areas on top of each other, negative values below zero; the others
-    as lines. `x`: what `t_s` is if it is not arm time. `log`: logarithmic y.
+    as lines. `x`: what `t_s` is if it is not arm time. `log`: logarithmic axes.
+    `zero`: the y axis begins at zero.
     """
 
     title: str
@@ -24,6 +25,7 @@ class Chart:
     stacked: set[str] = field(default_factory=set)
     x: str = ARM_TIME
     log: bool = False
+    zero: bool = False
 
     @property
     def over_time(self) -> bool:

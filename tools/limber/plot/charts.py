@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from limber import messages
 from limber.log.reader import Log, time_s
+from limber.messages import message_class
 from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.rotations import rotation_error
 from limber.plot.chart import Chart
@@ -18,6 +18,7 @@ OVERVIEW = (
     "torque of pushes on the arm",
 )
 SPRINGS_FROM_RAD = 1e-4
+SHORT = 0.1  # share of the run that a law is too short for to count
 TERMS = ("stiffness", "damping", "null", "gravity", "coriolis", "friction")
 QUANTILES = {"p50": "median", "p99": "99 %", "p999": "99.9 %", "max": "greatest"}
 
@@ -34,7 +35,7 @@ def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Cha
 def begin_s(log: Log) -> float:
     """When every drive has answered for the first time: before, positions are zeros."""
     state = log.read("JOINT_STATE")
-    fresh = messages.message_class("joint_state_t").JOINT_FRESH
+    fresh = message_class("joint_state_t").JOINT_FRESH
     answered = ((state["joint_flags"][:, : _joint_count(state)] & fresh) != 0).all(axis=1)
     return float(time_s(state)[np.argmax(answered)]) if answered.any() else -np.inf
 
@@ -70,19 +71,21 @@ def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
     moved = [chart for chart in _cartesian_charts(log, names) if chart.title in OVERVIEW]
     K_x, K_q = np.diagonal(status["K_x"], axis1=1, axis2=2)[:, :3], status["K_q"][:, :n]
     laws = law_names()
-    ran = np.unique(status["law"][_active(status)])
+    ran, cycles = np.unique(status["law"][_active(status)], return_counts=True)
+    ran = ran[cycles > SHORT * cycles.sum()]
     at_joints = {acts_at_joints(laws[law]) for law in ran if 0 <= law < len(laws)}
     stiffness = []
     if False in at_joints and K_x.any():
-        stiffness.append(Chart("K_x in effect", "N/m", t, _columns(K_x, list(AXES))))
+        stiffness.append(Chart("K_x in effect", "N/m", t, _columns(K_x, list(AXES)), zero=True))
     if True in at_joints and K_q.any():
-        stiffness.append(Chart("K_q in effect", "N m/rad", t, _columns(K_q, _labels(n, names))))
+        of_joints = _columns(K_q, _labels(n, names))
+        stiffness.append(Chart("K_q in effect", "N m/rad", t, of_joints, zero=True))
     sent = _columns(status["tau_sent"], _labels(n, names))
     return [*moved, *stiffness, Chart("torque sent to the joints", "N m", t, sent)]
 
 
 def _active(status: np.ndarray) -> np.ndarray:
-    return status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE
+    return status["mode"] == message_class("controller_status_t").MODE_ACTIVE
 
 
 def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
@@ -119,10 +122,12 @@ def _link_charts(status: np.ndarray, truth: np.ndarray) -> list[Chart]:
     """Where joints have springs, the tip is not where the motors are: the simulator knows it."""
     n = _joint_count(truth)
     bend = np.abs(truth["theta"][:, :n] - truth["q"][:, :n]).max(initial=0.0)
-    if bend < SPRINGS_FROM_RAD or not len(status):
+    known = status[status["mode"] > message_class("controller_status_t").MODE_INIT]
+    if bend < SPRINGS_FROM_RAD or not len(known):
         return []
+    truth = truth[time_s(truth) >= time_s(known)[0]]
     t = time_s(truth)
-    goal = np.column_stack([np.interp(t, time_s(status), g) for g in status["p_BD"].T])
+    goal = np.column_stack([np.interp(t, time_s(known), g) for g in known["p_BD"].T])
     away_mm = (truth["p_BT"] - goal) * 1e3
     return [
         Chart("tip behind the springs away from its goal", "mm", t, _columns(away_mm, list(AXES)))
@@ -157,7 +162,7 @@ def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
 def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
     """What springs between motor and link do; nothing for arms whose joints show no such sides."""
     state = log.read("JOINT_STATE")
-    flags = messages.message_class("joint_state_t")
+    flags = message_class("joint_state_t")
     t, labels = time_s(state), _labels(_joint_count(state), names)
 
     def those_with(flag: int) -> list[int]:

@@ -48,8 +48,8 @@ def drawing(path: Path, topics: list[str]) -> Drawing:
     if topics or not any(built.values()):
         _refuse_empty(built, log)
     built = {topic: drawn for topic, drawn in built.items() if drawn}
-    begin_s = charts.begin_s(log)
-    return Drawing(_title(log), built, marks(log, names, begin_s), spans(log), _results(folder))
+    marked = marks(log, names, charts.begin_s(log))
+    return Drawing(_title(log), built, marked, spans(log, marked), _results(folder))
 
 
 def _refuse_empty(built: dict[str, list[Chart]], log: Log) -> None:

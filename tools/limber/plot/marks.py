@@ -1,15 +1,17 @@
 """What is marked on the time axes of charts: the events of a run, and when no law ran."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from limber.log.events import Event, Names, events
 from limber.log.reader import Log, time_s
-from limber.messages import constants
+from limber.messages import message_class
 
 MARKED = ("mode", "goal", "gains", "push", "contact", "drives")
 SAME_S = 0.005
+BEFORE_S = 0.02  # a driver's fault comes before the controller's mode
 
 
 @dataclass(frozen=True)
@@ -48,18 +50,18 @@ def _worth(event: Event) -> bool:
     return event.text.startswith(MARKED)
 
 
-def spans(log: Log) -> list[Span]:
-    """Stretches in which the controller was not ACTIVE."""
+def spans(log: Log, marks: list[Mark]) -> list[Span]:
+    """Stretches in which the controller was not ACTIVE; bad if something went wrong in them."""
     status = log.read("CONTROLLER_STATUS")
-    words = {name: number for number, name in constants("controller_status_t", "MODE_").items()}
-    bad = (words["FAULT"], words["ESTOP"], words["SOFT_STOP"])
-    t, mode = time_s(status), status["mode"]
     if not len(status):
         return []
-    starts = [0, *(np.flatnonzero(np.diff(mode)) + 1)]
-    ends = [*starts[1:], len(status) - 1]
-    return [
-        Span(float(t[start]), float(t[end]), int(mode[start]) in bad)
-        for start, end in zip(starts, ends, strict=True)
-        if mode[start] != words["ACTIVE"]
-    ]
+    active = status["mode"] == message_class("controller_status_t").MODE_ACTIVE
+    t, changes = time_s(status), np.flatnonzero(np.diff(active)) + 1
+    edges = [0, *(int(row) for row in changes), len(status) - 1]
+    found = []
+    for start, end in pairwise(edges):
+        begin_s, end_s = float(t[start]), float(t[end])
+        bad = any(mark.bad and begin_s - BEFORE_S < mark.time_s < end_s for mark in marks)
+        if not active[start] and begin_s < end_s:
+            found.append(Span(begin_s, end_s, bad))
+    return found

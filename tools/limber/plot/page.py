@@ -46,6 +46,7 @@ def _as_dict(chart: Chart) -> dict[str, Any]:
         "x": chart.x,
         "over_time": chart.over_time,
         "log": chart.log,
+        "zero": chart.zero,
         "t": _base64(chart.t_s),
         "series": [
             {

@@ -74,6 +74,8 @@ def _draw(ax: plt.Axes, chart: Chart, other: Chart | None) -> None:
     if chart.log:
         ax.set_xscale("log")
         ax.set_yscale("log")
+    if chart.zero:
+        ax.set_ylim(bottom=0.0)
     ax.set_ylabel(_wrapped(chart), fontsize=8)
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     ax.margins(x=0)
@@ -112,7 +114,7 @@ def _listed(drawing: Drawing) -> list[tuple[str, bool]]:
     kept = sorted(drawing.marks, key=lambda mark: not mark.bad)[:LISTED]
     lines = []
     for mark in sorted(kept, key=lambda mark: mark.number):
-        text = textwrap.shorten(mark.text, 150, placeholder=" …")
+        text = textwrap.shorten(mark.text, 125, placeholder=" …")
         lines.append((f"{mark.number:>3}  {mark.time_s:8.3f} s  {text}", mark.bad))
     left_out = len(drawing.marks) - len(kept)
     if left_out:
