@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <limber/joint_state_t.hpp>
 
 #include "common/problem_text.h"
 
@@ -35,7 +36,7 @@ request_answer_t answer_to(const RequestOutcome& outcome, std::int64_t time_ns) 
   return answer;
 }
 
-void ControllerLog::note(const controller_status_t& status) {
+void ControllerLog::note(const controller_status_t& status, std::int8_t driver_fault) {
   if (status.mode == mode_ && status.reason == reason_) return;
   const bool caused = status.reason != controller_status_t::REASON_NONE && status.reason != reason_;
   const auto joint = static_cast<std::size_t>(status.reason_joint);
@@ -45,7 +46,9 @@ void ControllerLog::note(const controller_status_t& status) {
   const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
   if (!caused) return spdlog::info(mode);
   const Problem* problem = find_problem(problems::kController, reason_);
-  if (mode_ == controller_status_t::MODE_FAULT && problem != nullptr)
+  const bool wanted = reason_ == controller_status_t::REASON_DRIVER_FAULT &&
+                      driver_fault == joint_state_t::FAULT_REQUESTED;
+  if (mode_ == controller_status_t::MODE_FAULT && problem != nullptr && !wanted)
     keep(black_box_, problem->code);
   const std::string line = mode + ": " + problem_text(problems::kController, reason_, where, "");
   // Somebody knows of it already: who stopped the arm, or who reads what the driver told.

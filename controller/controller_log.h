@@ -23,8 +23,10 @@ class ControllerLog {
   explicit ControllerLog(std::vector<std::string> joints, BlackBox* black_box = nullptr)
       : joints_(std::move(joints)), black_box_(black_box) {}
 
-  /// A line if the mode, or the cause of its last change, is another one than before.
-  void note(const controller_status_t& status);
+  /// A line if the mode, or the cause of its last change, is another one than before. A fault keeps
+  /// the black box, unless somebody wanted the drives to stop.
+  /// `driver_fault`: joint_state_t FAULT_*, of the state that the status describes.
+  void note(const controller_status_t& status, std::int8_t driver_fault);
   /// A line if the request was refused.
   static void note(const request_answer_t& answer);
 

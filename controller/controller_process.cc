@@ -116,7 +116,7 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
     user_.publish(channels::kRobotInfo, controller_->robot_info());
   for (const RequestOutcome& outcome : controller_->timeline_outcomes())
     publish_answer(outcome, state.time_ns);
-  log_.note(controller_->status());
+  log_.note(controller_->status(), state.fault);
 }
 
 void ControllerProcess::publish_status() noexcept {
@@ -130,7 +130,7 @@ void ControllerProcess::check_silence() noexcept {
   last_state_ns_ = now_ns;
   controller_->on_silence();
   publish_status();
-  log_.note(controller_->status());
+  log_.note(controller_->status(), joint_state_t::FAULT_NONE);
 }
 
 template <typename Request>

@@ -26,7 +26,7 @@ class Told {
 
   void note(Lab& lab) {
     const joint_state_t& state = lab.state();
-    controller_.note(lab.controller_status());
+    controller_.note(lab.controller_status(), state.fault);
     for (const RequestOutcome& outcome : lab.controller().timeline_outcomes())
       ControllerLog::note(answer_to(outcome, state.time_ns));
     if (state.fault == fault_) return;

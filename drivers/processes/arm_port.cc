@@ -47,7 +47,7 @@ void ArmPort::publish_state(const joint_state_t& state) {
   answered_ = false;
   arm_plane_.publish(channels::kJointState, state);
   user_plane_->publish(channels::kJointState, state);
-  reporter_->note(state, driver_->fault_detail());
+  reporter_->note(state, driver_->fault_detail(), controller_fault_);
   for (int motor = 0; motor < driver_->motors(); ++motor)
     reporter_->note_warning(motor, driver_->warning(motor));
   log_configuration(state);
@@ -72,6 +72,7 @@ void ArmPort::on_command(const joint_command_t& command) {
   const bool foreign = verdict == driver_status_t::VERDICT_SIZE ||
                        verdict == driver_status_t::VERDICT_SESSION ||
                        verdict == driver_status_t::VERDICT_CONTROLLER;
+  if (!foreign) controller_fault_ = command.mode == controller_status_t::MODE_FAULT;
   if (!of_this_state || foreign || answered_) return;
   answered_ = true;
   if (!lockstep_) timing_.answers.add(monotonic_ns() - published_ns_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limber/controller_status_t.hpp>
 #include <limber/driver_status_t.hpp>
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
@@ -66,10 +67,11 @@ class ArmPort {
 
   const joint_state_t* published_ = nullptr;
   std::int64_t published_ns_ = 0;
-  bool answered_ = false;       ///< the state published last
-  bool wrong_ = false;          ///< the configuration, by the state published last
-  bool configuring_ = true;     ///< likewise
-  std::string problem_logged_;  ///< told once, however often it is acknowledged
+  bool answered_ = false;          ///< the state published last
+  bool controller_fault_ = false;  ///< the last command came from a controller in FAULT
+  bool wrong_ = false;             ///< the configuration, by the state published last
+  bool configuring_ = true;        ///< likewise
+  std::string problem_logged_;     ///< told once, however often it is acknowledged
   CycleTiming timing_;
   driver_status_t status_{};
 };

@@ -76,8 +76,8 @@ void StateReporter::report(std::uint64_t packed, int known_fault) const {
   const std::string text = fault_text_ ? fault_text_(fault, of_joint, detail) : "";
   spdlog::info(drives_text(state, fault, named ? joints_[joint] : "", text));
   const Problem* problem = find_problem(problems::kDriver, fault);
-  if (problem != nullptr && fault != joint_state_t::FAULT_REQUESTED && on_fault_)
-    on_fault_(problem->code);
+  const bool wanted = fault == joint_state_t::FAULT_REQUESTED && (packed & kByController) == 0;
+  if (problem != nullptr && !wanted && on_fault_) on_fault_(problem->code);
 }
 
 }  // namespace limber

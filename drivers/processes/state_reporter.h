@@ -34,7 +34,8 @@ class StateReporter {
   void set_warning_text(WarningText text) { warning_text_ = std::move(text); }
 
   /// Called from the thread when the drives have a new fault, with its code, such as
-  /// driver.VELOCITY; not for driver.REQUESTED. Set before the first note().
+  /// driver.VELOCITY; for driver.REQUESTED only if it was a controller with a fault of its own that
+  /// requested. Set before the first note().
   using OnFault = std::function<void(const char* code)>;
   void set_on_fault(OnFault call) { on_fault_ = std::move(call); }
 
@@ -42,17 +43,24 @@ class StateReporter {
   void note_warning(int motor, const DriveWarning& warning) noexcept {
     warnings_[static_cast<std::size_t>(motor)].store(warning, std::memory_order_release);
   }
-  /// `detail`: ArmDriver::fault_detail(). Allowed inside the cycle.
-  void note(const joint_state_t& state, std::uint16_t detail = 0) noexcept {
+  /// `detail`: ArmDriver::fault_detail(). `controller_fault`: the last command came from a
+  /// controller in FAULT. Allowed inside the cycle.
+  void note(const joint_state_t& state, std::uint16_t detail = 0,
+            bool controller_fault = false) noexcept {
     std::uint64_t packed = pack(state.drive_state, state.fault, state.fault_joint);
     if (state.sensor_state == joint_state_t::SENSOR_ERROR) packed |= kSensorError;
-    if (state.fault != last_fault_) fault_detail_ = detail;
+    if (state.fault != last_fault_) {
+      fault_detail_ = detail;
+      by_controller_ = controller_fault && state.fault == joint_state_t::FAULT_REQUESTED;
+    }
     last_fault_ = state.fault;
+    if (by_controller_) packed |= kByController;
     noted_.store(packed | std::uint64_t{fault_detail_} << 32U, std::memory_order_release);
   }
 
  private:
   static constexpr std::uint64_t kSensorError = 1U << 24U;
+  static constexpr std::uint64_t kByController = 1U << 25U;
   static std::uint32_t pack(std::int8_t state, std::int8_t fault, std::int8_t joint) noexcept {
     return static_cast<std::uint32_t>(static_cast<std::uint8_t>(state)) |
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(fault)) << 8 |
@@ -70,6 +78,7 @@ class StateReporter {
   WarningText warning_text_;
   std::array<std::atomic<DriveWarning>, kMaxMotors> warnings_{};
   std::int8_t last_fault_ = joint_state_t::FAULT_NONE;
+  bool by_controller_ = false;
   std::uint16_t fault_detail_ = 0;  ///< when the fault began
   std::atomic<std::uint64_t> noted_;
   std::jthread thread_;

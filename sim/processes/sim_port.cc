@@ -54,7 +54,11 @@ void SimPort::publish_truth() noexcept { user_.publish(channels::kSimTruth, simu
 
 void SimPort::set_black_box(BlackBox* box) {
   black_box_ = box;
+  if (box == nullptr) return;
   user_.set_black_box(box);
+  user_.subscribe<controller_status_t>(
+      channels::kControllerStatus, kUserQueue,
+      [this](const controller_status_t& status) { watch_faults(status); });
 }
 
 void SimPort::watch_faults(const joint_state_t& state) {
@@ -62,6 +66,15 @@ void SimPort::watch_faults(const joint_state_t& state) {
   fault_ = state.fault;
   const Problem* problem = find_problem(problems::kDriver, fault_);
   if (problem != nullptr && fault_ != joint_state_t::FAULT_REQUESTED)
+    keep(black_box_, problem->code);
+}
+
+void SimPort::watch_faults(const controller_status_t& status) {
+  if (status.mode == controller_mode_) return;
+  controller_mode_ = status.mode;
+  const Problem* problem = find_problem(problems::kController, status.reason);
+  const bool follows = status.reason == controller_status_t::REASON_DRIVER_FAULT;
+  if (problem != nullptr && !follows && status.mode == controller_status_t::MODE_FAULT)
     keep(black_box_, problem->code);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limber/controller_status_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <memory>
 #include <vector>
@@ -32,11 +33,12 @@ class SimPort {
   void wait(std::int64_t deadline_ns) noexcept { wait_readable(descriptors_, deadline_ns); }
   void handle_messages() noexcept { user_.handle_waiting(kMessagesAtOnce); }
   void publish_truth() noexcept;
-  /// Keeps what is published and heard from now on, as an incident when the driver has a fault.
-  /// Outlives this. Set-up only.
+  /// Keeps what is published and heard from now on, as an incident when driver or controller has a
+  /// fault. Outlives this. Set-up only.
   void set_black_box(BlackBox* box);
   /// Each state of the driver. Not for lock step.
   void watch_faults(const joint_state_t& state);
+  void watch_faults(const controller_status_t& status);
   /// To the log, at most once a second.
   void complain(const char* what);
 
@@ -51,6 +53,7 @@ class SimPort {
   std::int64_t complained_ns_ = 0;
   BlackBox* black_box_ = nullptr;
   int fault_ = joint_state_t::FAULT_NONE;
+  int controller_mode_ = controller_status_t::MODE_BOOT;
 };
 
 template <typename Handler>

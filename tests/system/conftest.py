@@ -31,9 +31,14 @@ def pytest_configure(config):
         )
 
 
-@pytest.fixture
-def stack(tmp_path, monkeypatch):
+@pytest.fixture(autouse=True)
+def own_incidents(tmp_path, monkeypatch):
+    """Neither in the user's folder, nor mixed with those of other runs."""
     monkeypatch.setenv("LIMBER_INCIDENTS", str(tmp_path / "incidents"))
+
+
+@pytest.fixture
+def stack(tmp_path):
     running = Stack(tmp_path)
     yield running
     running.close()

@@ -5,9 +5,10 @@ import time
 
 import numpy as np
 import pytest
+import yaml
 
+from limber.incident.black_box import incidents, read
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
-from limber.log.black_box import incidents, read
 from limber.log.reader import Log
 from stack import ROOT
 
@@ -50,3 +51,48 @@ def test_the_cycles_before_a_kill_are_kept(stack, tmp_path):
     assert np.all(np.diff(numbers[-len(kept) :]) == 1), "no cycle is missing"
     torques = Log(out).read("JOINT_TORQUE")
     assert len(torques) > RECORDED_s * 800
+
+
+FROZEN = """format: limber-scenario/1
+robot: openarm
+mode: realtime
+duration_s: {end_s}
+timeline:
+  - {{at_s: 0.3, mode: hold}}
+  - {{at_s: 0.8, mode: active}}
+  - {{at_s: 1.0, push: {{id: 1, force_N: [0, 8, 0], ramp_s: 0.3, for_s: 4}}}}
+  - {{at_s: 1.2, goal: {{offset_m: [0.06, 0, 0], duration_s: 2}}}}
+  - {{at_s: {fault_s}, fault: {{joint: joint4, kind: frozen_encoder}}}}
+"""
+
+
+def play(tmp_path, end_s: float, fault_s: float | None) -> subprocess.CompletedProcess:
+    scenario = tmp_path / "frozen.yaml"
+    text = FROZEN.format(end_s=end_s, fault_s=fault_s)
+    scenario.write_text(text if fault_s else text[: text.index("  - {at_s: None")])
+    command = [LIMBER, "run", str(scenario), "--out", str(tmp_path / "run"), "--no-record"]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
+def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
+    """The driver and the simulator saw nothing wrong themselves."""
+    play(tmp_path, 6.0, 1.5)
+    assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
+    out = tmp_path / "told"
+    done = subprocess.run(
+        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    assert "ENCODER_STOPPED" in done.stdout
+    assert (out / "overview.png").stat().st_size > 20_000
+    scenario = yaml.safe_load((out / "reproduce.yaml").read_text())
+    (fault,) = [entry["fault"] for entry in scenario["timeline"] if "fault" in entry]
+    assert fault == {"joint": "joint4", "kind": "frozen_encoder"}
+    (push,) = [entry["push"] for entry in scenario["timeline"] if "push" in entry]
+    assert push["force_N"] == pytest.approx([0, 8, 0], abs=0.1)
+
+
+def test_an_end_that_was_wanted_is_no_incident(tmp_path):
+    done = play(tmp_path, 1.3, None)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert incidents() == []

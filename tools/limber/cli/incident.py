@@ -1,15 +1,11 @@
 """Commands that read black boxes: `limber incident ...`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from limber.cli.options import Out, console, names_of
-from limber.errors import InputError
-
-if TYPE_CHECKING:
-    from limber.log.events import Names
+from limber.cli.options import Out, console
 
 app = typer.Typer(help="What the processes kept around a fault.", no_args_is_help=True)
 
@@ -17,9 +13,9 @@ app = typer.Typer(help="What the processes kept around a fault.", no_args_is_hel
 @app.command("list")
 def list_() -> None:
     """List the incidents that are kept, the oldest first."""
-    from limber.log import incidents
+    from limber.incident import commands
 
-    incidents.show_all(console)
+    commands.show_all(console)
 
 
 @app.command()
@@ -29,15 +25,23 @@ def show(
     ] = None,
     out: Out = None,
 ) -> None:
-    """Tell what happened, in order; write all processes' last seconds as one LCM log."""
-    from limber.log import incidents
+    """Report an incident: events in order, pictures, one log of all processes, and a scenario."""
+    from limber.incident import commands
 
-    incidents.show(box, out, _names_of, console)
+    commands.show(box, out, console)
 
 
-def _names_of(robot: str) -> "Names":
-    """The joints of an arm that is not found by its name are numbered."""
-    try:
-        return names_of(robot)
-    except InputError:
-        return names_of(None)
+@app.command()
+def reproduce(
+    log: Annotated[Path, typer.Argument(help="A log, or the folder of a run or an incident.")],
+    robot: Annotated[
+        str | None, typer.Option(help="Its robot; default: the one beside the log.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The scenario; default: reproduce.yaml beside the log.")
+    ] = None,
+) -> None:
+    """Write a scenario that does in simulation what a log shows, up to its first fault."""
+    from limber.incident import commands
+
+    commands.reproduce(log, robot, out, console)

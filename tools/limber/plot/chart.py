@@ -8,6 +8,14 @@ import numpy as np
 ARM_TIME = "arm time (s)"
 
 
+RESTART_S = 1.0
+
+
+def _back(t_s: np.ndarray) -> np.ndarray:
+    """Where time has gone back by more than what messages of several senders are apart."""
+    return np.maximum.accumulate(t_s) - t_s > RESTART_S
+
+
 @dataclass
 class Chart:
     """Lines over `t_s`, arm time; every series has one value for each of its entries.
@@ -32,9 +40,10 @@ class Chart:
         return self.x == ARM_TIME
 
     def since(self, begin_s: float) -> "Chart":
+        """From then on, until the driver starts again: then arm time begins anew."""
         if not self.over_time:
             return self
-        kept = self.t_s >= begin_s
+        kept = (self.t_s >= begin_s) & ~np.logical_or.accumulate(_back(self.t_s))
         series = {name: values[kept] for name, values in self.series.items()}
         return replace(self, t_s=self.t_s[kept], series=series)
 

@@ -7,8 +7,8 @@ import lcm
 import pytest
 
 from limber.errors import InputError
-from limber.log import black_box
-from limber.log.black_box import Record, incidents, read, together, write_log
+from limber.incident import black_box
+from limber.incident.black_box import Record, incidents, read, together, write_log
 
 EPOCH_us = 1_000_000_000
 

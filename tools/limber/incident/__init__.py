@@ -1,0 +1,1 @@
+"""Black boxes, and what is made of them."""
