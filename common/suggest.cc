@@ -1,7 +1,9 @@
 #include "common/suggest.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <string_view>
 
 namespace limber {
 namespace {
@@ -21,18 +23,36 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// home and home_rad: one lacks the unit that the other ends in.
-bool lacks_unit(const std::string& word, const std::string& candidate) {
-  constexpr std::size_t kShortest = 3;
-  if (std::min(word.size(), candidate.size()) < kShortest) return false;
-  return candidate.starts_with(word + "_") || word.starts_with(candidate + "_");
+bool is_unit(std::string_view suffix) {
+  constexpr std::array<std::string_view, 20> kParts = {
+      "N",  "m",    "s",  "rad", "Nm", "Nms", "Ns", "kg", "kgm2", "per",
+      "m2", "rad2", "s2", "A",   "V",  "W",   "J",  "Hz", "ohm",  "degC"};
+  while (!suffix.empty()) {
+    const std::string_view part = suffix.substr(0, suffix.find('_'));
+    if (std::ranges::find(kParts, part) == kParts.end()) return false;
+    suffix.remove_prefix(std::min(part.size() + 1, suffix.size()));
+  }
+  return true;
+}
+
+/// home and home_rad: the word lacks the unit that the candidate ends in.
+bool lacks_unit(std::string_view word, std::string_view candidate) {
+  return candidate.size() > word.size() + 1 && candidate.starts_with(word) &&
+         candidate[word.size()] == '_' && is_unit(candidate.substr(word.size() + 1));
 }
 
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   constexpr std::size_t kLongestWord = 64;
+  constexpr std::size_t kShortestPart = 3;
   if (word.size() > kLongestWord) return "";
+  const auto find = [&](auto fits) {
+    const auto found = std::ranges::find_if(known, fits);
+    return found == known.end() ? std::string() : *found;
+  };
+  const std::string with_unit = find([&](const auto& one) { return lacks_unit(word, one); });
+  if (!with_unit.empty()) return with_unit;
   std::string best;
   std::size_t fewest = word.size() / 3 + 1;  // more edits than this are another word
   for (const std::string& candidate : known) {
@@ -44,9 +64,16 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     }
   }
   if (!best.empty()) return best;
-  const auto longer = std::ranges::find_if(
-      known, [&](const std::string& candidate) { return lacks_unit(word, candidate); });
-  return longer == known.end() ? "" : *longer;
+  const std::string beginning = find([&](const std::string& one) {
+    return one.size() >= kShortestPart && word.starts_with(one + "_");
+  });
+  if (!beginning.empty()) return beginning;
+  // cartesian and cartesian_impedance: a whole part of one candidate alone
+  const auto holds = [&](const std::string& one) {
+    return word.size() > kShortestPart &&
+           ("_" + one + "_").find("_" + word + "_") != std::string::npos;
+  };
+  return std::ranges::count_if(known, holds) == 1 ? find(holds) : "";
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -96,6 +96,16 @@ class StrictHandler : public YAML::EventHandler {
   int documents_ = 0;
 };
 
+/// `number` counts from 0.
+bool tab_in_line(const std::string& text, int number) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i <= number; ++i) {
+    if (!std::getline(lines, line)) return false;
+  }
+  return line.find('\t') != std::string::npos;
+}
+
 }  // namespace
 
 void check_yaml_text(const std::string& text, const std::string& file) {
@@ -107,7 +117,10 @@ void check_yaml_text(const std::string& text, const std::string& file) {
     while (parser.HandleNextDocument(handler)) any = true;
     if (!any) throw ConfigError::at(file, 0, "", "the file is empty; expected a mapping");
   } catch (const YAML::Exception& error) {
-    throw ConfigError::at(file, error.mark.line + 1, "", "not valid YAML: " + error.msg);
+    const std::string tab = tab_in_line(text, error.mark.line)
+                                ? "; this line holds a tab, and YAML is indented by spaces"
+                                : "";
+    throw ConfigError::at(file, error.mark.line + 1, "", "not valid YAML: " + error.msg + tab);
   }
 }
 

@@ -35,11 +35,7 @@ fs::path find_robot(const std::string& name_or_path) {
   if (is_name && is_robot_folder(fs::path(robots_root()) / name_or_path))
     return fs::path(robots_root()) / name_or_path;
   if (!name_or_path.empty() && is_robot_folder(name_or_path)) return name_or_path;
-  const auto names = shipped_robots();
-  const std::string near = nearest_word(name_or_path, names);
-  throw ConfigError(fmt::format("no robot '{}'{}; expected a folder with robot.yaml, or one of: {}",
-                                name_or_path, near.empty() ? "" : "; did you mean '" + near + "'?",
-                                joined(names)));
+  throw ConfigError(no_robot_text(name_or_path));
 }
 
 LoadedRobot from_chain(UrdfChain parts, const std::string& path, const std::string& base,
@@ -114,6 +110,13 @@ LoadedRobot load_from(const YamlMap& yaml, const fs::path& folder) {
 }
 
 }  // namespace
+
+std::string no_robot_text(const std::string& name) {
+  const auto names = shipped_robots();
+  const std::string near = nearest_word(name, names);
+  return fmt::format("no robot '{}'{}; expected a folder with robot.yaml, or one of: {}", name,
+                     near.empty() ? "" : "; did you mean '" + near + "'?", joined(names));
+}
 
 LoadedRobot load_robot(const std::string& name_or_path) {
   const fs::path folder = find_robot(name_or_path);

@@ -105,8 +105,12 @@ std::string scenario_robot(const std::string& path, std::string* note) {
   if (robot.starts_with('/')) return robot;
   const fs::path beside = (fs::path(path).parent_path() / robot).lexically_normal();
   if (!is_name) return beside;
-  if (!is_robot_folder(beside)) return robot;
-  if (note != nullptr && is_robot_folder(fs::path(robots_root()) / robot)) {
+  const bool shipped = is_robot_folder(fs::path(robots_root()) / robot);
+  if (!is_robot_folder(beside)) {
+    if (!shipped && !is_robot_folder(robot)) yaml.refuse("robot", no_robot_text(robot));
+    return robot;
+  }
+  if (note != nullptr && shipped) {
     *note = fmt::format("{}:{}: robot: '{}' is the folder beside this file, not the shipped robot",
                         path, yaml.line_of("robot"), robot);
   }

@@ -135,6 +135,18 @@ TEST(Suggest, FindsSlipsAndNothingElse) {
             "K_x_translation_N_per_m");
   EXPECT_EQ(nearest_word("timeout_seconds_long", {"timeout"}), "timeout");
   EXPECT_EQ(nearest_word("timeouts_everywhere", {"timeout"}), "");
+  EXPECT_EQ(nearest_word("K_x_translation", {"K_x", "K_x_translation_N_per_m"}),
+            "K_x_translation_N_per_m")
+      << "a missing unit comes before a shorter key";
+  const std::vector<std::string> laws = {"joint_impedance", "cartesian_impedance"};
+  EXPECT_EQ(nearest_word("cartesian", laws), "cartesian_impedance");
+  EXPECT_EQ(nearest_word("impedance", laws), "") << "of two, neither is meant more";
+}
+
+TEST(YamlReader, TabsAreNamed) {
+  const auto read = [] { YamlMap::from_text("a:\n  b: 1\n\tc: 2\n", "tabs.yaml"); };
+  EXPECT_NE(testing::complaint_of(read).find("tabs.yaml:3: not valid YAML"), std::string::npos);
+  EXPECT_NE(testing::complaint_of(read).find("holds a tab"), std::string::npos);
 }
 
 }  // namespace

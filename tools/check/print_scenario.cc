@@ -84,7 +84,7 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
   const auto reports = make_stiffness_reports(scenario, robot);
   text += stiffness_text(reports, robot.robot.rate_hz);
   for (const auto& warnings :
-       {stiffness_warnings(reports, robot.robot.rate_hz), refused_requests(scenario, robot)}) {
+       {stiffness_warnings(reports, robot.robot.rate_hz), doubtful_requests(scenario, robot)}) {
     for (const std::string& warning : warnings) text += "  warning: " + warning + "\n";
   }
   return text;
@@ -113,7 +113,7 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
                        {"timeline", json::list(timeline)},
                        {"stiffness", stiffness_json(reports)},
                        {"warnings", json::texts(stiffness_warnings(reports, robot.robot.rate_hz))},
-                       {"refused", json::texts(refused_requests(scenario, robot))},
+                       {"refused", json::texts(doubtful_requests(scenario, robot))},
                        {"notes", json::texts(robot.notes)}}) +
          "\n";
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <variant>
 
 #include "common/problem_text.h"
@@ -77,20 +78,24 @@ std::vector<TimedMessage> before_faults(const std::vector<TimedMessage>& timelin
   return {timeline.begin(), fault};
 }
 
+constexpr std::array kKinds = {"mode", "goal", "gains"};
+
 std::string line(const RequestOutcome& outcome, std::int64_t time_ns) {
-  const char* const kinds[] = {"mode", "goal", "gains"};
+  const char* kind = kKinds[static_cast<std::size_t>(outcome.kind)];
+  const double time_s = static_cast<double>(time_ns) * 1e-9;
+  if (!outcome.refusal)
+    return fmt::format("{} at {:g} s: {}", kind, time_s, outcome.refusal.warning);
   const Problem* problem = find_problem(problems::kRequest, outcome.refusal.code);
   // The only check that depends on where the arm then is.
   const bool by_pose = outcome.refusal.code == request_answer_t::REFUSED_SPRINGS;
-  return fmt::format("{} at {:g} s {}: {}: {}", kinds[outcome.kind],
-                     static_cast<double>(time_ns) * 1e-9,
+  return fmt::format("{} at {:g} s {}: {}: {}", kind, time_s,
                      by_pose ? "would be refused in the start pose" : "will be refused",
                      problem == nullptr ? "" : problem->code, outcome.refusal.reason);
 }
 
 }  // namespace
 
-std::vector<std::string> refused_requests(const Scenario& scenario, const LoadedRobot& robot) {
+std::vector<std::string> doubtful_requests(const Scenario& scenario, const LoadedRobot& robot) {
   std::vector<std::string> lines;
   const std::vector<TimedMessage> timeline = before_faults(scenario.timeline);
   if (!robot.robot.has_drives || timeline.empty()) return lines;
@@ -105,7 +110,10 @@ std::vector<std::string> refused_requests(const Scenario& scenario, const Loaded
          controller.status().mode != controller_status_t::MODE_FAULT) {
     answer = &controller.step(arm.next(answer));
     for (const RequestOutcome& outcome : controller.timeline_outcomes()) {
-      if (!outcome.refusal) continue;
+      // Unstable gains are told by the report of the stiffness, as far as they are.
+      const bool warned =
+          outcome.refusal.warning != nullptr && outcome.kind == request_answer_t::KIND_GOAL;
+      if (!outcome.refusal && !warned) continue;
       const auto entry = static_cast<std::size_t>(outcome.seq - 1);  // numbered by the loader
       lines.push_back(line(outcome, timeline[entry].time_ns));
     }

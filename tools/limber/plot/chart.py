@@ -11,9 +11,11 @@ ARM_TIME = "arm time (s)"
 RESTART_S = 1.0
 
 
-def _back(t_s: np.ndarray) -> np.ndarray:
-    """Where time has gone back by more than what messages of several senders are apart."""
-    return np.maximum.accumulate(t_s) - t_s > RESTART_S
+def went_back(t_s: np.ndarray) -> np.ndarray:
+    """From where on arm time has begun anew, since the driver was started again: by more than what
+    messages of several senders are apart.
+    """
+    return np.logical_or.accumulate(np.maximum.accumulate(t_s) - t_s > RESTART_S)
 
 
 @dataclass
@@ -43,7 +45,7 @@ class Chart:
         """From then on, until the driver starts again: then arm time begins anew."""
         if not self.over_time:
             return self
-        kept = (self.t_s >= begin_s) & ~np.logical_or.accumulate(_back(self.t_s))
+        kept = (self.t_s >= begin_s) & ~went_back(self.t_s)
         series = {name: values[kept] for name, values in self.series.items()}
         return replace(self, t_s=self.t_s[kept], series=series)
 

@@ -10,18 +10,31 @@ import numpy as np
 from limber import messages
 from limber.errors import InputError
 from limber.log.events import Names
-from limber.log.reader import Log
+from limber.log.reader import Log, time_s
 from limber.model.gains_table import acts_at_joints, law_names
-from limber.model.robot import load_robot
+from limber.model.robot import Robot, load_robot
 from limber.plot import charts
-from limber.plot.chart import Chart
+from limber.plot.chart import Chart, went_back
 from limber.plot.marks import Mark, Span, marks, spans
+from limber.plot.stick_figure import View, arm_points
+
+FRAMES = 800  # of the moving stick figure
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A stick figure that moves: base, joints and tip in a plane that is upright, m."""
+
+    t_s: np.ndarray  # frames
+    places: np.ndarray  # frames x points x 2
+    low: np.ndarray  # 2, the window
+    high: np.ndarray
 
 
 @dataclass
 class Drawing:
     """`title`: the run, and of which arm, law and stiffness it is. `results`: of its summary.json,
-    empty beside a log that has none.
+    empty beside a log that has none. `figure`: None without the robot beside the log.
     """
 
     title: str
@@ -29,6 +42,7 @@ class Drawing:
     marks: list[Mark] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)
     results: list[dict[str, Any]] = field(default_factory=list)
+    figure: Figure | None = None
 
     @property
     def verdict(self) -> str:
@@ -43,13 +57,31 @@ def drawing(path: Path, topics: list[str]) -> Drawing:
     """`topics`: empty for all that the log has something of."""
     log = Log(path)
     folder = log.path.parent
-    names = Names(_joint_names(folder), law_names())
+    robot = _robot(folder)
+    names = Names(robot.joint_names if robot else [], law_names())
     built = {topic: charts.build(log, topic, names.joints) for topic in topics or charts.TOPICS}
     if topics or not any(built.values()):
         _refuse_empty(built, log)
     built = {topic: drawn for topic, drawn in built.items() if drawn}
-    marked = marks(log, names, charts.begin_s(log))
-    return Drawing(_title(log), built, marked, spans(log, marked), _results(folder))
+    begin_s = charts.begin_s(log)
+    marked = marks(log, names, begin_s)
+    figure = _figure(log, robot, begin_s) if robot else None
+    return Drawing(_title(log), built, marked, spans(log, marked), _results(folder), figure)
+
+
+def _figure(log: Log, robot: Robot, begin_s: float) -> Figure | None:
+    state = log.read("JOINT_STATE")
+    t = time_s(state)
+    rows = np.flatnonzero((t >= begin_s) & ~went_back(t))
+    if len(rows) < 2:
+        return None
+    rows = rows[np.unique(np.linspace(0, len(rows) - 1, FRAMES).astype(int))]
+    n = len(robot.joints)
+    points = np.array([arm_points(robot, q) for q in state["q"][rows, :n]])
+    up = np.array([0.0, 0, 1]) if not robot.gravity.any() else -robot.gravity
+    view = View.of(points.reshape(-1, 3), up)
+    places = view.project(points)
+    return Figure(t[rows], places, view.low, view.high)
 
 
 def _refuse_empty(built: dict[str, list[Chart]], log: Log) -> None:
@@ -82,11 +114,11 @@ def _subject(log: Log) -> list[str]:
     return [*facts[:1], law, *facts[1:]] if law else facts
 
 
-def _joint_names(folder: Path) -> list[str]:
-    """From the copy of the robot that a run leaves beside its log; none beside other logs."""
+def _robot(folder: Path) -> Robot | None:
+    """The copy that a run leaves beside its log; none beside other logs."""
     if not (folder / "robot.yaml").is_file():
-        return []
-    return load_robot(str(folder.resolve())).joint_names
+        return None
+    return load_robot(str(folder.resolve()))
 
 
 def _results(folder: Path) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from limber.paths import ASSETS
 from limber.plot.chart import Chart
-from limber.plot.drawing import Drawing
+from limber.plot.drawing import Drawing, Figure
 from limber.plot.style import COLORS
 
 MAX_POINTS = 60_000
@@ -63,6 +63,18 @@ def _as_dict(chart: Chart) -> dict[str, Any]:
     }
 
 
+def _figure(figure: Figure | None) -> dict[str, Any] | None:
+    if figure is None:
+        return None
+    return {
+        "t": _base64(figure.t_s),
+        "points": figure.places.shape[1],
+        "places": _base64(figure.places),
+        "low": figure.low.tolist(),
+        "high": figure.high.tolist(),
+    }
+
+
 def _data(drawing: Drawing) -> dict[str, Any]:
     """JSON has no infinity and no NaN: `results` are read from JSON that had none."""
     return {
@@ -71,6 +83,7 @@ def _data(drawing: Drawing) -> dict[str, Any]:
         "results": drawing.results,
         "marks": [asdict(mark) for mark in drawing.marks],
         "spans": [asdict(span) for span in drawing.spans],
+        "figure": _figure(drawing.figure),
         "topics": {
             topic: [_as_dict(c) for c in charts] for topic, charts in drawing.topics.items()
         },
