@@ -368,3 +368,22 @@ def test_summary_file(tmp_path, still):
     first = next(r for r in content["results"] if r["name"] == "stiffness +x")
     assert set(first) >= {"name", "value", "unit", "expected", "tolerance", "pass"}
     assert first["unit"] == "N/m"
+
+
+def test_with_friction_observed_a_hand_is_promised_the_spring(tmp_path, scenario):
+    """Torque sensors leave the bearings' friction: between no and twice its bound, of the push."""
+    gains = "{law: cartesian_impedance, friction_compensation: observer, friction_share: 1}"
+    arm = scenario("iiwa14", timeline(("+x",), f"  - {{at_s: 0.5, gains: {gains}}}"))
+    home = arm.robot.home
+    J = arm.robot.chain.jacobian(home)
+    bearings = np.array([joint.link_friction for joint in arm.robot.joints])
+    G = J @ np.linalg.pinv(J.T @ arm.robot.K_x @ J, rcond=1e-9)
+    x = np.eye(6)[0]
+    bound = np.abs(x @ G) @ bearings * statics.stiffness_along(G @ J.T, x)
+    assert 0.1 < bound < 3.0, "a few tenths of a newton metre at less than a metre"
+    asked = 1 / (G @ J.T)[0, 0]
+    for held, good in ((0.0, True), (1.9 * bound, True), (2.6 * bound, False)):
+        C = np.linalg.inv(arm.robot.K_x) * (20 - held) / 20
+        found = measured(tmp_path, arm, truth_of(arm, C, home)).find("stiffness +x")
+        assert found.value == pytest.approx(asked * 20 / (20 - held), rel=1e-3)
+        assert found.passed is good

@@ -34,6 +34,10 @@ def demo(
     no_watch: Annotated[
         bool, typer.Option("--no-watch", help="Show the progress only, not the live view.")
     ] = False,
+    sensors: Annotated[
+        bool,
+        typer.Option("--sensors", help="An arm with joint torque sensors: it hides its friction."),
+    ] = False,
     page: Page = False,
     private: Private = False,
 ) -> None:
@@ -42,7 +46,7 @@ def demo(
     from limber.run.options import RunOptions
 
     options = RunOptions(out, lockstep, live_view=not no_watch, private_network=private, page=page)
-    raise typer.Exit(module.demo(seconds, options, console))
+    raise typer.Exit(module.demo(seconds, sensors, options, console))
 
 
 @app.command()

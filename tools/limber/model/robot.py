@@ -26,12 +26,15 @@ class SpringPair:
 
 @dataclass(frozen=True)
 class JointInfo:
-    """Position limits and the friction that holds it at rest: rad and N m, or m and N."""
+    """Position limits and the friction that holds it at rest: rad and N m, or m and N. `friction`:
+    of motor and gear; `link_friction`: of the bearing behind springs and torque sensors.
+    """
 
     name: str
     low: float
     high: float
     friction: float
+    link_friction: float = 0.0
     pair: SpringPair | None = None
 
 
@@ -119,16 +122,20 @@ def _robot(content: dict[str, Any], folder: Path) -> Robot:
 
 def _joint(name: str, content: dict[str, Any], limits: tuple[float, float]) -> JointInfo:
     low, high = limits
-    friction = content.get("friction") or {}
     return JointInfo(
         name,
         _either(content, "position_min_rad", "position_min_m", otherwise=low),
         _either(content, "position_max_rad", "position_max_m", otherwise=high),
-        max(
-            _either(friction, "coulomb_Nm", "coulomb_N", otherwise=0.0),
-            _either(friction, "static_Nm", "static_N", otherwise=0.0),
-        ),
+        _at_rest(content.get("friction") or {}),
+        _at_rest(content.get("link_friction") or {}),
         _pair(content.get("transmission") or {}),
+    )
+
+
+def _at_rest(friction: dict[str, Any]) -> float:
+    return max(
+        _either(friction, "coulomb_Nm", "coulomb_N", otherwise=0.0),
+        _either(friction, "static_Nm", "static_N", otherwise=0.0),
     )
 
 

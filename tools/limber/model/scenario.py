@@ -28,12 +28,15 @@ class Push:
 
 @dataclass(frozen=True)
 class Gains:
-    """What holds from `at_s` on."""
+    """What holds from `at_s` on. `friction_observed`: torque sensors see the gears' friction, and
+    all of it is made up for.
+    """
 
     at_s: float
     law: str
     K_x: np.ndarray
     K_q: np.ndarray
+    friction_observed: bool = False
 
 
 @dataclass(frozen=True)
@@ -172,4 +175,8 @@ def _changed(before: Gains, at_s: float, content: dict[str, Any]) -> Gains:
             K_x[rows, rows] = np.diag(np.broadcast_to(np.asarray(content[key], float), 3))
     if "K_q_Nm_per_rad" in content:
         K_q[:] = content["K_q_Nm_per_rad"]
-    return Gains(at_s, str(content.get("law", before.law)), K_x, K_q)
+    observed = before.friction_observed
+    if "friction_compensation" in content:
+        whole = float(content.get("friction_share", 0.0)) == 1.0
+        observed = content["friction_compensation"] == "observer" and whole
+    return Gains(at_s, str(content.get("law", before.law)), K_x, K_q, observed)

@@ -84,7 +84,8 @@ def _expected(scenario: Scenario, push: Push) -> tuple[float, float] | None:
     C = G @ J.T
     held = 0.0
     if scenario.friction:
-        friction = np.array([joint.friction for joint in robot.joints])
+        observed = gains.friction_observed
+        friction = np.array([j.link_friction if observed else j.friction for j in robot.joints])
         held = statics.greatest_friction_force(G, C, direction, friction)
     return statics.stiffness_along(C, direction), held
 
