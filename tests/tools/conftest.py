@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from limber import messages
-from limber.log.reader import HEADER, SYNC
+from limber.log.event_file import HEADER, SYNC
 from limber.model.scenario import load_scenario
 
 ROOT = Path(__file__).resolve().parents[2]

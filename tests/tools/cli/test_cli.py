@@ -60,6 +60,11 @@ WRONG = [
     (["log", "echo", "{dir}/run.lcmlog", "JOINT_STATE", "--count", "0"], "--count"),
     (["log", "echo", "{dir}/run.lcmlog", "JOINT_STATE", "--at", "1e9"], "no message from"),
     (["log", "convert", "{dir}/run.lcmlog", "--out", "{dir}/x.xlsx"], ".npz"),
+    (["log", "convert", "{dir}/run.lcmlog"], "--to is missing: one of csv, parquet, mcap"),
+    (["log", "convert", "{dir}/run.lcmlog", "--to", "xlsx"], "mcap"),
+    (["log", "convert", "{dir}/run.lcmlog", "--to", "csv", "--out", "{dir}/x.csv"], "a folder"),
+    (["log", "convert", "{dir}/run.lcmlog", "--to", "lcm"], "exists already"),
+    (["log", "convert", "{dir}", "--to", "mcap", "--channels", "JOINT_SATE"], "JOINT_STATE"),
     (["log", "play", "{dir}/run.lcmlog"], "No such command 'play'"),
     (["plot", "{dir}/run.lcmlog", "--what", "jiont"], "joint, cartesian, torque, spring, timing"),
     (["plot", "{dir}/run.lcmlog", "--what", "torque"], "CONTROLLER_STATUS"),
@@ -168,7 +173,7 @@ def test_convert(limber, folder, tmp_path):
     assert limber("log", "convert", str(folder), "--out", str(tmp_path / "csv")).returncode == 0
     table = np.genfromtxt(tmp_path / "csv" / "JOINT_STATE.csv", delimiter=",", names=True)
     np.testing.assert_array_equal(table["seq"], np.arange(20))
-    assert "q15" in table.dtype.names, table.dtype.names
+    assert "jointsjoint7q_rad" in table.dtype.names, table.dtype.names
 
 
 def test_reader_that_goes_away_is_no_error(folder):

@@ -7,6 +7,8 @@ import typer
 
 from limber.cli.options import LogPath, Out, console, names_of
 
+JOINTS_OF = "For the joints' names; default: the robot.yaml beside the log."
+
 app = typer.Typer()
 log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
 app.add_typer(log_app, name="log")
@@ -31,17 +33,12 @@ def rate(path: LogPath) -> None:
 @log_app.command()
 def events(
     path: LogPath,
-    robot: Annotated[
-        str | None,
-        typer.Option(help="For the joints' names; default: the robot.yaml beside the log."),
-    ] = None,
+    robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
 ) -> None:
     """List what happened when: modes, requests, refusals, faults, limits, pushes, contacts."""
     from limber.log import commands
 
-    folder = path if path.is_dir() else path.parent
-    known = robot or (str(folder.resolve()) if (folder / "robot.yaml").is_file() else None)
-    commands.show_events(path, names_of(known), console)
+    commands.show_events(path, names_of(_robot_of(path, robot)), console)
 
 
 @log_app.command()
@@ -61,14 +58,34 @@ def echo(
 @log_app.command()
 def convert(
     path: LogPath,
+    to: Annotated[
+        str | None,
+        typer.Option(help="csv, parquet, mcap, rerun, npz or lcm; default: by the end of --out."),
+    ] = None,
     out: Annotated[
-        Path, typer.Option("--out", help="FILE.npz, or a folder for one CSV a channel.")
-    ],
+        Path | None,
+        typer.Option("--out", help="File, or folder for csv and parquet; default: beside the log."),
+    ] = None,
+    channels: Annotated[
+        str, typer.Option(help="Only these, such as JOINT_STATE,SIM_TRUTH; default: all.")
+    ] = "",
+    robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
 ) -> None:
-    """Convert a log to numpy (.npz) or CSV."""
-    from limber.log import commands
+    """Convert a log for other tools: MCAP (Foxglove, PlotJuggler), Rerun, Parquet, CSV, numpy, LCM.
 
-    commands.convert(path, out, console)
+    Example: limber log convert out/demo-1 --to mcap
+    """
+    from limber.log.convert import conversion
+
+    wanted = [name.strip() for name in channels.split(",") if name.strip()]
+    conversion.convert(path, to, out, wanted, names_of(_robot_of(path, robot)), console)
+
+
+def _robot_of(path: Path, robot: str | None) -> str | None:
+    """As given, or the folder of the log if it holds a robot.yaml."""
+    folder = path if path.is_dir() else path.parent
+    beside = str(folder.resolve()) if (folder / "robot.yaml").is_file() else None
+    return robot or beside
 
 
 @app.command()

@@ -13,7 +13,7 @@ from pathlib import Path
 import lcm
 
 from limber.errors import InputError
-from limber.log.reader import HEADER, SYNC
+from limber.log.event_file import HEADER, SYNC
 
 FORMAT = "limber-black-box/1"
 HEADER_BYTES = 4096

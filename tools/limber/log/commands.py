@@ -1,6 +1,5 @@
-"""`limber log ...`: what is in a log, as text, CSV or numpy."""
+"""`limber log ...`: what is in a log, as text."""
 
-import csv
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ from limber import messages, tables
 from limber.errors import InputError
 from limber.log import events
 from limber.log.reader import Log, log_file
-from limber.paths import output_folder
 
 
 def info(path: Path, console: Console) -> None:
@@ -87,51 +85,3 @@ def _short(value: Any, joints: int | None) -> Any:
     if isinstance(value, list | tuple) and len(value) == 16 and joints:
         return list(value[:joints])
     return list(value) if isinstance(value, tuple) else value
-
-
-def convert(path: Path, out: Path, console: Console) -> None:
-    log = Log(path)
-    if out.suffix == ".npz":
-        output_folder(out.parent)
-        np.savez_compressed(out, **_arrays(log))
-        console.print(f"wrote {out}")
-    elif out.suffix == "":
-        output_folder(out)
-        for name in _fixed(log):
-            _write_csv(out / f"{name}.csv", log.read(name))
-            console.print(f"wrote {out / name}.csv")
-    else:
-        raise InputError(f"--out {out}: end it in .npz, or name a folder for CSV files")
-
-
-def _fixed(log: Log) -> list[str]:
-    """Channels whose type has no strings: those that are numbers."""
-    return [
-        name
-        for name in sorted(log.channels)
-        if log.type_of(name) and messages.dtype_of(log.type_of(name)) is not None
-    ]
-
-
-def _arrays(log: Log) -> dict[str, np.ndarray]:
-    """CHANNEL.field -> array, one row a message."""
-    return {
-        f"{name}.{field}": log.read(name)[field]
-        for name in _fixed(log)
-        for field in log.read(name).dtype.names
-        if field != messages.FINGERPRINT
-    }
-
-
-def _write_csv(path: Path, records: np.ndarray) -> None:
-    columns: dict[str, np.ndarray] = {}
-    for field in records.dtype.names:
-        if field == messages.FINGERPRINT:
-            continue
-        values = records[field].reshape(len(records), -1)
-        for i in range(values.shape[1]):
-            columns[field if values.shape[1] == 1 else f"{field}[{i}]"] = values[:, i]
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))

@@ -9,6 +9,11 @@ from limber.log.reader import Log, time_s
 from limber.messages import CLIENTS, constants, message_class
 from limber.problems import Problem, groups, problem
 
+# What of the messages tells of events: a long log fits into memory
+STATE_FIELDS = ("num_joints", "joint_flags", "sensor_state", "emergency_stop")
+STATE_FIELDS += ("drive_state", "fault", "fault_joint")
+STATUS_FIELDS = ("mode", "reason", "reason_joint", "law", "limits")
+TRUTH_FIELDS = ("F_push", "contact", "F_contact")
 PAUSE_S = 0.1  # what acts again within this time has acted all the time
 
 
@@ -36,8 +41,10 @@ class Names:
 
 def events(log: Log, names: Names) -> list[Event]:
     """In order of time; of the same time, the cause before the consequence."""
-    state, status = log.read("JOINT_STATE"), log.read("CONTROLLER_STATUS")
-    driver, truth = log.read("DRIVER_STATUS"), log.read("SIM_TRUTH")
+    state = log.fields("JOINT_STATE", "time_ns", *STATE_FIELDS)
+    status = log.fields("CONTROLLER_STATUS", "time_ns", *STATUS_FIELDS)
+    truth = log.fields("SIM_TRUTH", "time_ns", *TRUTH_FIELDS)
+    driver = log.read("DRIVER_STATUS")
     found = [
         *_requests(log),
         *_drives(state, names),

@@ -1,34 +1,29 @@
-"""Reads LCM event logs: whole channels at once, damaged files as far as they are good.
+"""Reads LCM event logs: whole channels at once, damaged files as far as they are good."""
 
-LCM's own reader stops at the first damaged byte. This one continues at the next whole event and
-reports what it skipped.
-"""
-
-import mmap
-import struct
+from array import array
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib import recfunctions
 
 from limber import messages
 from limber.errors import InputError
+from limber.log.event_file import Damage, contents, events
 from limber.paths import existing_file
 
-SYNC = b"\xed\xa1\xda\x01"
-HEADER = struct.Struct(">4sqqii")  # sync word, event number, time stamp in µs, two lengths
-MAX_CHANNEL_BYTES = 255
-MAX_DATA_BYTES = 1 << 26
+PIECE = 1 << 14  # messages read at a time where only some fields count
 
 
 @dataclass
 class Events:
     """Where one channel's events lie in the file."""
 
-    offsets: list[int] = field(default_factory=list)
-    sizes: list[int] = field(default_factory=list)
-    stamps_us: list[int] = field(default_factory=list)
+    offsets: array = field(default_factory=lambda: array("q"))
+    sizes: array = field(default_factory=lambda: array("q"))
+    stamps_us: array = field(default_factory=lambda: array("q"))
 
     def __len__(self) -> int:
         return len(self.offsets)
@@ -40,54 +35,32 @@ class Log:
     def __init__(self, path: Path | str) -> None:
         self.path = log_file(Path(path))
         self.channels: dict[str, Events] = {}
-        self.skipped_bytes = 0
-        self.truncated_bytes = 0
+        self._damage = Damage()
         self._arrays: dict[str, np.ndarray] = {}
-        if self.path.stat().st_size == 0:
-            raise InputError(f"{self.path} is empty: nothing was recorded")
-        with open(self.path, "rb") as file:
-            self._data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-        self._index()
+        self._data = contents(self.path)
+        for _, start, size, stamp_us, channel, _ in events(self._data, self._damage):
+            found = self.channels.setdefault(channel, Events())
+            found.offsets.append(start)
+            found.sizes.append(size)
+            found.stamps_us.append(stamp_us)
         if not self.channels:
             raise InputError(f"{self.path} is no LCM event log: it holds no event")
 
-    def _index(self) -> None:
-        data, end = self._data, len(self._data)
-        position = 0
-        while position < end:
-            event = _event_at(data, position, end)
-            if event is None:
-                position = self._skip_damage(position, end)
-                continue
-            start, size, stamp, channel, after = event
-            events = self.channels.setdefault(channel, Events())
-            events.offsets.append(start)
-            events.sizes.append(size)
-            events.stamps_us.append(stamp)
-            position = after
-
-    def _skip_damage(self, position: int, end: int) -> int:
-        """Counts what is left out and returns where the next whole event starts."""
-        candidate = self._data.find(SYNC, position + 1)
-        while candidate != -1 and _event_at(self._data, candidate, end) is None:
-            candidate = self._data.find(SYNC, candidate + 1)
-        if candidate != -1:
-            self.skipped_bytes += candidate - position
-            return candidate
-        if _unfinished(self._data, position, end):
-            self.truncated_bytes = end - position
-        else:
-            self.skipped_bytes += end - position
-        return end
+    def event_bytes(self, channels: Collection[str]) -> Iterator[bytes]:
+        """The whole events of these channels with their headers, in the order of the file."""
+        for begin, _, _, _, channel, end in events(self._data, Damage()):
+            if channel in channels:
+                yield self._data[begin:end]
 
     def type_of(self, channel: str) -> str | None:
         """Message type by the channel table; None for channels that are not limber's."""
         row = messages.channels().get(channel)
         return row.type_name if row else None
 
-    def raw(self, channel: str) -> list[bytes]:
+    def raw(self, channel: str, first: int = 0, last: int | None = None) -> list[bytes]:
+        """The bytes of the messages first to last (not included)."""
         events = self.channels.get(channel, Events())
-        places = zip(events.offsets, events.sizes, strict=True)
+        places = zip(events.offsets[first:last], events.sizes[first:last], strict=True)
         return [self._data[offset : offset + size] for offset, size in places]
 
     def read(self, channel: str) -> np.ndarray:
@@ -97,6 +70,34 @@ class Log:
         return self._arrays[channel]
 
     def _read(self, channel: str) -> np.ndarray:
+        found = len(self.channels.get(channel, ()))
+        _, records = self.records(channel, 0, found)
+        if found and not len(records):
+            raise self._other_version(channel)
+        return records
+
+    def _other_version(self, channel: str) -> InputError:
+        return InputError(
+            f"{self.path}: {channel} was recorded by another version of limber "
+            f"({self.type_of(channel)} has changed since)"
+        )
+
+    def fields(self, channel: str, *names: str) -> np.ndarray:
+        """As read(), of these fields only: a small part of the memory."""
+        if channel in self._arrays:
+            return self._arrays[channel]
+        found = len(self.channels.get(channel, ()))
+        starts = range(0, max(found, 1), PIECE)
+        pieces = [self.records(channel, start, start + PIECE)[1][list(names)] for start in starts]
+        records = np.concatenate([recfunctions.repack_fields(piece) for piece in pieces])
+        if found and not len(records):
+            raise self._other_version(channel)
+        return records
+
+    def records(self, channel: str, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Of the messages first to last (not included) of a fixed-size channel those of this
+        version: their time stamps in µs, and themselves.
+        """
         type_name = self.type_of(channel)
         wire = messages.dtype_of(type_name) if type_name else None
         if wire is None:
@@ -104,32 +105,35 @@ class Log:
                 f"channel '{channel}' has no fixed-size limber type; this log has: "
                 + ", ".join(sorted(self.channels))
             )
-        native = messages.native_dtype_of(type_name)
-        events = self.channels.get(channel)
-        if events is None:
-            return np.empty(0, native)
-        offsets = np.asarray(events.offsets)[np.asarray(events.sizes) == wire.itemsize]
-        rows = np.frombuffer(self._data, np.uint8)[offsets[:, None] + np.arange(wire.itemsize)]
-        records = rows.view(wire)[:, 0]
+        events = self.channels.get(channel, Events())
+        fits = np.asarray(events.sizes[first:last]) == wire.itemsize
+        offsets = np.asarray(events.offsets[first:last], np.int64)[fits].tolist()
+        parts = (self._data[offset : offset + wire.itemsize] for offset in offsets)
+        records = np.frombuffer(b"".join(parts), wire)
         known = records[messages.FINGERPRINT] == messages.fingerprint_of(type_name)
-        if len(known) and not known.any():
-            raise InputError(
-                f"{self.path}: {channel} was recorded by another version of limber "
-                f"({type_name} has changed since)"
-            )
-        return records[known].astype(native)
+        stamps_us = np.asarray(events.stamps_us[first:last], np.int64)[fits][known]
+        return stamps_us, records[known].astype(messages.native_dtype_of(type_name))
 
     def decode(self, channel: str) -> list[Any]:
         """Messages of any limber channel as objects, one by one (slow; for events with strings)."""
+        return [message for _, message in self.objects(channel, 0, None)]
+
+    def objects(self, channel: str, first: int, last: int | None) -> list[tuple[int, Any]]:
+        """Of the messages first to last (not included) of any limber channel those of this version:
+        time stamp in µs, and message.
+        """
         type_name = self.type_of(channel)
         if type_name is None:
             raise InputError(
                 f"channel '{channel}' is not one of limber's: " + ", ".join(messages.channels())
             )
+        events = self.channels.get(channel, Events())
         decoded = []
-        for data in self.raw(channel):
+        for data, stamp_us in zip(
+            self.raw(channel, first, last), events.stamps_us[first:last], strict=True
+        ):
             try:
-                decoded.append(messages.decode(type_name, data))
+                decoded.append((stamp_us, messages.decode(type_name, data)))
             except ValueError:
                 continue  # another type on this channel; counted by undecodable()
         return decoded
@@ -139,7 +143,8 @@ class Log:
         if type_name is None:
             return len(self.channels[channel])
         fingerprint = messages.fingerprint_of(type_name).to_bytes(8, "big")
-        return sum(not data.startswith(fingerprint) for data in self.raw(channel))
+        starts = (self._data[offset : offset + 8] for offset in self.channels[channel].offsets)
+        return sum(start != fingerprint for start in starts)
 
     def lost(self, channel: str) -> int:
         """Messages that never arrived, by gaps in the sequence number (the first field of each) of
@@ -161,14 +166,21 @@ class Log:
     def stamps_s(self, channel: str) -> np.ndarray:
         return np.asarray(self.channels[channel].stamps_us) * 1e-6
 
+    @property
+    def size_bytes(self) -> int:
+        return len(self._data)
+
+    @property
+    def skipped_bytes(self) -> int:
+        return self._damage.skipped_bytes
+
+    @property
+    def truncated_bytes(self) -> int:
+        return self._damage.truncated_bytes
+
     def damage(self) -> str:
         """One sentence on what could not be read; empty if everything was."""
-        parts = []
-        if self.skipped_bytes:
-            parts.append(f"{self.skipped_bytes} damaged bytes skipped")
-        if self.truncated_bytes:
-            parts.append(f"the last event is cut off ({self.truncated_bytes} bytes)")
-        return ", ".join(parts)
+        return str(self._damage)
 
 
 def time_s(records: np.ndarray) -> np.ndarray:
@@ -189,30 +201,3 @@ def log_file(path: Path) -> Path:
             raise InputError(f"{path} holds no run.lcmlog: give a log, or the folder of a run")
         return path / "run.lcmlog"
     return existing_file(path, "log, or the folder of a run,")
-
-
-def _event_at(data: mmap.mmap, position: int, end: int) -> tuple[int, int, int, str, int] | None:
-    """The event at `position` as (data start, size, stamp, channel, end), if it is whole.
-
-    Whole means that the file ends behind it, or another event starts there: bytes lost or added in
-    the
-    middle of an event shift what follows, and then nothing can vouch for its contents.
-    """
-    start = position + HEADER.size
-    if start > end:
-        return None
-    sync, _, stamp, channel_size, size = HEADER.unpack_from(data, position)
-    if sync != SYNC or not 0 < channel_size <= MAX_CHANNEL_BYTES or not 0 <= size <= MAX_DATA_BYTES:
-        return None
-    after = start + channel_size + size
-    if after > end or (after < end and not SYNC.startswith(data[after : after + 4])):
-        return None
-    name = data[start : start + channel_size]
-    if not name.isascii():
-        return None
-    return start + channel_size, size, stamp, name.decode("ascii"), after
-
-
-def _unfinished(data: mmap.mmap, position: int, end: int) -> bool:
-    """True if the rest of the file looks like the beginning of an event."""
-    return SYNC.startswith(data[position : min(position + 4, end)])

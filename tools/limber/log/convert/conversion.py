@@ -1,0 +1,213 @@
+"""`limber log convert`: reads a log piece by piece and hands each to the writer of a format."""
+
+import importlib
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from limber.errors import InputError, RunError
+from limber.log import events
+from limber.log.convert.windows import Writer, joint_names, windows
+from limber.log.reader import Log, log_file
+from limber.paths import ROOT, output_folder
+
+
+@dataclass(frozen=True)
+class Format:
+    """`module`.`writer` writes it; it is a file that ends in `suffix`, or a folder."""
+
+    suffix: str
+    module: str
+    writer: str
+    folder: bool = False
+    text: bool = True  # messages with text, too
+    extra: str | None = None  # of pyproject.toml, where its packages are
+
+
+FORMATS = {
+    "csv": Format("_csv", "csv_files", "CsvFiles", folder=True),
+    "parquet": Format("_parquet", "parquet_files", "ParquetFiles", folder=True, extra="parquet"),
+    "mcap": Format(".mcap", "mcap_file", "McapFile"),
+    "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False, extra="rerun"),
+    "npz": Format(".npz", "npz_file", "NpzFile", text=False),
+    "lcm": Format(".lcmlog", "lcm_file", "LcmFile"),
+}
+
+
+def convert(
+    path: Path,
+    to: str | None,
+    out: Path | None,
+    wanted: Sequence[str],
+    names: events.Names,
+    console: Console,
+) -> None:
+    """`names`: of joints and laws; the joints' as the log tells them come first."""
+    kind = _format(to, out)
+    source = log_file(path)
+    target = out or source.with_name(base_name(source) + FORMATS[kind].suffix)
+    writer_class = _writer_class(kind)
+    if target.exists():
+        raise InputError(f"{target} exists already: give another --out, or remove it")
+    log = Log(source)
+    channels = _channels(log, wanted)
+    joints, several = joint_names(log, names.joints)
+    output_folder(target.parent)
+    with _complete_or_nothing(target) as part:
+        writer = writer_class(part, joints)
+        try:
+            told = _copy(log, kind, channels, writer, names, console)
+        finally:
+            writer.close()
+    if several:
+        told.append(f"several arms in this log: joints have the names of the first, {joints}")
+    for line in filter(None, [log.damage(), *told]):
+        console.print(line, style="yellow", markup=False, soft_wrap=True)
+    console.print(f"wrote {target} ({_size(target) / 1e6:.1f} MB)", soft_wrap=True)
+    if kind == "mcap":
+        _write_layout(target, joints, console)
+
+
+def base_name(log: Path) -> str:
+    """Without the endings that limber's logs have."""
+    return log.name.removesuffix(".zst").removesuffix(".lcmlog")
+
+
+def _format(to: str | None, out: Path | None) -> str:
+    if to is not None:
+        if to not in FORMATS:
+            raise InputError(f"--to {to}: there are {', '.join(FORMATS)}")
+        if out is not None and FORMATS[to].folder and out.suffix:
+            raise InputError(f"--out {out}: --to {to} writes a folder, one file a channel")
+        return to
+    if out is None:
+        raise InputError(f"--to is missing: one of {', '.join(FORMATS)}")
+    if not out.suffix:
+        return "csv"
+    for name, known in FORMATS.items():
+        if out.suffix == known.suffix:
+            return name
+    endings = ", ".join(known.suffix for known in FORMATS.values() if not known.folder)
+    raise InputError(f"--out {out}: end it in {endings}, or give --to {', '.join(FORMATS)}")
+
+
+def _writer_class(kind: str) -> type:
+    chosen = FORMATS[kind]
+    try:
+        module = importlib.import_module(f"limber.log.convert.{chosen.module}")
+    except ImportError as error:
+        if chosen.extra is None:
+            raise
+        raise RunError(
+            f"--to {kind} needs a package that is not installed ({error.name}): "
+            f"{sys.executable} -m pip install -e '{ROOT}[{chosen.extra}]'"
+        ) from error
+    return getattr(module, chosen.writer)
+
+
+def _channels(log: Log, wanted: Sequence[str]) -> list[str]:
+    missing = [name for name in wanted if name not in log.channels]
+    if missing:
+        raise InputError(
+            f"no channel '{missing[0]}' in this log: {', '.join(sorted(log.channels))}"
+        )
+    return list(wanted) or sorted(log.channels)
+
+
+def _copy(
+    log: Log,
+    kind: str,
+    channels: list[str],
+    writer: Writer,
+    names: events.Names,
+    console: Console,
+) -> list[str]:
+    """Returns what the user has to know of it."""
+    if kind == "lcm":
+        writer.copy(log, channels)
+        return []
+    told = []
+    story: list[events.Event] = []
+    try:
+        story = events.events(log, names)
+    except InputError as error:
+        told.append(f"the story of the run is left out: {error}")
+    writer.begin(story, arm_time_zero_us(log))
+    known = [name for name in channels if log.type_of(name) is not None]
+    copied = dict.fromkeys(channels, 0)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(f"to {kind}", total=log.size_bytes)
+        for position, window in windows(log, known):
+            taken = [b for b in window if b.fixed or FORMATS[kind].text]
+            writer.write(taken)
+            for batch in taken:
+                copied[batch.channel] += len(batch.stamps_us)
+            progress.update(task, completed=position)
+    return told + [
+        _left_out(log, name, len(log.channels[name]) - count, kind)
+        for name, count in copied.items()
+        if count < len(log.channels[name])
+    ]
+
+
+def _left_out(log: Log, channel: str, count: int, kind: str) -> str:
+    if log.type_of(channel) is None:
+        why = "not a channel of limber's"
+    elif count == log.undecodable(channel):
+        why = f"not {log.type_of(channel)}, or of another version of limber"
+    elif not FORMATS[kind].text:
+        why = f"--to {kind} has no place for text; csv, parquet and mcap do"
+    else:
+        why = "cannot be read"
+    return f"{channel}: {count} messages left out: {why}"
+
+
+def arm_time_zero_us(log: Log) -> int:
+    """The time stamp at which arm time was zero, by the first message that has both."""
+    for channel in ("JOINT_STATE", "CONTROLLER_STATUS", "SIM_TRUTH", "DRIVER_STATUS"):
+        if channel in log.channels:
+            stamps_us, found = log.records(channel, 0, 1)
+            if len(found):
+                return int(stamps_us[0]) - int(found["time_ns"][0]) // 1000
+    return 0
+
+
+@contextmanager
+def _complete_or_nothing(target: Path) -> Iterator[Path]:
+    """The place to write to; it gets its name when all is written, and goes away if it fails."""
+    part = target.with_name(f".{target.name}.part")
+    _remove(part)
+    try:
+        yield part
+        part.rename(target)
+    except OSError as error:
+        raise RunError(f"{target} cannot be written: {error.strerror}") from error
+    finally:
+        _remove(part)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        with suppress(FileNotFoundError):
+            path.unlink()
+
+
+def _size(path: Path) -> int:
+    files = path.iterdir() if path.is_dir() else [path]
+    return sum(file.stat().st_size for file in files)
+
+
+def _write_layout(target: Path, joints: tuple[str, ...], console: Console) -> None:
+    from limber.log.convert import foxglove_layout
+
+    path = target.with_suffix(".foxglove.json")
+    path.write_text(foxglove_layout.text(joints), encoding="utf-8")
+    console.print(f"wrote {path}: panels for Foxglove, Layouts > Import from file", soft_wrap=True)

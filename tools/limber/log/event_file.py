@@ -1,0 +1,94 @@
+"""The events of an LCM event log, one after the other, damaged files as far as they are good.
+
+LCM's own reader stops at the first damaged byte. This one continues at the next whole event and
+counts what it skipped.
+"""
+
+import mmap
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from limber.errors import InputError
+
+SYNC = b"\xed\xa1\xda\x01"
+HEADER = struct.Struct(">4sqqii")  # sync word, event number, time stamp in µs, two lengths
+MAX_CHANNEL_BYTES = 255
+MAX_DATA_BYTES = 1 << 26
+
+# where it begins, where its data begin, their size, time stamp in µs, channel, where it ends
+Event = tuple[int, int, int, int, str, int]
+
+
+@dataclass
+class Damage:
+    """`skipped_bytes`: inside the file; `truncated_bytes`: an unfinished event at the end."""
+
+    skipped_bytes: int = 0
+    truncated_bytes: int = 0
+
+    def __str__(self) -> str:
+        """One sentence on what could not be read; empty if everything was."""
+        parts = []
+        if self.skipped_bytes:
+            parts.append(f"{self.skipped_bytes} damaged bytes skipped")
+        if self.truncated_bytes:
+            parts.append(f"the last event is cut off ({self.truncated_bytes} bytes)")
+        return ", ".join(parts)
+
+
+def contents(path: Path) -> mmap.mmap:
+    """The bytes of a log; the memory that they take is the system's to reclaim."""
+    if path.stat().st_size == 0:
+        raise InputError(f"{path} is empty: nothing was recorded")
+    with open(path, "rb") as file:
+        return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+
+
+def events(data: mmap.mmap, damage: Damage) -> Iterator[Event]:
+    """All whole events; what is left out is added to `damage`."""
+    position, end = 0, len(data)
+    while position < end:
+        event = _event_at(data, position, end)
+        if event is None:
+            position = _skip(data, position, end, damage)
+        else:
+            yield event
+            position = event[-1]
+
+
+def _skip(data: mmap.mmap, position: int, end: int, damage: Damage) -> int:
+    """Where the next whole event begins."""
+    candidate = data.find(SYNC, position + 1)
+    while candidate != -1 and _event_at(data, candidate, end) is None:
+        candidate = data.find(SYNC, candidate + 1)
+    if candidate != -1:
+        damage.skipped_bytes += candidate - position
+        return candidate
+    if SYNC.startswith(data[position : min(position + 4, end)]):  # the beginning of an event
+        damage.truncated_bytes += end - position
+    else:
+        damage.skipped_bytes += end - position
+    return end
+
+
+def _event_at(data: mmap.mmap, position: int, end: int) -> Event | None:
+    """The event at `position`, if it is whole.
+
+    Whole means that the file ends behind it, or another event starts there: bytes lost or added in
+    the middle of an event shift what follows, and then nothing can vouch for its contents.
+    """
+    start = position + HEADER.size
+    if start > end:
+        return None
+    sync, _, stamp_us, channel_size, size = HEADER.unpack_from(data, position)
+    if sync != SYNC or not 0 < channel_size <= MAX_CHANNEL_BYTES or not 0 <= size <= MAX_DATA_BYTES:
+        return None
+    after = start + channel_size + size
+    if after > end or (after < end and not SYNC.startswith(data[after : after + 4])):
+        return None
+    name = data[start : start + channel_size]
+    if not name.isascii():
+        return None
+    return position, start + channel_size, size, stamp_us, name.decode("ascii"), after
