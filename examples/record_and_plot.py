@@ -1,6 +1,7 @@
 """Record a push at full rate, then draw force and displacement."""
 
 import sys
+import time
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -8,11 +9,11 @@ import matplotlib.pyplot as plt
 from limber import Arm
 from limber.log.reader import Log, time_s
 
-folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
+folder = Path(sys.argv[1] if len(sys.argv) > 1 else f"out/push-{time.strftime('%H%M%S')}")
 with Arm() as arm:
     arm.activate()
     arm.gains(law="cartesian_impedance", K_x_translation_N_per_m=400)
-    with arm.record(folder / "push.lcmlog") as recording:
+    with arm.record(folder / "push.lcmlog.zst") as recording:
         arm.push([0, 9, 0], for_s=1.0, ramp_s=0.1)
         arm.wait(for_s=2.0)
 print(f"{recording.path}: {recording.lost or 'no message'} lost")

@@ -93,7 +93,10 @@ int run(const Arguments& given) {
                    scenario.duration_s);
     }
   }
-  if (log) log->write(lab.state().time_ns, channels::kDriverStatus, lab.driver_status());
+  if (log) {
+    log->write(lab.state().time_ns, channels::kDriverStatus, lab.driver_status());
+    log->close();
+  }
   if (frames) frames->flush();
   const double wall_s = static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
   std::fprintf(stderr, "%s%.2f s of arm time in %.2f s: %.1f times real time\n",
@@ -109,7 +112,7 @@ int main(int argc, char** argv) {
       "Runs a scenario in one process, in lock step, as fast as the processor allows.");
   Arguments given;
   line.text("scenario", &given.scenario, "scenario file").required();
-  line.text("--log", &given.log, "LCM event log to write");
+  line.text("--log", &given.log, "LCM event log to write; compressed if it ends in .zst");
   line.text("--can", &given.can, "CAN frames to write, in candump's log format, in arm time");
   line.flag("--progress", &given.progress, "show how far it is");
   return run_program(line, argc, argv, [&] { return run(given); });

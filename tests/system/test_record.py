@@ -1,13 +1,18 @@
-"""The recorder against datagrams that are no messages."""
+"""The recorder: nothing lost, nothing overwritten, and datagrams that are no messages."""
 
+import json
 import signal
 import socket
 import subprocess
 import time
+from contextlib import contextmanager
 
 import lcm
+import pytest
 
+from limber.lcmtypes.joint_state_t import joint_state_t
 from limber.lcmtypes.mode_request_t import mode_request_t
+from limber.log.reader import Log
 from stack import BIN, USER_URL
 
 GROUP = ("239.255.76.67", 7667)
@@ -37,3 +42,67 @@ def test_a_broken_datagram_is_left_out(tmp_path):
         assert recorder.wait(timeout=20) == 0, output.read_text()
     assert output.read_text().count("impossible size") == 1
     assert [event.channel for event in lcm.EventLog(str(path))] == ["MODE_REQUEST"]
+
+
+@contextmanager
+def recording(path, *options):
+    """limber-record, once it listens; what it has said is in `path`.txt."""
+    said = path.with_suffix(".txt")
+    command = [str(BIN / "limber-record"), "--out", str(path), *options]
+    with said.open("w") as log, subprocess.Popen(command, stdout=log, stderr=log) as recorder:
+        while "recording" not in said.read_text():
+            assert recorder.poll() is None, said.read_text()
+            time.sleep(0.02)
+        yield recorder
+
+
+def publish(count, pause_s=0.0):
+    """JOINT_STATEs, numbered from 0, as fast as Python can or with pauses after each hundred."""
+    sender = lcm.LCM(USER_URL)
+    state = joint_state_t()
+    for state.seq in range(count):
+        sender.publish("JOINT_STATE", state.encode())
+        if state.seq % 100 == 99:
+            time.sleep(pause_s)
+
+
+@pytest.mark.parametrize("name", ["run.lcmlog", "run.lcmlog.zst"])
+def test_nothing_is_lost_at_five_times_the_rate_of_an_arm(tmp_path, name):
+    """About 5,000 messages a second; an arm sends 3,300."""
+    path = tmp_path / name
+    with recording(path) as recorder:
+        publish(6000, pause_s=0.012)
+        recorder.send_signal(signal.SIGINT)
+        assert recorder.wait(timeout=20) == 0
+    report = json.loads(path.with_suffix(".txt").read_text().splitlines()[-1])
+    assert report["lost"] == {"JOINT_STATE": 0} and report["messages"] == 6000
+    assert report["file_bytes"] == path.stat().st_size
+    log = Log(path)
+    assert log.read("JOINT_STATE")["seq"].tolist() == list(range(6000))
+    assert log.damage() == ""
+
+
+def test_a_recorder_that_is_killed_leaves_a_readable_log(tmp_path):
+    """Everything but the last block, which is a quarter of a second at most."""
+    path = tmp_path / "run.lcmlog.zst"
+    with recording(path) as recorder:
+        publish(2000, pause_s=0.02)
+        time.sleep(1.0)
+        publish(50)
+        recorder.kill()
+    found = Log(path).read("JOINT_STATE")["seq"].tolist()
+    assert found[:2000] == list(range(2000))
+
+
+def test_a_log_is_never_overwritten_and_a_full_disk_never_filled(tmp_path):
+    path = tmp_path / "run.lcmlog.zst"
+    path.write_bytes(b"precious")
+    command = [str(BIN / "limber-record"), "--duration", "1", "--out"]
+    done = subprocess.run([*command, path], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "exists already" in done.stderr
+    assert path.read_bytes() == b"precious"
+    other = tmp_path / "other.lcmlog"
+    options = ["--least-free-MB", "1e9"]
+    done = subprocess.run([*command, other, *options], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "1000000000 MB have to stay free" in done.stderr
+    assert not other.exists()

@@ -92,7 +92,7 @@ def test_the_readmes_commands(folder, arm):
     assert "private network" not in said
     assert arm.poll() is None
     assert run.returncode == 0, said + (folder / "arm.log").read_text()
-    assert (folder / "out" / "run.lcmlog").exists()
+    assert (folder / "out" / "run.lcmlog.zst").exists()
 
 
 def test_without_a_multicast_route_the_cure_is_named(folder, arm):

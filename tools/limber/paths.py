@@ -7,7 +7,7 @@ from limber.errors import InputError, RunError
 
 ROOT = Path(__file__).resolve().parents[2]
 RELEASE = ROOT / "build" / "release" / "bin"  # what `limber bench` builds
-LEFT_BY_RUNS = ("run.lcmlog", "run.can.log", "summary.json")
+LEFT_BY_RUNS = ("run.lcmlog", "run.lcmlog.zst", "run.can.log", "summary.json")
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 

@@ -45,25 +45,35 @@ void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Si
   sink->last_ns = limber::monotonic_ns();
 }
 
-int record(const std::string& path, const std::string& url, double duration_s, double tail_s) {
+struct Options {
+  std::string path;
+  double duration_s = 0.0;
+  double tail_s = kTail_s;
+  double least_free_MB = limber::EventLog::kLeastFree_bytes / 1e6;
+};
+
+int record(const Options& given, const std::string& url) {
   const auto& stop = limber::stop_on_signals();
-  limber::Recorder recorder(path);
+  limber::Recorder recorder(given.path, static_cast<std::int64_t>(given.least_free_MB * 1e6));
   const auto lcm = limber::open_lcm(url);
   Sink sink{&recorder, limber::monotonic_ns(), 0, {}};
   lcm->subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
-  spdlog::info("recording {} to {}", url, path);
+  spdlog::info("recording {} to {}", url, given.path);
   const std::int64_t start_ns = limber::monotonic_ns();
   const int descriptor = lcm->getFileno();
   std::int64_t stopped_ns = 0;
   while (true) {
     const std::int64_t now = limber::monotonic_ns();
-    if (stopped_ns == 0 && (stop != 0 || (duration_s > 0 && now - start_ns > duration_s * 1e9)))
+    if (stopped_ns == 0 &&
+        (stop != 0 || (given.duration_s > 0 && now - start_ns > given.duration_s * 1e9)))
       stopped_ns = now;
-    if (stopped_ns != 0 && (now - sink.last_ns > kQuiet_ns || now - stopped_ns > tail_s * 1e9))
+    if (stopped_ns != 0 &&
+        (now - sink.last_ns > kQuiet_ns || now - stopped_ns > given.tail_s * 1e9))
       break;
     if (limber::wait_readable(std::span(&descriptor, 1), now + 50'000'000)) lcm->handle();
     if (!sink.failure.empty()) throw std::runtime_error(sink.failure);
   }
+  recorder.close();
   std::printf("%s\n", recorder.report().c_str());
   return limber::kExitDone;
 }
@@ -74,14 +84,14 @@ int main(int argc, char** argv) {
   limber::CommandLine line(
       "limber-record",
       "Records every message of the user plane to an LCM event log, without dropping any.");
-  std::string path;
-  double duration_s = 0.0;
-  double tail_s = kTail_s;
-  line.text("--out", &path, "log file to write").required();
-  line.number("--duration", &duration_s, 0.0, 1e6,
+  Options given;
+  line.text("--out", &given.path, "log file to write; compressed if it ends in .zst").required();
+  line.number("--duration", &given.duration_s, 0.0, 1e6,
               "stop after this many seconds (default: on Ctrl-C)");
-  line.number("--tail", &tail_s, 0.0, 60.0,
+  line.number("--tail", &given.tail_s, 0.0, 60.0,
               "once stopped, record on until nothing comes, at most this many seconds");
-  return limber::run_program(
-      line, argc, argv, [&] { return record(path, limber::user_plane_url(), duration_s, tail_s); });
+  line.number("--least-free-MB", &given.least_free_MB, 0.0, 1e9,
+              "stop when less than this is free on the disk");
+  return limber::run_program(line, argc, argv,
+                             [&] { return record(given, limber::user_plane_url()); });
 }

@@ -1,11 +1,12 @@
 #include "tools/record/recorder.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
-#include "common/config_error.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -23,26 +24,22 @@ std::int64_t sequence_number(const void* data) {
 
 }  // namespace
 
-Recorder::Recorder(const std::string& path) : log_(path, "w"), path_(path) {
-  if (!log_.good()) throw ConfigError::at(path, 0, "", "cannot be written");
-}
-
 void Recorder::write(std::int64_t time_us, const std::string& channel, const void* data,
                      std::int32_t size) {
-  lcm::LogEvent event{};
-  event.eventnum = messages_;
-  event.timestamp = time_us;
-  event.channel = channel;
-  event.datalen = size;
-  event.data = const_cast<void*>(data);  // the library only reads it
-  if (log_.writeEvent(&event) != 0)
-    throw std::runtime_error(path_ + ": write failed; is the disk full?");
-  ++messages_;
-  bytes_ += size;
   const auto [entry, fresh] = channels_.try_emplace(channel);
   ChannelCount& count = entry->second;
   if (fresh) count.numbered = !std::ranges::count(channels::kUnnumbered, channel);
-  ++count.messages;
+  if (log_.offer(time_us, channel, data, size)) {
+    ++messages_;
+    bytes_ += size;
+    ++count.messages;
+  } else if (const std::string failure = log_.failure(); !failure.empty()) {
+    throw std::runtime_error(failure);
+  } else {
+    ++count.lost;
+    if (!std::exchange(slow_, true))
+      spdlog::warn("the disk is too slow: messages are left out, and counted as lost");
+  }
   if (size < kFingerprintBytes + 8 || !count.numbered) return;
   const std::int64_t seq = sequence_number(data);
   if (count.last_seq >= 0 && seq > count.last_seq + 1) count.lost += seq - count.last_seq - 1;
@@ -54,8 +51,8 @@ std::string Recorder::report() const {
   for (const auto& [channel, count] : channels_) {
     lost += fmt::format("{}\"{}\": {}", lost.empty() ? "" : ", ", channel, count.lost);
   }
-  return fmt::format("{{\"messages\": {}, \"bytes\": {}, \"lost\": {{{}}}}}", messages_, bytes_,
-                     lost);
+  return fmt::format("{{\"messages\": {}, \"bytes\": {}, \"file_bytes\": {}, \"lost\": {{{}}}}}",
+                     messages_, bytes_, log_.bytes_on_disk(), lost);
 }
 
 }  // namespace limber

@@ -1,11 +1,12 @@
-// Writes every message of an LCM plane to an event log, in lcm-logger's format, without dropping
-// any, and counts by sequence number what never arrived.
+// Writes every message of an LCM plane to an event log without dropping any, and counts by sequence
+// number what never arrived.
 #pragma once
 
 #include <cstdint>
-#include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <string>
+
+#include "common/event_log.h"
 
 namespace limber {
 
@@ -20,22 +21,25 @@ struct ChannelCount {
 
 class Recorder {
  public:
-  /// Throws ConfigError if the file cannot be written.
-  explicit Recorder(const std::string& path);
+  /// Throws ConfigError as EventLog does.
+  Recorder(const std::string& path, std::int64_t least_free_bytes) : log_(path, least_free_bytes) {}
 
+  /// A message that the disk is too slow for is counted as lost; the first is warned of.
   /// Throws std::runtime_error when the disk refuses (full, gone).
   void write(std::int64_t time_us, const std::string& channel, const void* data, std::int32_t size);
+  /// Throws std::runtime_error when the disk refuses.
+  void close() { log_.close(); }
 
   const std::map<std::string, ChannelCount>& channels() const { return channels_; }
-  /// One line of JSON: {"messages": n, "bytes": n, "lost": {"CHANNEL": n, ...}}.
+  /// One line of JSON: {"messages": n, "bytes": n, "file_bytes": n, "lost": {"CHANNEL": n, ...}}.
   std::string report() const;
 
  private:
-  lcm::LogFile log_;
-  std::string path_;
+  EventLog log_;
   std::map<std::string, ChannelCount> channels_;
   std::int64_t messages_ = 0;
   std::int64_t bytes_ = 0;
+  bool slow_ = false;
 };
 
 }  // namespace limber

@@ -313,5 +313,5 @@ def test_a_missing_package_is_named_with_the_command(path, monkeypatch):
 
 def test_events_of_a_file_are_whole(path):
     damage = event_file.Damage()
-    found = list(event_file.events(event_file.contents(path), damage))
+    found = list(event_file.events(event_file.contents(path, damage), damage))
     assert len(found) == len(log_bytes()) and not str(damage)

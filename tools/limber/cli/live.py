@@ -40,9 +40,11 @@ def watch(
     module.watch(law_names(), once, console)
 
 
-@app.command()
+@app.command(epilog="Example: limber record --out push.lcmlog.zst --duration 10")
 def record(
-    out: Annotated[Path, typer.Option("--out", help="Log file to write.")],
+    out: Annotated[
+        Path, typer.Option("--out", help="Log file to write; compressed if it ends in .zst.")
+    ],
     duration: Annotated[
         float, typer.Option(min=0.0, max=1e6, help="Seconds; 0: until Ctrl-C.")
     ] = 0.0,

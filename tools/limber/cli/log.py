@@ -14,7 +14,7 @@ log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help
 app.add_typer(log_app, name="log")
 
 
-@log_app.command()
+@log_app.command(epilog="Example: limber log info out/demo-1")
 def info(path: LogPath) -> None:
     """List the channels of a log, lost messages and damage."""
     from limber.log import commands
@@ -22,7 +22,7 @@ def info(path: LogPath) -> None:
     commands.info(path, console)
 
 
-@log_app.command()
+@log_app.command(epilog="Example: limber log rate out/demo-1")
 def rate(path: LogPath) -> None:
     """Show rate and jitter of each channel."""
     from limber.log import commands
@@ -30,7 +30,7 @@ def rate(path: LogPath) -> None:
     commands.rate(path, console)
 
 
-@log_app.command()
+@log_app.command(epilog="Example: limber log events out/demo-1")
 def events(
     path: LogPath,
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
@@ -41,7 +41,7 @@ def events(
     commands.show_events(path, names_of(_robot_of(path, robot)), console)
 
 
-@log_app.command()
+@log_app.command(epilog="Example: limber log echo out/demo-1 JOINT_STATE --field q --at 2.5")
 def echo(
     path: LogPath,
     channel: Annotated[str, typer.Argument(help="Such as JOINT_STATE.")],
@@ -55,7 +55,7 @@ def echo(
     commands.echo(path, channel, field, count, at)
 
 
-@log_app.command()
+@log_app.command(epilog="Example: limber log convert out/demo-1 --to mcap")
 def convert(
     path: LogPath,
     to: Annotated[
@@ -71,10 +71,7 @@ def convert(
     ] = "",
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
 ) -> None:
-    """Convert a log for other tools: MCAP (Foxglove, PlotJuggler), Rerun, Parquet, CSV, numpy, LCM.
-
-    Example: limber log convert out/demo-1 --to mcap
-    """
+    """Convert a log for other tools: Foxglove, PlotJuggler, Rerun, pandas, spreadsheets, LCM."""
     from limber.log.convert import conversion
 
     wanted = [name.strip() for name in channels.split(",") if name.strip()]

@@ -23,6 +23,11 @@ Page = Annotated[
     bool, typer.Option("--page", help="Serve the web page beside it: 3D, charts, STOP.")
 ]
 
+Plain = Annotated[
+    bool,
+    typer.Option("--record-plain", help="Leave run.lcmlog, not the compressed run.lcmlog.zst."),
+]
+
 
 @app.command()
 def demo(
@@ -73,6 +78,7 @@ def run(
         bool | None,
         typer.Option("--record/--no-record", help="Overrides the scenario's `record`."),
     ] = None,
+    record_plain: Plain = False,
     private: Private = False,
 ) -> None:
     """Run a scenario with the real processes, record it, measure it."""
@@ -87,6 +93,7 @@ def run(
         private,
         rate_hz=rate,
         record=record,
+        record_plain=record_plain,
         record_can=can,
         page=page,
     )
@@ -100,11 +107,14 @@ def lab(
     can: Annotated[
         bool, typer.Option("--can", help="Write the CAN frames, too: run.can.log.")
     ] = False,
+    record_plain: Plain = False,
 ) -> None:
     """Run a scenario in one process, as fast as possible; the same bytes as run --lockstep."""
     from limber.run import commands
+    from limber.run.options import RunOptions
 
-    raise typer.Exit(commands.lab(scenario, out, can, console))
+    options = RunOptions(out, record_can=can, record_plain=record_plain)
+    raise typer.Exit(commands.lab(scenario, options, console))
 
 
 @app.command()

@@ -21,6 +21,7 @@ from limber.paths import output_folder
 from limber.referee.judge import require_no_breach
 from limber.run import runner
 from limber.run.commands import load_checked
+from limber.run.options import LOG_NAME
 
 # What every experiment needs is imported from here
 __all__ = ["Comparison", "Context", "at_least", "at_most", "case", "ideal_and_bus", "near_zero"]
@@ -52,6 +53,7 @@ class Context:
             path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
         self.progress(f"lab: {name}")
         folder = output_folder(self.out / name)
+        (folder / LOG_NAME).unlink(missing_ok=True)  # of the last time
         judged = os.environ.get(REFEREE) == "1"
         result = runner.lab(load_checked(path), folder, Console(quiet=True), record_can=judged)
         if judged:

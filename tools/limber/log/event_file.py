@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from limber.errors import InputError
+from limber.log import compressed
 
 SYNC = b"\xed\xa1\xda\x01"
 HEADER = struct.Struct(">4sqqii")  # sync word, event number, time stamp in µs, two lengths
@@ -23,10 +24,14 @@ Event = tuple[int, int, int, int, str, int]
 
 @dataclass
 class Damage:
-    """`skipped_bytes`: inside the file; `truncated_bytes`: an unfinished event at the end."""
+    """`skipped_bytes`: inside the file; `truncated_bytes`: an unfinished event at the end; the same
+    of compressed blocks.
+    """
 
     skipped_bytes: int = 0
     truncated_bytes: int = 0
+    packed_skipped_bytes: int = 0
+    packed_truncated_bytes: int = 0
 
     def __str__(self) -> str:
         """One sentence on what could not be read; empty if everything was."""
@@ -35,15 +40,29 @@ class Damage:
             parts.append(f"{self.skipped_bytes} damaged bytes skipped")
         if self.truncated_bytes:
             parts.append(f"the last event is cut off ({self.truncated_bytes} bytes)")
+        if self.packed_skipped_bytes:
+            parts.append(f"{self.packed_skipped_bytes} damaged compressed bytes skipped")
+        if self.packed_truncated_bytes:
+            parts.append(f"the last block is cut off ({self.packed_truncated_bytes} bytes)")
         return ", ".join(parts)
 
 
-def contents(path: Path) -> mmap.mmap:
-    """The bytes of a log; the memory that they take is the system's to reclaim."""
+def contents(path: Path, damage: Damage) -> mmap.mmap:
+    """The bytes of a log, also of a compressed one; their memory is the system's to reclaim."""
     if path.stat().st_size == 0:
         raise InputError(f"{path} is empty: nothing was recorded")
     with open(path, "rb") as file:
-        return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    if data[:4] != compressed.FRAME and path.suffix != ".zst":
+        return data
+    plain, damage.packed_skipped_bytes, damage.packed_truncated_bytes = compressed.unpack(
+        data, path
+    )
+    with plain, data:
+        if plain.tell() == 0:
+            raise InputError(f"{path} is no compressed log: it holds no whole block")
+        plain.flush()
+        return mmap.mmap(plain.fileno(), 0, access=mmap.ACCESS_READ)
 
 
 def events(data: mmap.mmap, damage: Damage) -> Iterator[Event]:

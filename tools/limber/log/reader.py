@@ -14,6 +14,7 @@ from limber.errors import InputError
 from limber.log.event_file import Damage, contents, events
 from limber.paths import existing_file
 
+LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
 PIECE = 1 << 14  # messages read at a time where only some fields count
 
 
@@ -37,7 +38,7 @@ class Log:
         self.channels: dict[str, Events] = {}
         self._damage = Damage()
         self._arrays: dict[str, np.ndarray] = {}
-        self._data = contents(self.path)
+        self._data = contents(self.path, self._damage)
         for _, start, size, stamp_us, channel, _ in events(self._data, self._damage):
             found = self.channels.setdefault(channel, Events())
             found.offsets.append(start)
@@ -195,9 +196,11 @@ def count_gaps(sequence: np.ndarray) -> int:
 
 
 def log_file(path: Path) -> Path:
-    """`path` itself, or the run.lcmlog in it if it is the folder of a run."""
-    if path.is_dir():
-        if not (path / "run.lcmlog").is_file():
-            raise InputError(f"{path} holds no run.lcmlog: give a log, or the folder of a run")
-        return path / "run.lcmlog"
-    return existing_file(path, "log, or the folder of a run,")
+    """`path` itself, or the log in it if it is the folder of a run."""
+    if not path.is_dir():
+        return existing_file(path, "log, or the folder of a run,")
+    found = next((path / name for name in LOG_NAMES if (path / name).is_file()), None)
+    if found is None:
+        names = " or ".join(LOG_NAMES)
+        raise InputError(f"{path} holds no {names}: give a log, or the folder of a run")
+    return found

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from limber.errors import OK, OUT_OF_TOLERANCE, InputError
 from limber.live import network
-from limber.log.reader import Log
+from limber.log.reader import Log, log_file
 from limber.measure.results import Summary, load_header
 from limber.measure.summarize import measure
 from limber.model.scenario import Scenario, load_scenario
@@ -51,10 +51,11 @@ def run(path: Path, options: RunOptions, console: Console) -> int:
     return report(runner.run(scenario, folder, options, console), scenario, console)
 
 
-def lab(path: Path, out: Path | None, record_can: bool, console: Console) -> int:
+def lab(path: Path, options: RunOptions, console: Console) -> int:
     scenario = _load(path, console)
-    folder = run_folder(out or next_folder(scenario.name))
-    return report(runner.lab(scenario, folder, console, record_can), scenario, console)
+    folder = run_folder(options.out or next_folder(scenario.name))
+    finished = runner.lab(scenario, folder, console, options.record_can, options.log_name)
+    return report(finished, scenario, console)
 
 
 def measure_again(folder: Path, console: Console) -> int:
@@ -64,6 +65,7 @@ def measure_again(folder: Path, console: Console) -> int:
     finished = FinishedRun(
         folder, header.get("mode", "unknown"), header.get("stopped_early", False)
     )
+    finished.log_name = log_file(folder).name
     finished.recorder = {"lost": header.get("recorder_lost", {})}
     return report(finished, scenario, console)
 

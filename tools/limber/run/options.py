@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-LOG_NAME = "run.lcmlog"
+LOG_NAME = "run.lcmlog.zst"  # limber-record compresses what ends so
+PLAIN_LOG_NAME = "run.lcmlog"
 CAN_LOG_NAME = "run.can.log"
 
 
@@ -18,8 +19,13 @@ class RunOptions:
     live_view: bool = False  # show the arm, not only the progress
     rate_hz: float | None = None  # None: robot.yaml's
     record: bool | None = None  # None: as the scenario says
+    record_plain: bool = False  # a plain LCM log instead of a compressed one
     record_can: bool = False  # the frames, too
     page: bool = False  # `limber monitor` beside it
+
+    @property
+    def log_name(self) -> str:
+        return PLAIN_LOG_NAME if self.record_plain else LOG_NAME
 
 
 @dataclass
@@ -28,11 +34,12 @@ class FinishedRun:
     mode: str  # lockstep, realtime or lab
     stopped_early: bool = False
     recorded: bool = True
+    log_name: str = LOG_NAME
     recorder: dict[str, Any] = field(default_factory=dict)  # the report of limber-record
 
     @property
     def log(self) -> Path:
-        return self.folder / LOG_NAME
+        return self.folder / self.log_name
 
     @property
     def can_log(self) -> Path:

@@ -35,7 +35,8 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
     recorded = scenario.record if options.record is None else options.record
     commands = _commands(scenario, folder, options, lockstep, recorded)
     copy_inputs(scenario, folder)
-    result = FinishedRun(folder, "lockstep" if lockstep else "realtime", recorded=recorded)
+    mode = "lockstep" if lockstep else "realtime"
+    result = FinishedRun(folder, mode, recorded=recorded, log_name=options.log_name)
     with process_group(folder) as group, _sigterm_as_interrupt():
         for name, command in commands.items():
             _start(group, name, command, console)
@@ -51,11 +52,15 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
 
 
 def lab(
-    scenario: Scenario, folder: Path, console: Console, record_can: bool = False
+    scenario: Scenario,
+    folder: Path,
+    console: Console,
+    record_can: bool = False,
+    log_name: str = LOG_NAME,
 ) -> FinishedRun:
     """The whole stack in one process, in lock step, as fast as the processor allows."""
     copy_inputs(scenario, folder)
-    result = FinishedRun(folder, "lab")
+    result = FinishedRun(folder, "lab", log_name=log_name)
     path = str(scenario.path)
     command = [str(program("limber-lab")), path, "--log", str(result.log), "--progress"]
     if record_can:
@@ -96,7 +101,7 @@ def _commands(
     rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
     commands: dict[str, list[str]] = {}
     if recorded:
-        commands["limber-record"] = ["--out", str(folder / LOG_NAME)]
+        commands["limber-record"] = ["--out", str(folder / options.log_name)]
     if options.record_can:
         can_log = str(folder / CAN_LOG_NAME)
         commands["limber-can"] = ["record", robot, "--out", can_log, *buses]
