@@ -43,6 +43,7 @@ CLIENTS = {
 class Channel:
     type_name: str
     timeout_s: float
+    sender: str  # driver, controller, sim or user
     numbered: bool  # seq counts the sender's messages; of requests it only rises
 
 
@@ -68,15 +69,22 @@ def _table() -> dict[str, Any]:
 def channels() -> dict[str, Channel]:
     """Channels of the user plane by name: those of a log and of `limber watch`."""
     return {
-        row.get("name", key): Channel(row["type"], row["timeout_s"], row["rate"] != "event")
+        row.get("name", key): Channel(
+            row["type"], row["timeout_s"], row["from"], row["rate"] != "event"
+        )
         for key, row in _table()["channels"].items()
         if row["plane"] == "user"
     }
 
 
+def plane_url(plane: str) -> str:
+    """The channel table's address of a plane: `arm` or `user`."""
+    return _table()["planes"][plane]
+
+
 def user_plane_url() -> str:
     """$LCM_DEFAULT_URL or the channel table's address, with a large receive buffer."""
-    url = os.environ.get("LCM_DEFAULT_URL") or _table()["planes"]["user"]
+    url = os.environ.get("LCM_DEFAULT_URL") or plane_url("user")
     return url + ("&" if "?" in url else "?") + "recv_buf_size=2097152"
 
 

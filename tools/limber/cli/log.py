@@ -8,6 +8,7 @@ import typer
 from limber.cli.options import LogPath, Out, console, names_of
 
 JOINTS_OF = "For the joints' names; default: the robot.yaml beside the log."
+ONLY = "Only these, such as JOINT_STATE,SIM_TRUTH; default: all."
 
 app = typer.Typer()
 log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
@@ -66,16 +67,13 @@ def convert(
         Path | None,
         typer.Option("--out", help="File, or folder for csv and parquet; default: beside the log."),
     ] = None,
-    channels: Annotated[
-        str, typer.Option(help="Only these, such as JOINT_STATE,SIM_TRUTH; default: all.")
-    ] = "",
+    channels: Annotated[str, typer.Option(help=ONLY)] = "",
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
 ) -> None:
     """Convert a log for other tools: Foxglove, PlotJuggler, Rerun, pandas, spreadsheets, LCM."""
     from limber.log.convert import conversion
 
-    wanted = [name.strip() for name in channels.split(",") if name.strip()]
-    conversion.convert(path, to, out, wanted, names_of(_robot_of(path, robot)), console)
+    conversion.convert(path, to, out, _names(channels), names_of(_robot_of(path, robot)), console)
 
 
 def _robot_of(path: Path, robot: str | None) -> str | None:
@@ -85,7 +83,44 @@ def _robot_of(path: Path, robot: str | None) -> str | None:
     return robot or beside
 
 
-@app.command()
+@app.command(epilog="Example: limber replay out/demo-1 --speed 0.5 --from 3 --to 8")
+def replay(
+    path: LogPath,
+    speed: Annotated[
+        float, typer.Option(min=0.01, max=100.0, help="Times the speed of the recording.")
+    ] = 1.0,
+    begin: Annotated[
+        float, typer.Option("--from", min=0.0, help="Seconds since the first message.")
+    ] = 0.0,
+    end: Annotated[
+        float | None, typer.Option("--to", min=0.0, help="Seconds since the first message.")
+    ] = None,
+    channels: Annotated[str, typer.Option(help=ONLY)] = "",
+    url: Annotated[
+        str | None, typer.Option(help="LCM address; default: where tools listen to an arm.")
+    ] = None,
+    commands_as: Annotated[
+        str, typer.Option(help="Send commands, too, under names that begin so: REPLAY_.")
+    ] = "",
+    with_commands: Annotated[
+        bool, typer.Option("--with-commands", help="Send commands as they are; needs --url.")
+    ] = False,
+) -> None:
+    """Send the messages of a log again, but no commands and not where an arm is running."""
+    from limber.replay import replay as module
+
+    until = float("inf") if end is None else end
+    options = module.ReplayOptions(
+        speed, begin, until, tuple(_names(channels)), url, commands_as, with_commands
+    )
+    module.replay(path, options, console)
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+@app.command(epilog="Example: limber plot out/demo-1 --what torque")
 def plot(
     path: LogPath,
     what: Annotated[

@@ -53,6 +53,12 @@ class Log:
             if channel in channels:
                 yield self._data[begin:end]
 
+    def in_order(self, channels: Collection[str]) -> Iterator[tuple[int, str, bytes]]:
+        """Time stamp in µs, channel and data of the whole events, in the order of the file."""
+        for _, start, size, stamp_us, channel, _ in events(self._data, Damage()):
+            if channel in channels:
+                yield stamp_us, channel, self._data[start : start + size]
+
     def type_of(self, channel: str) -> str | None:
         """Message type by the channel table; None for channels that are not limber's."""
         row = messages.channels().get(channel)

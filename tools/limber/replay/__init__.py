@@ -1,0 +1,1 @@
+"""`limber replay`: a recorded log, sent again as LCM messages."""
