@@ -65,6 +65,9 @@ WRONG = [
     (["log", "convert", "{dir}/run.lcmlog", "--to", "csv", "--out", "{dir}/x.csv"], "a folder"),
     (["log", "convert", "{dir}/run.lcmlog", "--to", "lcm"], "exists already"),
     (["log", "convert", "{dir}", "--to", "mcap", "--channels", "JOINT_SATE"], "JOINT_STATE"),
+    (["log", "cut", "{dir}/run.lcmlog", "--out", "{dir}/x.mcap"], ".lcmlog"),
+    (["log", "cut", "{dir}/run.lcmlog", "--out", "{dir}/run.lcmlog"], "exists already"),
+    (["log", "cut", "{dir}", "--from", "9", "--out", "{dir}/x.lcmlog"], "ends after 0.019 s"),
     (["replay", "{dir}/missing.lcmlog"], "does not exist"),
     (["replay", "{dir}/run.lcmlog", "--speed", "0"], "--speed"),
     (["replay", "{dir}/run.lcmlog", "--from", "9"], "the log ends after 0.019 s"),
@@ -197,6 +200,12 @@ def test_every_command_has_a_line_of_help(limber):
     for name, command in commands.items():
         assert name in shown
         assert command.help and command.help.endswith("."), name
+
+
+def test_every_command_that_reads_logs_has_an_example():
+    commands = get_command(app).commands
+    for command in [*commands["log"].commands.values(), commands["plot"], commands["replay"]]:
+        assert command.epilog.startswith("Example: limber "), command.name
 
 
 def test_doctor_tells_level_and_cure(limber):

@@ -68,7 +68,13 @@ def test_lockstep_run_leaves_everything(limber, tmp_path):
     assert summary["mode"] == "lockstep" and summary["robot"] == "openarm"
     assert summary["pass"] is (done.returncode == 0)
     names = {path.name for path in tmp_path.iterdir()}
-    assert {"run.lcmlog.zst", "scenario.yaml", "robot.yaml", "robot.urdf", "limber-sim.log"} <= names
+    assert {
+        "run.lcmlog.zst",
+        "scenario.yaml",
+        "robot.yaml",
+        "robot.urdf",
+        "limber-sim.log",
+    } <= names
     frames = (tmp_path / "run.can.log").read_text()
     assert frames.count(" openarm 1FFFFFF0#") >= 3000, (
         "a TICK each cycle, and those of the roll call"

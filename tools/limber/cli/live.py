@@ -40,6 +40,14 @@ def watch(
     module.watch(law_names(), once, console)
 
 
+@app.command(epilog="Example: limber spy")
+def spy() -> None:
+    """Start lcm-spy with limber's message types: every channel, its rate, its fields."""
+    from limber.live import spy as module
+
+    module.start()
+
+
 @app.command(epilog="Example: limber record --out push.lcmlog.zst --duration 10")
 def record(
     out: Annotated[

@@ -9,6 +9,10 @@ from limber.cli.options import LogPath, Out, console, names_of
 
 JOINTS_OF = "For the joints' names; default: the robot.yaml beside the log."
 ONLY = "Only these, such as JOINT_STATE,SIM_TRUTH; default: all."
+Begin = Annotated[float, typer.Option("--from", min=0.0, help="Seconds since the first message.")]
+End = Annotated[
+    float | None, typer.Option("--to", min=0.0, help="Seconds since the first message.")
+]
 
 app = typer.Typer()
 log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
@@ -76,6 +80,23 @@ def convert(
     conversion.convert(path, to, out, _names(channels), names_of(_robot_of(path, robot)), console)
 
 
+@log_app.command(epilog="Example: limber log cut out/demo-1 --from 3 --to 8 --out push.lcmlog.zst")
+def cut(
+    path: LogPath,
+    out: Annotated[
+        Path, typer.Option("--out", help="Log to write; compressed if it ends in .zst.")
+    ],
+    begin: Begin = 0.0,
+    end: End = None,
+    channels: Annotated[str, typer.Option(help=ONLY)] = "",
+) -> None:
+    """Copy a part of a log into a log of its own."""
+    from limber.log import cut as module
+
+    part = module.Part(begin, _until(end), tuple(_names(channels)))
+    module.cut(path, out, part, console)
+
+
 def _robot_of(path: Path, robot: str | None) -> str | None:
     """As given, or the folder of the log if it holds a robot.yaml."""
     folder = path if path.is_dir() else path.parent
@@ -89,12 +110,8 @@ def replay(
     speed: Annotated[
         float, typer.Option(min=0.01, max=100.0, help="Times the speed of the recording.")
     ] = 1.0,
-    begin: Annotated[
-        float, typer.Option("--from", min=0.0, help="Seconds since the first message.")
-    ] = 0.0,
-    end: Annotated[
-        float | None, typer.Option("--to", min=0.0, help="Seconds since the first message.")
-    ] = None,
+    begin: Begin = 0.0,
+    end: End = None,
     channels: Annotated[str, typer.Option(help=ONLY)] = "",
     url: Annotated[
         str | None, typer.Option(help="LCM address; default: where tools listen to an arm.")
@@ -109,11 +126,14 @@ def replay(
     """Send the messages of a log again, but no commands and not where an arm is running."""
     from limber.replay import replay as module
 
-    until = float("inf") if end is None else end
     options = module.ReplayOptions(
-        speed, begin, until, tuple(_names(channels)), url, commands_as, with_commands
+        speed, begin, _until(end), tuple(_names(channels)), url, commands_as, with_commands
     )
     module.replay(path, options, console)
+
+
+def _until(end: float | None) -> float:
+    return float("inf") if end is None else end
 
 
 def _names(text: str) -> list[str]:

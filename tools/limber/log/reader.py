@@ -1,7 +1,7 @@
 """Reads LCM event logs: whole channels at once, damaged files as far as they are good."""
 
 from array import array
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -47,11 +47,11 @@ class Log:
         if not self.channels:
             raise InputError(f"{self.path} is no LCM event log: it holds no event")
 
-    def event_bytes(self, channels: Collection[str]) -> Iterator[bytes]:
-        """The whole events of these channels with their headers, in the order of the file."""
-        for begin, _, _, _, channel, end in events(self._data, Damage()):
+    def whole_events(self, channels: Collection[str]) -> Iterator[tuple[int, bytes]]:
+        """Time stamp in µs and bytes with header of the whole events, in the order of the file."""
+        for begin, _, _, stamp_us, channel, end in events(self._data, Damage()):
             if channel in channels:
-                yield self._data[begin:end]
+                yield stamp_us, self._data[begin:end]
 
     def in_order(self, channels: Collection[str]) -> Iterator[tuple[int, str, bytes]]:
         """Time stamp in µs, channel and data of the whole events, in the order of the file."""
@@ -161,17 +161,37 @@ class Log:
         if row is None or not row.numbered:
             return 0
         try:
-            records = self.read(channel)
+            number, sender = _number_and_sender(row.type_name)
+            records = self.fields(channel, *filter(None, (number, sender)))
         except InputError:
             return 0  # of another version: nothing in it is known
-        numbers = records[records.dtype.names[1]]
-        sender = next((name for name in messages.SENDERS if name in records.dtype.names), None)
+        numbers = records[number]
         if sender is None:
             return count_gaps(numbers)
         return sum(count_gaps(numbers[records[sender] == s]) for s in np.unique(records[sender]))
 
     def stamps_s(self, channel: str) -> np.ndarray:
         return np.asarray(self.channels[channel].stamps_us) * 1e-6
+
+    @property
+    def first_us(self) -> int:
+        """Time stamp of the first message."""
+        return min(min(found.stamps_us) for found in self.channels.values())
+
+    @property
+    def length_s(self) -> float:
+        """From the first message to the last."""
+        last_us = max(max(found.stamps_us) for found in self.channels.values())
+        return (last_us - self.first_us) * 1e-6
+
+    def chosen(self, wanted: Sequence[str]) -> list[str]:
+        """These channels, or all if none is named; InputError for one that is not there."""
+        for name in wanted:
+            if name not in self.channels:
+                raise InputError(
+                    f"no channel '{name}' in this log: {', '.join(sorted(self.channels))}"
+                )
+        return list(wanted) or sorted(self.channels)
 
     @property
     def size_bytes(self) -> int:
@@ -188,6 +208,12 @@ class Log:
     def damage(self) -> str:
         """One sentence on what could not be read; empty if everything was."""
         return str(self._damage)
+
+
+def _number_and_sender(type_name: str) -> tuple[str, str | None]:
+    """The fields that count a sender's messages and that name its run, if there is one."""
+    names = messages.message_class(type_name).__slots__
+    return names[0], next((name for name in messages.SENDERS if name in names), None)
 
 
 def time_s(records: np.ndarray) -> np.ndarray:

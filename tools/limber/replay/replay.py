@@ -57,8 +57,7 @@ def replay(path: Path, options: ReplayOptions, console: Console) -> None:
     )
     if not sent:
         raise InputError(f"{log.path}: nothing is left to send: {_why(left_out)}")
-    first_us = min(channel.stamps_us[0] for channel in log.channels.values())
-    length_s = (max(c.stamps_us[-1] for c in log.channels.values()) - first_us) * 1e-6
+    first_us, length_s = log.first_us, log.length_s
     if options.begin_s >= min(options.end_s, length_s):
         raise InputError(f"--from {options.begin_s:g}: the log ends after {length_s:g} s")
     try:

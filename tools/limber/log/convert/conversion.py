@@ -1,10 +1,8 @@
 """`limber log convert`: reads a log piece by piece and hands each to the writer of a format."""
 
 import importlib
-import shutil
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,8 +12,10 @@ from rich.progress import Progress
 from limber.errors import InputError, RunError
 from limber.log import events
 from limber.log.convert.windows import Writer, joint_names, windows
+from limber.log.cut import copy_events
 from limber.log.reader import Log, log_file
-from limber.paths import ROOT, output_folder
+from limber.log.results import complete_or_nothing, require_new
+from limber.paths import ROOT
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ FORMATS = {
     "mcap": Format(".mcap", "mcap_file", "McapFile"),
     "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False, extra="rerun"),
     "npz": Format(".npz", "npz_file", "NpzFile", text=False),
-    "lcm": Format(".lcmlog", "lcm_file", "LcmFile"),
+    "lcm": Format(".lcmlog", "", ""),
 }
 
 
@@ -53,18 +53,16 @@ def convert(
     source = log_file(path)
     target = out or source.with_name(base_name(source) + FORMATS[kind].suffix)
     writer_class = _writer_class(kind)
-    if target.exists():
-        raise InputError(f"{target} exists already: give another --out, or remove it")
+    require_new(target)
     log = Log(source)
-    channels = _channels(log, wanted)
+    channels = log.chosen(wanted)
     joints, several = joint_names(log, names.joints)
-    output_folder(target.parent)
-    with _complete_or_nothing(target) as part:
-        writer = writer_class(part, joints)
-        try:
-            told = _copy(log, kind, channels, writer, names, console)
-        finally:
-            writer.close()
+    told: list[str] = []
+    with complete_or_nothing(target) as part:
+        if writer_class is None:
+            copy_events(log, part, target.suffix == ".zst", channels)
+        else:
+            told = _write(log, kind, channels, writer_class(part, joints), names, console)
     if several:
         told.append(f"several arms in this log: joints have the names of the first, {joints}")
     for line in filter(None, [log.damage(), *told]):
@@ -90,6 +88,8 @@ def _format(to: str | None, out: Path | None) -> str:
         raise InputError(f"--to is missing: one of {', '.join(FORMATS)}")
     if not out.suffix:
         return "csv"
+    if out.name.endswith(".lcmlog.zst"):
+        return "lcm"
     for name, known in FORMATS.items():
         if out.suffix == known.suffix:
             return name
@@ -97,8 +97,11 @@ def _format(to: str | None, out: Path | None) -> str:
     raise InputError(f"--out {out}: end it in {endings}, or give --to {', '.join(FORMATS)}")
 
 
-def _writer_class(kind: str) -> type:
+def _writer_class(kind: str) -> type | None:
+    """None: events are copied as they are."""
     chosen = FORMATS[kind]
+    if not chosen.module:
+        return None
     try:
         module = importlib.import_module(f"limber.log.convert.{chosen.module}")
     except ImportError as error:
@@ -111,16 +114,7 @@ def _writer_class(kind: str) -> type:
     return getattr(module, chosen.writer)
 
 
-def _channels(log: Log, wanted: Sequence[str]) -> list[str]:
-    missing = [name for name in wanted if name not in log.channels]
-    if missing:
-        raise InputError(
-            f"no channel '{missing[0]}' in this log: {', '.join(sorted(log.channels))}"
-        )
-    return list(wanted) or sorted(log.channels)
-
-
-def _copy(
+def _write(
     log: Log,
     kind: str,
     channels: list[str],
@@ -129,9 +123,6 @@ def _copy(
     console: Console,
 ) -> list[str]:
     """Returns what the user has to know of it."""
-    if kind == "lcm":
-        writer.copy(log, channels)
-        return []
     told = []
     story: list[events.Event] = []
     try:
@@ -149,6 +140,7 @@ def _copy(
             for batch in taken:
                 copied[batch.channel] += len(batch.stamps_us)
             progress.update(task, completed=position)
+    writer.close()
     return told + [
         _left_out(log, name, len(log.channels[name]) - count, kind)
         for name, count in copied.items()
@@ -176,28 +168,6 @@ def arm_time_zero_us(log: Log) -> int:
             if len(found):
                 return int(stamps_us[0]) - int(found["time_ns"][0]) // 1000
     return 0
-
-
-@contextmanager
-def _complete_or_nothing(target: Path) -> Iterator[Path]:
-    """The place to write to; it gets its name when all is written, and goes away if it fails."""
-    part = target.with_name(f".{target.name}.part")
-    _remove(part)
-    try:
-        yield part
-        part.rename(target)
-    except OSError as error:
-        raise RunError(f"{target} cannot be written: {error.strerror}") from error
-    finally:
-        _remove(part)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
-    else:
-        with suppress(FileNotFoundError):
-            path.unlink()
 
 
 def _size(path: Path) -> int:
