@@ -9,6 +9,7 @@ from rich.console import Console
 
 from conftest import event_bytes, records
 from limber.errors import InputError, RunError
+from limber.log import compressed
 from limber.log.convert import conversion
 from limber.log.events import Names
 from limber.log.reader import Log
@@ -76,9 +77,13 @@ def test_cut_off_anywhere_every_whole_block_is_read(write):
         assert told == bool(unfinished)
 
 
+@pytest.mark.parametrize("piece", [1 << 17, 1])
 @pytest.mark.parametrize("place", [0, 3, 100, 1000, -1])
-def test_a_damaged_block_costs_that_block_only(write, place):
-    """No number in it is believed: in the middle of a frame only the checksum tells."""
+def test_a_damaged_block_costs_that_block_only(write, place, piece, monkeypatch):
+    """No number in it is believed: in the middle of a frame only the checksum tells. A frame that
+    is read in several pieces has been unpacked by then.
+    """
+    monkeypatch.setattr(compressed, "PIECE", piece)
     made = frames()
     hurt = bytearray(made[2])
     hurt[place] ^= 0x10
