@@ -45,8 +45,8 @@ def of_the_lab(scenario: Path, out: Path) -> dict[str, list[bytes]]:
 
 def of_three_processes(scenario: Path, out: Path, *options: str) -> dict[str, list[bytes]]:
     limber = str(ROOT / ".venv" / "bin" / "limber")
-    command = [limber, "run", str(scenario), "--lockstep", "--record-plain", *options, "--out", str(out)]
-    subprocess.run(command, check=True, timeout=300, stdin=subprocess.DEVNULL)
+    command = [limber, "run", str(scenario), "--lockstep", "--record-plain", "--out", str(out)]
+    subprocess.run([*command, *options], check=True, timeout=300, stdin=subprocess.DEVNULL)
     return payloads(out / "run.lcmlog")
 
 

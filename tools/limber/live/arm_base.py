@@ -132,7 +132,8 @@ class ArmBase(Quantities):
     def record(self, path: str | Path) -> Recording:
         """Context manager: an LCM log of every message while the block runs (limber.log.reader).
 
-        Compressed if the name ends in .zst; an existing log is not overwritten. Messages that were lost are counted in its `lost` and warned of.
+        Compressed if the name ends in .zst; an existing log is not overwritten.
+        Messages that were lost are counted in its `lost` and warned of.
         """
         return Recording(Path(path))
 
