@@ -58,6 +58,7 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
       cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
       start_watch_(robot.robot),
+      load_watch_(robot.robot),
       encoder_watch_(robot.robot),
       energy_watch_(robot.robot),
       info_(info_of(robot.robot, options.controller,
@@ -100,14 +101,21 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (!engaged) {
     encoder_watch_.reset();
     energy_watch_.reset();
+    load_watch_.relax(dt_s);
   }
-  if (engaged && !was_engaged_) start_watch_.begin(state);
+  if (engaged && !was_engaged_) {
+    start_watch_.begin(state);
+    load_watch_.begin();
+  }
   if (supervisor_.mode() != Mode::kHold) start_watch_.end();
   was_engaged_ = engaged;
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
   const MatrixJ& M = cycle_.inertia();
+  const LoadWatch::Model model{cycle_.gravity(), cycle_.coriolis(), M, cycle_.jacobian()};
+  if (const int joint = load_watch_.wrong(state, model, dt_s); joint >= 0)
+    supervisor_.raise(Event::kStrayed, joint);
   if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);
   if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);
@@ -162,7 +170,7 @@ void ArmController::write_answer(const joint_state_t& state) noexcept {
   const int n = answer_.num_joints;
   Eigen::Map<VectorJ>(answer_.tau, n) = cycle_.torque();
   Eigen::Map<VectorJ>(answer_.tau_preload, n) = cycle_.preload_torque();
-  Eigen::Map<VectorJ>(answer_.tau_gravity, n) = cycle_.gravity();
+  Eigen::Map<VectorJ>(answer_.tau_gravity, n) = load_watch_.carrying(cycle_.gravity());
 }
 
 void ArmController::write_status(std::int64_t started_ns) noexcept {

@@ -17,6 +17,7 @@
 
 #include "controller/modes/encoder_watch.h"
 #include "controller/modes/energy_watch.h"
+#include "controller/modes/load_watch.h"
 #include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
 #include "controller/request_outcome.h"
@@ -86,6 +87,7 @@ class ArmController {
   controller::Supervisor supervisor_;
   controller::TorqueCycle cycle_;
   controller::StartWatch start_watch_;
+  controller::LoadWatch load_watch_;
   controller::EncoderWatch encoder_watch_;
   controller::EnergyWatch energy_watch_;
   bool was_engaged_ = false;

@@ -66,6 +66,9 @@ class TorqueCycle {
   const VectorJ& gravity() const noexcept { return gravity_; }
   /// Inertia with rotors as of measure(), kg m^2.
   const MatrixJ& inertia() const noexcept { return arm_.terms().M_total; }
+  const VectorJ& coriolis() const noexcept { return arm_.terms().Cv; }
+  /// Of the tip, likewise.
+  const Matrix6J& jacobian() const noexcept { return arm_.terms().J; }
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:

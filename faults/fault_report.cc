@@ -17,21 +17,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json as_json(const Reaction& reaction) {
-  return {{"cycles", reaction.cycles},
-          {"state", reaction.state},
-          {"cause", reaction.cause},
-          {"joint", reaction.joint},
-          {"text", reaction.text},
-          {"fault_cycles", reaction.fault_cycles},
-          {"lost", reaction.lost},
-          {"late", reaction.late},
-          {"invalid", reaction.invalid},
-          {"foreign", reaction.foreign},
-          {"refused", reaction.refused},
-          {"verdict", reaction.verdict},
-          {"returned", reaction.returned},
-          {"moved_rad", reaction.moved_rad},
-          {"speed_rad_per_s", reaction.speed_rad_per_s},
+  return {{"cycles", reaction.cycles},       {"state", reaction.state},
+          {"cause", reaction.cause},         {"joint", reaction.joint},
+          {"text", reaction.text},           {"fault_cycles", reaction.fault_cycles},
+          {"lost", reaction.lost},           {"late", reaction.late},
+          {"invalid", reaction.invalid},     {"foreign", reaction.foreign},
+          {"refused", reaction.refused},     {"verdict", reaction.verdict},
+          {"returned", reaction.returned},   {"moved_on_rad", reaction.moved_on_rad},
+          {"moved_rad", reaction.moved_rad}, {"speed_rad_per_s", reaction.speed_rad_per_s},
           {"fault_ns", reaction.fault_ns}};
 }
 
@@ -53,6 +46,7 @@ Json worst(const std::vector<Reaction>& all) {
   out["foreign"] = greatest(&Reaction::foreign);
   out["refused"] = greatest(&Reaction::refused);
   out["returned"] = greatest(&Reaction::returned);
+  out["moved_on_rad"] = greatest(&Reaction::moved_on_rad);
   out["moved_rad"] = greatest(&Reaction::moved_rad);
   out["speed_rad_per_s"] = greatest(&Reaction::speed_rad_per_s);
   out["each"] = Json::array();

@@ -144,6 +144,7 @@ Reaction FaultStage::watch(int cycles) {
     out.returned = out.returned || (out.cycles >= 0 && on());
     const bool left = was_on ? state.drive_state != joint_state_t::DRIVE_ON
                              : state.drive_state == joint_state_t::DRIVE_FAULT;
+    if (on()) out.moved_on_rad = out.moved_rad;
     if (out.cycles < 0 && left) {
       out.cycles = i;
       out.state = state.drive_state;

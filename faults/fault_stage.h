@@ -29,7 +29,8 @@ struct Reaction {
   std::int64_t refused = 0;      ///< commands of the controller
   int verdict = 0;               ///< by which most of them were, driver_status_t::VERDICT_*
   bool returned = false;         ///< the drives were ON again although nobody acknowledged
-  double moved_rad = 0.0;        ///< farthest from where the fault began, of all joints
+  double moved_on_rad = 0.0;     ///< farthest from where the fault began while the drives were ON
+  double moved_rad = 0.0;        ///< likewise, in all the time
   double speed_rad_per_s = 0.0;  ///< greatest, of all joints
   std::int64_t fault_ns = 0;     ///< arm time of its begin
 };

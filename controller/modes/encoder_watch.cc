@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/modes/friction_bound.h"
+
 namespace limber::controller {
 
 EncoderWatch::EncoderWatch(const Robot& robot) {
-  for (const JointConfig& joint : robot.joints) {
-    const double known =
-        std::max(joint.friction.coulomb_Nm, joint.friction.static_Nm) * joint.motors() +
-        std::max(joint.link_friction.coulomb_Nm, joint.link_friction.static_Nm);
-    joints_.push_back({std::max(known, kFrictionShare * joint.torque_limit_Nm), std::nullopt});
-  }
+  for (const JointConfig& joint : robot.joints)
+    joints_.push_back({friction_bound(joint), joint.torque_limit_Nm, std::nullopt});
 }
 
 void EncoderWatch::reset() noexcept {
@@ -30,22 +28,35 @@ bool EncoderWatch::Rest::arm_moved(const joint_state_t& state) const noexcept {
   return false;
 }
 
+// Coulomb friction by an implicit step: it brings to rest, and holds at rest.
+void EncoderWatch::Rest::move(double acceleration, double friction, double dt_s) noexcept {
+  const double free = expected_speed + acceleration * dt_s;
+  expected_speed = std::copysign(std::max(0.0, std::abs(free) - friction * dt_s), free);
+  expected_angle += expected_speed * dt_s;
+}
+
 int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
                           double dt_s) noexcept {
   for (int i = 0; i < state.num_joints; ++i) {
-    auto& [friction_Nm, rest] = joints_[static_cast<std::size_t>(i)];
+    if (state.age_cycles[i] > 0) continue;
+    auto& [friction_Nm, limit_Nm, rest] = joints_[static_cast<std::size_t>(i)];
+    const double M_ii = M(i, i);
     const double load_Nm = state.tau_applied[i] - gravity[i];
     if (!rest || !rest->continues(state, i)) {
+      const double speed = rest ? rest->theta_dot : 0.0;
+      const bool sudden =
+          std::abs(speed) >= std::max(kSudden, (limit_Nm + friction_Nm) / M_ii * dt_s);
       rest = {state.theta[i], state.q[i], state.theta_dot[i],
-              state.v[i],     load_Nm,    std::to_array(state.theta)};
+              state.v[i],     load_Nm,    std::to_array(state.theta),
+              sudden,         speed};
     }
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
-    const double excess = std::copysign(std::max(0.0, std::abs(tau) - friction_Nm), tau);
-    rest->expected_speed += excess / M(i, i) * dt_s;
-    rest->expected_angle += rest->expected_speed * dt_s;
-    if (std::abs(rest->expected_angle) >= kExpected && rest->arm_moved(state)) return i;
+    rest->move(tau / M_ii, rest->sudden ? 0.0 : friction_Nm / M_ii, dt_s);
+    const double most = rest->sudden ? kCoasted : kExpected;
+    const bool may_lean = !rest->sudden && !rest->arm_moved(state);
+    if (std::abs(rest->expected_angle) >= most && !may_lean) return i;
   }
   return -1;
 }

@@ -13,21 +13,30 @@
 namespace limber::controller {
 
 /// A reading that does not change by a single bit is normal at rest, also under torque: friction or
-/// a wall holds the joint. It is not if the torque would have moved the free joint by kExpected,
+/// a wall holds the joint. It is not if the joint cannot have come to rest, or cannot have stayed
+/// there. From the reading's last change on,
 ///
-///   integral integral (|tau - g - balanced| - tau_friction) / M_ii dt^2  >=  kExpected
+///   M_ii v' = tau - g - balanced - tau_friction sign(v),   v(0) = v_0, the speed reported before
 ///
-/// where `balanced` is the part of tau - g between zero and what it was when the reading changed
-/// last: that much a load or a wall held then, and may still hold or have let go since;
-/// and the arm moves meanwhile: another joint by kOthers at least, as it does when this one swings
-/// unseen, and does not when the whole arm leans against something. Below tau_friction, the joint's
-/// friction in robot.yaml or kFrictionShare of its torque limit, whichever is more, nothing is
-/// found. A wrist that hangs on to nothing may turn without moving another joint: not found either.
+/// where `balanced` is the part of tau - g between zero and what it was then: that much a load or a
+/// wall held, and may still hold or have let go since. A joint that truly stops is seen to slow
+/// down, so that v_0 is next to nothing. Found is
+///
+///   - a sudden stop: v_0 is kSudden at least, and more than torque limit and friction together can
+///     brake within a cycle. Nothing gives way so little that it stops an arm within a cycle to the
+///     bit. So friction is left out, and integral v dt >= kCoasted is enough;
+///   - else integral v dt >= kExpected while the arm moves: another joint by kOthers at least, as
+///   it
+///     does when this one swings unseen, and does not when the whole arm leans against something. A
+///     wrist that hangs on to nothing may turn without moving another joint: not found.
+///
+/// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
 class EncoderWatch {
  public:
-  static constexpr double kExpected = 0.05;  ///< rad (m for prismatic joints)
+  static constexpr double kExpected = 0.02;  ///< rad (m for prismatic joints)
+  static constexpr double kCoasted = 0.01;   ///< likewise
+  static constexpr double kSudden = 0.05;    ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;    ///< likewise
-  static constexpr double kFrictionShare = 0.05;
 
   /// For set-up.
   explicit EncoderWatch(const Robot& robot);
@@ -46,6 +55,8 @@ class EncoderWatch {
   struct Rest {
     bool continues(const joint_state_t& state, int i) const noexcept;
     bool arm_moved(const joint_state_t& state) const noexcept;
+    /// Of the joint: by its torque and by its friction, rad/s^2.
+    void move(double acceleration, double friction, double dt_s) noexcept;
 
     double theta;  ///< the reading
     double q;
@@ -53,11 +64,13 @@ class EncoderWatch {
     double v;
     double load_Nm;                         ///< tau - g then
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
-    double expected_speed = 0.0;            ///< of the free joint since then, rad/s
-    double expected_angle = 0.0;            ///< likewise, rad
+    bool sudden;
+    double expected_speed;        ///< rad/s, from what was reported before on
+    double expected_angle = 0.0;  ///< since then, rad
   };
   struct Joint {
     double friction_Nm;
+    double limit_Nm;
     std::optional<Rest> rest;
   };
 

@@ -56,6 +56,7 @@ constexpr Transition kTransitions[] = {
     {Mode::kActive, Event::kDriverFault, Mode::kFault, Status::REASON_DRIVER_FAULT},
     {Mode::kActive, Event::kNewSession, Mode::kFault, Status::REASON_SESSION_CHANGED},
     {Mode::kActive, Event::kTorqueInvalid, Mode::kFault, Status::REASON_TORQUE_INVALID},
+    {Mode::kActive, Event::kStrayed, Mode::kFault, Status::REASON_STRAYED},
     {Mode::kActive, Event::kEncoderStopped, Mode::kFault, Status::REASON_ENCODER_STOPPED},
     {Mode::kActive, Event::kEnergy, Mode::kFault, Status::REASON_ENERGY},
     {Mode::kSoftStop, Event::kStateLost, Mode::kFault, Status::REASON_STATE_LOST},
@@ -63,6 +64,7 @@ constexpr Transition kTransitions[] = {
     {Mode::kSoftStop, Event::kDriverFault, Mode::kFault, Status::REASON_DRIVER_FAULT},
     {Mode::kSoftStop, Event::kNewSession, Mode::kFault, Status::REASON_SESSION_CHANGED},
     {Mode::kSoftStop, Event::kTorqueInvalid, Mode::kFault, Status::REASON_TORQUE_INVALID},
+    {Mode::kSoftStop, Event::kStrayed, Mode::kFault, Status::REASON_STRAYED},
     {Mode::kSoftStop, Event::kEncoderStopped, Mode::kFault, Status::REASON_ENCODER_STOPPED},
     {Mode::kSoftStop, Event::kEnergy, Mode::kFault, Status::REASON_ENERGY},
 

@@ -61,9 +61,12 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
 }
 
 CanFrame Drive::hold(bool settling) noexcept {
-  JointCommand held = fallback_.command(link_, settling, watch_.trusted() && !link_.jumped());
-  // A drive damps by the velocity that it reports: a wrong one would drive the joint.
-  if (contradiction() == Contradiction::kVelocity) held.kd = 0.0;
+  // Angle or velocity is wrong, nobody knows which. A drive damps by the velocity that it reports:
+  // a wrong one would drive the joint, and so would a hold at an angle that drifts.
+  const bool motion_known = contradiction() != Contradiction::kVelocity;
+  const bool trusted = watch_.trusted() && !link_.jumped() && motion_known;
+  JointCommand held = fallback_.command(link_, settling, trusted);
+  if (!motion_known) held.kd = 0.0;
   return link_.command(held);
 }
 

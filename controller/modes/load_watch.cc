@@ -1,0 +1,56 @@
+#include "controller/modes/load_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/modes/friction_bound.h"
+
+namespace limber::controller {
+
+LoadWatch::LoadWatch(const Robot& robot)
+    : watched_(std::ranges::all_of(robot.joints, &JointConfig::rigid)),
+      friction_Nm_(VectorJ::Zero(robot.size())),
+      limit_Nm_(friction_Nm_),
+      down_(Eigen::Map<const Eigen::Vector3d>(robot.gravity).normalized()),
+      v_(friction_Nm_),
+      r_(friction_Nm_) {
+  Eigen::Index i = 0;
+  for (const JointConfig& joint : robot.joints) {
+    friction_Nm_[i] = friction_bound(joint);
+    limit_Nm_[i++] = joint.torque_limit_Nm;
+  }
+}
+
+int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s) noexcept {
+  if (!watched_ || time_s_ >= kEnd_s) {
+    relax(dt_s);
+    return -1;
+  }
+  observe(state, model, dt_s);
+  return time_s_ < kBegin_s ? -1 : judge(model);
+}
+
+void LoadWatch::observe(const joint_state_t& state, const Model& model, double dt_s) noexcept {
+  const Eigen::Map<const VectorJ> v(state.v, r_.size());
+  const Eigen::Map<const VectorJ> tau(state.tau_applied, r_.size());
+  if (time_s_ == 0.0) v_ = v;
+  const VectorJ known_Nm = tau - model.gravity - model.Cv;
+  r_ += (model.M * (v - v_) - (known_Nm + r_) * dt_s) / kMemory_s;
+  v_ = v;
+  time_s_ += dt_s;
+}
+
+int LoadWatch::judge(const Model& model) const noexcept {
+  const VectorJ s = model.J.topRows<3>().transpose() * down_;
+  const double weight_N = std::max(0.0, s.dot(r_) / std::max(s.squaredNorm(), 1e-9));
+  for (Eigen::Index i = 0; i < r_.size(); ++i) {
+    const double g = model.gravity[i];
+    const double left = r_[i] - weight_N * s[i];
+    const double unexplained = left - std::clamp(left, std::min(0.0, g), std::max(0.0, g));
+    const double most = friction_Nm_[i] + kModelShare * std::abs(g) + weight_N * kOffset;
+    if (!(std::abs(unexplained) <= most)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace limber::controller

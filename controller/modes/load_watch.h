@@ -1,0 +1,78 @@
+// Is the arm carried by the torques that its description promises?
+#pragma once
+
+#include <algorithm>
+#include <limber/joint_state_t.hpp>
+
+#include "common/types.h"
+#include "robots/loader/robot.h"
+
+namespace limber::controller {
+
+/// What acts on the arm besides its motors and its weight, a first-order estimate:
+///
+///   kMemory_s r' = M v' + C v + g - tau - r
+///
+/// An arm that has just been switched on carries a payload and its friction, and may still lie on
+/// something that carries it. So r has to be that of a weight w >= 0 at the tip, r = w s with
+/// s = J^T (direction of gravity), as well as it fits, or anything between zero and what carries
+/// the joint's weight, g_i:
+///
+///   r_i - w s_i  within  [min(0, g_i), max(0, g_i)] +- m_i
+///   m_i = tau_friction + kModelShare abs(g_i) + w kOffset
+///
+/// A motor with the wrong sign or in another joint's place, a wrong zero, and a wrong mass show by
+/// the weight that their joints carry, before a law has moved them far. A joint about a vertical
+/// axis carries none: nothing is found there. Judged from kBegin_s to kEnd_s after the drives came
+/// on.
+///
+/// For arms with rigid joints.
+class LoadWatch {
+ public:
+  static constexpr double kMemory_s = 0.02;
+  static constexpr double kBegin_s = 0.1;
+  static constexpr double kEnd_s = 1.0;
+  static constexpr double kModelShare = 0.25;
+  static constexpr double kOffset = 0.1;  ///< of the payload's centre from the tip, m
+
+  /// For set-up.
+  explicit LoadWatch(const Robot& robot);
+
+  // May be called in the cycle.
+
+  /// The drives follow from the next state on.
+  void begin() noexcept { time_s_ = 0.0; }
+  /// The model at a state: N m, kg m^2, and the tip's Jacobian.
+  struct Model {
+    const VectorJ& gravity;
+    const VectorJ& Cv;
+    const MatrixJ& M;
+    const Matrix6J& J;
+  };
+  /// Once a cycle with drives that follow: the joint that carries what it should not, -1: none.
+  /// `dt_s`: since the last call.
+  int wrong(const joint_state_t& state, const Model& model, double dt_s) noexcept;
+  /// Once a cycle otherwise: r fades.
+  void relax(double dt_s) noexcept { r_ *= std::max(0.0, 1.0 - dt_s / kMemory_s); }
+  /// The torque that carries the arm, g - r, within the joints' limits, N m: what the drives are to
+  /// hold with when the controller gives up. After the watch it is g.
+  VectorJ carrying(const VectorJ& gravity) const noexcept {
+    return (gravity - r_).cwiseMax(-limit_Nm_).cwiseMin(limit_Nm_);
+  }
+  /// N m.
+  const VectorJ& residual() const noexcept { return r_; }
+
+ private:
+  void observe(const joint_state_t& state, const Model& model, double dt_s) noexcept;
+  int judge(const Model& model) const noexcept;
+
+  bool watched_;
+  VectorJ friction_Nm_;
+  VectorJ limit_Nm_;
+  Eigen::Vector3d down_;    ///< of length one, or zero without gravity
+  double time_s_ = kEnd_s;  ///< since begin()
+  VectorJ v_;               ///< of the state before
+  VectorJ r_;
+};
+
+}  // namespace limber::controller
