@@ -112,8 +112,9 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
-  const MatrixJ& M = cycle_.inertia();
-  const LoadWatch::Model model{cycle_.gravity(), cycle_.coriolis(), M, cycle_.jacobian()};
+  const ArmTerms& terms = cycle_.terms();
+  const MatrixJ& M = terms.M_total;
+  const LoadWatch::Model model{cycle_.gravity(), terms.Cv, terms.M, terms.B, terms.J};
   if (const int joint = load_watch_.wrong(state, model, dt_s); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
   if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)

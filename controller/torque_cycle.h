@@ -64,11 +64,8 @@ class TorqueCycle {
   const VectorJ& preload_torque() const noexcept { return output_.preload_torque(); }
   /// The model's gravity torque, within the joints' limits; the last finite one.
   const VectorJ& gravity() const noexcept { return gravity_; }
-  /// Inertia with rotors as of measure(), kg m^2.
-  const MatrixJ& inertia() const noexcept { return arm_.terms().M_total; }
-  const VectorJ& coriolis() const noexcept { return arm_.terms().Cv; }
-  /// Of the tip, likewise.
-  const Matrix6J& jacobian() const noexcept { return arm_.terms().J; }
+  /// As of measure().
+  const ArmTerms& terms() const noexcept { return arm_.terms(); }
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:

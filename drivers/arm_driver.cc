@@ -53,7 +53,8 @@ ArmDriver::ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses,
       gate_(gate_limits(robot, options.session)),
       controller_watch_(options.bridged_cycles),
       window_ns_(reply_window_ns_of(robot, options.lockstep)),
-      least_round_trip_ns_(options.lockstep ? least_round_trip_ns_of(robot) : 0) {
+      least_round_trip_ns_(options.lockstep ? least_round_trip_ns_of(robot) : 0),
+      cycle_(options.first_cycle - 1) {
   drives_.add_bus_frames(&buses_);
   if (robot.has_tip_sensor) tip_sensor_.emplace(robot.tip_sensor, options.bridged_cycles);
   if (robot.emergency_stop) emergency_stop_.emplace(*robot.emergency_stop, robot.rate_hz);

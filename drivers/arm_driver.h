@@ -29,6 +29,7 @@ struct ArmDriverOptions {
   /// So many cycles in a row may go without an answer of the controller, or of a motor; the next
   /// one trips.
   int bridged_cycles = 2;
+  std::int64_t first_cycle = 0;  ///< its number; more than 0 to see a count pass a limit
 };
 
 /// One cycle, at a fixed rate, is

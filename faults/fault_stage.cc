@@ -66,8 +66,12 @@ void note_motion(const sim_truth_t& start, const sim_truth_t& now, Reaction* rea
 
 }  // namespace
 
-FaultStage::FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated)
+FaultStage::FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated,
+                       std::int64_t first_cycle)
     : robot_(robot), scenario_(moving_arm(robot.robot.size())) {
+  const auto begin_ns =
+      static_cast<std::int64_t>(static_cast<double>(first_cycle) * 1e9 / robot.robot.rate_hz);
+  for (TimedMessage& message : scenario_.timeline) message.time_ns += begin_ns;
   const auto tamper = [this](CanBus* end) {
     auto bus = std::make_unique<TamperedBus>(end);
     tampered_.push_back(bus.get());
@@ -80,7 +84,8 @@ FaultStage::FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated)
       instead->push_back(answer);
     }
   };
-  lab_ = std::make_unique<Lab>(robot, scenario_, LabOptions{simulated, tamper, before_gate});
+  lab_ = std::make_unique<Lab>(robot, scenario_,
+                               LabOptions{simulated, tamper, before_gate, first_cycle});
   outside_ = lab_->attach();
   family_ = make_drive_family(joint(), bus_config().fd, 1.0 / robot.robot.rate_hz);
 }
@@ -134,7 +139,7 @@ bool FaultStage::moves() const { return on() && lab_->controller_status().reques
 Reaction FaultStage::watch(int cycles) {
   const driver_status_t status_before = lab_->driver_status();
   const Reaction before = counters(status_before);
-  const bool was_on = on();
+  bool was_on = on();
   const sim_truth_t start = lab_->truth();
   Reaction out;
   for (int i = 1; i <= cycles; ++i) {
@@ -144,6 +149,7 @@ Reaction FaultStage::watch(int cycles) {
     out.returned = out.returned || (out.cycles >= 0 && on());
     const bool left = was_on ? state.drive_state != joint_state_t::DRIVE_ON
                              : state.drive_state == joint_state_t::DRIVE_FAULT;
+    was_on = was_on || on();
     if (on()) out.moved_on_rad = out.moved_rad;
     if (out.cycles < 0 && left) {
       out.cycles = i;

@@ -39,8 +39,8 @@ struct Reaction {
 class FaultStage {
  public:
   /// The tip goes round in a circle of 2 cm. `simulated`: what the drives have stored, where that
-  /// differs from robot; null: the same. Both outlive the stage.
-  FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated);
+  /// differs from robot; null: the same. Both outlive the stage. `first_cycle`: its number.
+  FaultStage(const LoadedRobot& robot, const LoadedRobot* simulated, std::int64_t first_cycle = 0);
 
   /// The drive that has the fault is that of joint 0.
   const JointConfig& joint() const { return robot_.robot.joints[0]; }

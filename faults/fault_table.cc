@@ -10,6 +10,7 @@ namespace {
 constexpr int kStartCycle = 1300;
 constexpr int kPhaseCycles = 137;  // has no factor in common with
 constexpr int kCircleCycles = 1000;
+constexpr int kPassedAfter = 50;
 /// Of the trace, before a fault.
 constexpr int kRecordedCycles = 100;
 
@@ -62,16 +63,17 @@ bool applies(const Fault& fault, DriveProtocol protocol) {
 
 Reaction react(const Fault& fault, const LoadedRobot& robot, const Run& run) {
   if (fault.stored) return react_from_start(fault, robot, run);
-  FaultStage stage(robot, nullptr);
-  stage.seed(static_cast<unsigned>(run.phase) + 1);
   const int begin = kStartCycle + run.phase * kPhaseCycles % kCircleCycles;
+  const std::int64_t first = fault.passes > 0 ? fault.passes - kPassedAfter - begin : 0;
+  FaultStage stage(robot, nullptr, first);
+  stage.seed(static_cast<unsigned>(run.phase) + 1);
   stage.run(begin - kRecordedCycles);
   if (!run.trace.empty()) stage.record(run.trace);
   stage.run(begin);
   if (!stage.moves()) throw std::runtime_error(robot.robot.name + ": the arm does not come up");
-  fault.begin(&stage);
+  if (fault.begin) fault.begin(&stage);
   Reaction reaction = stage.watch(fault.watched_cycles);
-  reaction.fault_ns = begin * static_cast<std::int64_t>(1e9 / robot.robot.rate_hz);
+  reaction.fault_ns = (first + begin) * static_cast<std::int64_t>(1e9 / robot.robot.rate_hz);
   return reaction;
 }
 

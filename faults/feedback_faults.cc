@@ -182,6 +182,11 @@ std::vector<Fault> feedback_faults() {
        .stored = [](Robot* robot) { robot->joints[0].drive.offset_rad += kTurn_rad; },
        .watched_cycles = kFromStart},
   };
+  for (const int bits : {16, 31, 32}) {  // at 1 kHz after 66 s, 24.9 days, 49.7 days
+    all.push_back({.name = "the count of cycles passes 2^" + std::to_string(bits),
+                   .watched_cycles = 500,
+                   .passes = std::int64_t{1} << bits});
+  }
   for (Fault& fault : all) fault.place = Place::kFeedback;
   return all;
 }

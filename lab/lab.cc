@@ -8,7 +8,10 @@
 namespace limber {
 
 Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& options)
-    : period_ns_(std::llround(1e9 / robot.robot.rate_hz)), before_gate_(options.before_gate) {
+    : period_ns_(std::llround(1e9 / robot.robot.rate_hz)),
+      first_cycle_(options.first_cycle),
+      cycle_(first_cycle_),
+      before_gate_(options.before_gate) {
   std::vector<CanBus*> driver_ends;
   std::vector<CanBus*> arm_ends;
   for (std::size_t i = 0; i < robot.robot.buses.size(); ++i) {
@@ -26,8 +29,9 @@ Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& o
       std::make_unique<Simulator>(options.simulated != nullptr ? *options.simulated : robot,
                                   arm_ends, simulator_options(scenario));
   simulator_->set_timeline(&scenario.timeline);
-  driver_ =
-      std::make_unique<ArmDriver>(robot.robot, driver_ends, ArmDriverOptions{kLockstepRunId, true});
+  ArmDriverOptions driver{.session = kLockstepRunId, .lockstep = true};
+  driver.first_cycle = first_cycle_;
+  driver_ = std::make_unique<ArmDriver>(robot.robot, driver_ends, driver);
   ArmControllerOptions controller;
   controller.controller = kLockstepRunId;
   controller.measure_time = false;

@@ -27,6 +27,8 @@ struct LabOptions {
   /// answer itself.
   std::function<void(const joint_command_t& answer, std::vector<joint_command_t>* instead)>
       before_gate;
+  /// The number of the first cycle, and arm time accordingly.
+  std::int64_t first_cycle = 0;
 };
 
 class Lab {
@@ -44,7 +46,9 @@ class Lab {
   /// Free of allocation, locks, logs and exceptions, as far as LabOptions::before_gate is.
   void step() noexcept;
 
-  std::int64_t cycles() const noexcept { return cycle_; }
+  /// So many have been.
+  std::int64_t cycles() const noexcept { return cycle_ - first_cycle_; }
+  /// Arm time of the next one.
   std::int64_t time_ns() const noexcept { return cycle_ * period_ns_; }
 
   /// What the last step() exchanged.
@@ -66,7 +70,8 @@ class Lab {
   std::unique_ptr<ArmDriver> driver_;
   std::unique_ptr<ArmController> controller_;
   std::int64_t period_ns_;
-  std::int64_t cycle_ = 0;
+  std::int64_t first_cycle_;
+  std::int64_t cycle_;
   const joint_state_t* state_ = nullptr;
   const joint_command_t* torque_ = nullptr;
   int verdict_ = 0;

@@ -33,7 +33,7 @@ namespace limber::controller {
 /// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
 class EncoderWatch {
  public:
-  static constexpr double kExpected = 0.02;  ///< rad (m for prismatic joints)
+  static constexpr double kExpected = 0.03;  ///< rad (m for prismatic joints)
   static constexpr double kCoasted = 0.01;   ///< likewise
   static constexpr double kSudden = 0.05;    ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;    ///< likewise

@@ -8,16 +8,20 @@
 namespace limber::controller {
 
 LoadWatch::LoadWatch(const Robot& robot)
-    : watched_(std::ranges::all_of(robot.joints, &JointConfig::rigid)),
+    : watched_(std::ranges::all_of(
+          robot.joints,
+          [](const JointConfig& joint) { return joint.rigid() || joint.torque_sensor.present; })),
       friction_Nm_(VectorJ::Zero(robot.size())),
       limit_Nm_(friction_Nm_),
+      by_motor_(friction_Nm_),
       down_(Eigen::Map<const Eigen::Vector3d>(robot.gravity).normalized()),
       v_(friction_Nm_),
       r_(friction_Nm_) {
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
     friction_Nm_[i] = friction_bound(joint);
-    limit_Nm_[i++] = joint.torque_limit_Nm;
+    limit_Nm_[i] = joint.torque_limit_Nm;
+    by_motor_[i++] = joint.torque_sensor.present ? 0.0 : 1.0;
   }
 }
 
@@ -32,10 +36,12 @@ int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s
 
 void LoadWatch::observe(const joint_state_t& state, const Model& model, double dt_s) noexcept {
   const Eigen::Map<const VectorJ> v(state.v, r_.size());
-  const Eigen::Map<const VectorJ> tau(state.tau_applied, r_.size());
+  const Eigen::Map<const VectorJ> sensed(state.tau, r_.size());
+  const Eigen::Map<const VectorJ> applied(state.tau_applied, r_.size());
   if (time_s_ == 0.0) v_ = v;
-  const VectorJ known_Nm = tau - model.gravity - model.Cv;
-  r_ += (model.M * (v - v_) - (known_Nm + r_) * dt_s) / kMemory_s;
+  const VectorJ tau = sensed + by_motor_.cwiseProduct(applied - sensed);
+  const VectorJ gained = model.M * (v - v_) + by_motor_.cwiseProduct(model.B.cwiseProduct(v - v_));
+  r_ += (gained - (tau - model.gravity - model.Cv + r_) * dt_s) / kMemory_s;
   v_ = v;
   time_s_ += dt_s;
 }

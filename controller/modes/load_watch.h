@@ -26,11 +26,12 @@ namespace limber::controller {
 /// axis carries none: nothing is found there. Judged from kBegin_s to kEnd_s after the drives came
 /// on.
 ///
-/// For arms with rigid joints.
+/// tau is the motor's, and M with its rotor; behind a torque sensor the sensor's, and M without it.
+/// Arms with springs in joints without sensor are not watched.
 class LoadWatch {
  public:
   static constexpr double kMemory_s = 0.02;
-  static constexpr double kBegin_s = 0.1;
+  static constexpr double kBegin_s = 0.125;
   static constexpr double kEnd_s = 1.0;
   static constexpr double kModelShare = 0.25;
   static constexpr double kOffset = 0.1;  ///< of the payload's centre from the tip, m
@@ -46,7 +47,8 @@ class LoadWatch {
   struct Model {
     const VectorJ& gravity;
     const VectorJ& Cv;
-    const MatrixJ& M;
+    const MatrixJ& M;  ///< of the links
+    const VectorJ& B;  ///< of the rotors
     const Matrix6J& J;
   };
   /// Once a cycle with drives that follow: the joint that carries what it should not, -1: none.
@@ -69,6 +71,7 @@ class LoadWatch {
   bool watched_;
   VectorJ friction_Nm_;
   VectorJ limit_Nm_;
+  VectorJ by_motor_;        ///< 1: the motor's torque counts, 0: the sensor's
   Eigen::Vector3d down_;    ///< of length one, or zero without gravity
   double time_s_ = kEnd_s;  ///< since begin()
   VectorJ v_;               ///< of the state before

@@ -30,7 +30,7 @@ const std::map<Event, std::string> kExpected = {
     {Event::kNewSession, ".IIFFF.."},
     {Event::kTorqueInvalid, "...FFF.."},
     {Event::kDriveNotOn, "...F...."},
-    {Event::kStrayed, "...F...."},
+    {Event::kStrayed, "...FFF.."},
     {Event::kEncoderStopped, "...FFF.."},
     {Event::kEnergy, "...FFF.."},
     {Event::kEstopPressed, "EEEEEEE."},

@@ -39,15 +39,49 @@ int cycles_standing(double velocity, double limit, double position = 0.0) {
   return -1;
 }
 
-// e = dv tau (1 - exp(-t / tau)) reaches v_max tau / 4 at t = -tau ln(1 - v_max / (4 dv)).
+// e = dv tau (1 - exp(-t / tau)) reaches most at t = -tau ln(1 - most / (dv tau)).
+double found_at_s(double most, double dv) { return -kTau_s * std::log(1.0 - most / (dv * kTau_s)); }
+
 TEST(VelocityWatch, AStandingJointWithAVelocityIsFoundWhenTheFormulaHasIt) {
-  for (double share : {1.0, 0.5, 0.3}) {
-    const double t_s = -kTau_s * std::log(1.0 - 1.0 / (4.0 * share));
-    EXPECT_NEAR(cycles_standing(share * 3.0, 3.0) * kPeriod_s, t_s, 2.0 * kPeriod_s) << share;
-    EXPECT_NEAR(cycles_standing(-share * 3.0, 3.0) * kPeriod_s, t_s, 2.0 * kPeriod_s);
+  for (double dv : {4.0, 2.0, 1.0, 0.5}) {
+    const double t_s = found_at_s(0.08 + 0.07 * dv, dv);
+    EXPECT_NEAR(cycles_standing(dv, 30.0) * kPeriod_s, t_s, 2.0 * kPeriod_s) << dv;
+    EXPECT_NEAR(cycles_standing(-dv, 30.0) * kPeriod_s, t_s, 2.0 * kPeriod_s);
   }
-  EXPECT_EQ(cycles_standing(0.24 * 3.0, 3.0), -1);
-  EXPECT_EQ(cycles_standing(0.0, 3.0, 2.5), -1);
+  EXPECT_EQ(cycles_standing(0.18, 30.0), -1);
+  EXPECT_EQ(cycles_standing(0.0, 30.0, 2.5), -1);
+}
+
+// A slow joint: a quarter of its greatest velocity for half a second.
+TEST(VelocityWatch, NoLaterThanByAQuarterOfTheGreatestVelocity) {
+  for (double share : {2.0, 1.0, 0.5}) {
+    const double t_s = found_at_s(0.25 * kTau_s * 0.5, share * 0.5);
+    EXPECT_NEAR(cycles_standing(share * 0.5, 0.5) * kPeriod_s, t_s, 2.0 * kPeriod_s) << share;
+  }
+}
+
+// The angle runs away by 2 rad/s; the joint stands, and its velocity says so.
+TEST(VelocityWatch, AnAngleThatDriftsIsFound) {
+  VelocityWatch watch(30.0, 1e-6);
+  int i = 0;
+  for (; i < 1000 && !watch.contradicts(); ++i) watch.add(i * kPeriod_s * 2.0, 0.0, i * kPeriod_s);
+  EXPECT_NEAR(i * kPeriod_s, found_at_s(0.08, 2.0), 0.002);
+}
+
+// What has been fast may be late: 70 ms of the greatest speed, of which after half a second a third
+// is left.
+TEST(VelocityWatch, TheGreatestSpeedFades) {
+  VelocityWatch watch(100.0, 1e-6);
+  double q = 0.0;
+  int i = 0;
+  for (; i < 1000; ++i, q += 10.0 * kPeriod_s) watch.add(q, 10.0, i * kPeriod_s);
+  watch.add(q - 0.7, 0.0, i * kPeriod_s);  // 0.08 + 0.7 rad are allowed
+  EXPECT_FALSE(watch.contradicts());
+  for (int k = 1; k <= 500; ++k) watch.add(q - 0.7, 0.0, (i + k) * kPeriod_s);
+  EXPECT_FALSE(watch.contradicts()) << "what is wrong fades alike";
+  const double most = 0.08 + 0.7 * std::exp(-1.0);
+  watch.add(q - 0.7 - (most - 0.7 * std::exp(-1.0)) - 0.02, 0.0, (i + 501) * kPeriod_s);
+  EXPECT_TRUE(watch.contradicts());
 }
 
 // q = A sin(w t) at the greatest allowed speed, reported by counts and with a filter of 20 ms.
@@ -85,8 +119,8 @@ TEST(VelocityWatch, TheWrongSignIsFoundInAMotion) {
   VelocityWatch watch(5.0, 1e-4);
   int i = 0;
   for (; i < 1000 && !watch.contradicts(); ++i) watch.add(-i * 1e-3 * 2.0, 2.0, i * kPeriod_s);
-  // Wrong by 4 rad/s: -0.5 ln(1 - 5 / 16).
-  EXPECT_NEAR(i * kPeriod_s, 0.187, 0.003);
+  // Wrong by 4 rad/s, at 2 rad/s.
+  EXPECT_NEAR(i * kPeriod_s, found_at_s(0.08 + 0.14, 4.0), 0.003);
 }
 
 TEST(VelocityWatch, ANumberThatIsNoneIsFound) {
@@ -107,16 +141,37 @@ int cycles_torque(double reported, double commanded) {
   return -1;
 }
 
-TEST(TorqueWatch, OppositeOrFarBeyondForATenthOfASecond) {
-  EXPECT_NEAR(cycles_torque(-4.1, 0.1), 101, 1);
-  EXPECT_NEAR(cycles_torque(4.1, -8.0), 101, 1);
+TEST(TorqueWatch, FarBeyondForATenthOfASecond) {
+  EXPECT_NEAR(cycles_torque(-4.1, 0.0), 101, 1);
   EXPECT_NEAR(cycles_torque(7.0, 2.9), 101, 1);
-  EXPECT_NEAR(cycles_torque(std::nan(""), 0.0), 101, 1);
+  EXPECT_NEAR(cycles_torque(std::nan(""), 0.0), 11, 1);
+}
+
+TEST(TorqueWatch, OppositeForAHundredthOfASecond) {
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_NEAR(cycles_torque(-0.9 * sign, 0.1 * sign), 11, 1);
+    EXPECT_NEAR(cycles_torque(-8.0 * sign, 8.0 * sign), 11, 1);
+    EXPECT_EQ(cycles_torque(-0.7 * sign, 8.0 * sign), -1) << "less than a tenth of the limit";
+  }
 }
 
 TEST(TorqueWatch, LessThanCommandedIsNone) {
-  for (double reported : {8.0, 4.0, 0.0, -3.9}) EXPECT_EQ(cycles_torque(reported, 8.0), -1);
+  for (double reported : {8.0, 4.0, 0.0, -0.7}) EXPECT_EQ(cycles_torque(reported, 8.0), -1);
   for (double reported : {3.9, -3.9}) EXPECT_EQ(cycles_torque(reported, 0.0), -1);
+}
+
+// A drive whose torque follows with a lag of 20 ms, told to turn around again and again.
+TEST(TorqueWatch, ALagIsNoOppositeTorque) {
+  for (const int half_period : {1, 5, 20, 50, 200}) {
+    TorqueWatch watch(8.0);
+    double torque = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      const double commanded = i / half_period % 2 == 0 ? 8.0 : -8.0;
+      watch.add(torque, commanded, kPeriod_s);
+      ASSERT_FALSE(watch.contradicts()) << half_period << " at " << i;
+      torque += kPeriod_s / 0.02 * (commanded - torque);
+    }
+  }
 }
 
 TEST(TorqueWatch, AnotherBeginningAfterEachFit) {

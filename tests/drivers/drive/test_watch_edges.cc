@@ -11,9 +11,10 @@
 namespace limber::test_watch_edges {
 namespace {
 
-// One step of 10 ms: e = v dt - q' dt, with no time to forget it. Limit: 4 / 4 * 0.5 + 2 * 0.25.
+// One step: e = v dt - q' dt, with no time to forget it. Limit: 4 / 4 * 0.5 + 2 * 0.25 at most, at
+// rest 0.08 + 2 * 0.25.
 constexpr double kLimit = 4.0, kCount = 0.25;
-constexpr double kMost = 1.0;
+constexpr double kMost = 0.08 + 0.5;
 constexpr double kStep_s = 0.0625;
 
 bool contradicts(double moved, double velocity_before, double velocity) {
@@ -23,7 +24,7 @@ bool contradicts(double moved, double velocity_before, double velocity) {
   return watch.contradicts();
 }
 
-TEST(VelocityWatchEdges, TheLimitIsAQuarterOfTheFastestAndTwoCounts) {
+TEST(VelocityWatchEdges, AtRestTheLimitIsEightHundredthsAndTwoCounts) {
   EXPECT_FALSE(contradicts(kMost, 0.0, 0.0));
   EXPECT_FALSE(contradicts(-kMost, 0.0, 0.0));
   EXPECT_TRUE(contradicts(std::nextafter(kMost, 2.0), 0.0, 0.0));
@@ -36,6 +37,31 @@ TEST(VelocityWatchEdges, TheMeanOfBothVelocitiesCounts) {
   EXPECT_TRUE(contradicts(2.0 + 1e-9, 12.0, 20.0));
   EXPECT_FALSE(contradicts(0.0, 12.0, 20.0));
   EXPECT_TRUE(contradicts(-1e-9, 12.0, 20.0));
+}
+
+// Beside two counts, 0.08 + 0.07 v_top, whichever of both velocities is the greater, up to 0.5.
+TEST(VelocityWatchEdges, TheGreatestSpeedWidensTheLimit) {
+  const auto expect = [](double most, double before, double now) {
+    const double moved = 0.5 * (before + now) * kStep_s;
+    for (const double side : {1.0, -1.0}) {
+      EXPECT_FALSE(contradicts(moved + side * (0.5 + most - 1e-9), before, now));
+      EXPECT_TRUE(contradicts(moved + side * (0.5 + most + 1e-9), before, now));
+    }
+  };
+  expect(0.08 + 0.07 * 2.0, 0.0, 2.0);
+  expect(0.08 + 0.07 * 2.0, 0.0, -2.0);
+  expect(0.08 + 0.07 * 2.0 * (1.0 - kStep_s / 0.5), 2.0, 0.0);
+  expect(0.08 + 0.07 * 5.9, 0.0, 5.9);
+  expect(0.5, 0.0, 6.1);
+}
+
+TEST(VelocityWatchEdges, AResetForgetsTheSpeed) {
+  VelocityWatch watch(kLimit, kCount);
+  watch.add(0.0, 20.0, 0.0);
+  watch.reset();
+  watch.add(0.0, 0.0, 1.0);
+  watch.add(0.6, 0.0, 1.0 + kStep_s);
+  EXPECT_TRUE(watch.contradicts());
 }
 
 TEST(VelocityWatchEdges, TheFirstStateIsComparedWithNothing) {
@@ -87,9 +113,59 @@ TEST(TorqueWatchEdges, HalfTheLimitBeyondTheCommandOrZero) {
   for (double sign : {1.0, -1.0}) {
     EXPECT_FALSE(contradicts(sign * 6.0, sign * 2.0));
     EXPECT_TRUE(contradicts(sign * std::nextafter(6.0, 7.0), sign * 2.0));
-    EXPECT_FALSE(contradicts(sign * 4.0, sign * -2.0));
-    EXPECT_TRUE(contradicts(sign * std::nextafter(4.0, 5.0), sign * -2.0));
+    EXPECT_FALSE(contradicts(sign * 4.0, 0.0));
+    EXPECT_TRUE(contradicts(sign * std::nextafter(4.0, 5.0), 0.0));
   }
+}
+
+// Margin 0.8 N m: a tenth of 8, and only against the command's direction.
+TEST(TorqueWatchEdges, OppositeByATenthOfTheLimit) {
+  const auto contradicts = [](double reported, double commanded, double for_s = 0.05) {
+    TorqueWatch watch(8.0);
+    watch.add(reported, commanded, for_s);
+    return watch.contradicts();
+  };
+  for (double sign : {1.0, -1.0}) {
+    EXPECT_FALSE(contradicts(sign * -0.8, sign * 2.0));
+    EXPECT_TRUE(contradicts(sign * std::nextafter(-0.8, -1.0), sign * 2.0));
+    EXPECT_FALSE(contradicts(sign * 3.9, sign * 2.0)) << "the same direction";
+    EXPECT_FALSE(contradicts(sign * 3.9, 0.0)) << "none";
+    EXPECT_FALSE(contradicts(sign * -4.5, sign * 2.0, 0.01)) << "not longer";
+    EXPECT_TRUE(contradicts(sign * -4.5, sign * 2.0, std::nextafter(0.01, 1.0)));
+  }
+}
+
+// 3 N m were commanded 15 ms ago: half of them may still come; after 30 ms none.
+TEST(TorqueWatchEdges, WhatWasCommandedFadesIn30Ms) {
+  const auto contradicts = [](double reported, double for_s) {
+    TorqueWatch watch(8.0);
+    watch.add(3.0, 3.0, 1e-3);
+    watch.add(reported, -1.0, for_s);
+    return watch.contradicts();
+  };
+  EXPECT_FALSE(contradicts(2.299, 0.015));
+  EXPECT_TRUE(contradicts(2.301, 0.015));
+  for (const double long_s : {0.03, 0.06}) {
+    EXPECT_FALSE(contradicts(0.799, long_s));
+    EXPECT_TRUE(contradicts(0.801, long_s));
+  }
+  TorqueWatch watch(8.0);
+  watch.add(-3.0, -3.0, 1e-3);
+  watch.reset();
+  watch.add(-3.0, 1.0, 0.015);
+  EXPECT_TRUE(watch.contradicts()) << "a reset forgets it";
+}
+
+TEST(TorqueWatchEdges, AnotherBeginningAfterEachFitOfTheDirection) {
+  TorqueWatch watch(8.0);
+  watch.add(-3.0, 1.0, 0.009);
+  watch.add(1.0, 1.0, 1e-3);
+  watch.add(-3.0, 1.0, 0.009);
+  EXPECT_FALSE(watch.contradicts());
+  watch.add(-3.0, 1.0, 0.009);
+  EXPECT_TRUE(watch.contradicts());
+  watch.reset();
+  EXPECT_FALSE(watch.contradicts());
 }
 
 TEST(TorqueWatchEdges, LongerThanATenthOfASecondWithoutABreak) {

@@ -35,6 +35,7 @@ class RunResult:
     phases: int
     cycles: int
     stop_ms: float | None
+    moved_on_rad: float
     moved_rad: float
     speed_rad_per_s: float
     problems: list[str]
@@ -76,6 +77,7 @@ def run_fault(run: LockStepRun, phases: int = PHASES) -> RunResult:
         phases,
         cell["cycles"][1],
         max(stops, default=None),
+        cell["moved_on_rad"],
         cell["moved_rad"],
         cell["speed_rad_per_s"],
         problems,
@@ -87,6 +89,8 @@ def _wrong(run: LockStepRun, reaction: dict[str, Any]) -> Iterator[str]:
     state = constants("joint_state_t", "DRIVE_")[reaction["state"]]
     cause = constants("joint_state_t", "FAULT_")[reaction["cause"]]
     cycles = reaction["cycles"]
+    if run.reaction == "stopped" and state != "HOLD":
+        yield f"the drives are {state} in the end, expected FALLBACK"
     if run.reaction in STATES:
         if not 1 <= cycles <= run.cycles:
             late = f"after {cycles} cycles" if cycles > 0 else "never"
@@ -102,8 +106,10 @@ def _wrong(run: LockStepRun, reaction: dict[str, Any]) -> Iterator[str]:
     verdict = constants("driver_status_t", "VERDICT_")[reaction["verdict"]]
     if run.verdict and verdict != run.verdict:
         yield f"most commands were refused by {verdict}, expected {run.verdict}"
-    if run.reaction == "kept still" and not reaction["moved_rad"] <= run.moved_rad:
-        yield f"a joint moved {reaction['moved_rad']:.2f} rad, expected {run.moved_rad} at most"
+    for key, when in (("moved_rad", ""), ("moved_on_rad", " while the drives were ON")):
+        most = getattr(run, key)
+        if most and not reaction[key] <= most:
+            yield f"a joint moved {reaction[key]:.2f} rad{when}, expected {most} at most"
     if reaction["returned"]:
         yield "the drives were ON again although nobody acknowledged"
 

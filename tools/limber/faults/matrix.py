@@ -11,7 +11,7 @@ from limber.paths import ROOT
 
 FILE = ROOT / "faults" / "matrix.yaml"
 FORMAT = "limber-fault-matrix/1"
-REACTIONS = ("FALLBACK", "DAMP", "FAULT", "bridged", "kept still", "refused")
+REACTIONS = ("FALLBACK", "DAMP", "FAULT", "bridged", "kept still", "refused", "stopped")
 # How a fault is run: in lock step, or as a test of this kind.
 TESTS = {
     "processes": "real processes",
@@ -26,7 +26,8 @@ class LockStepRun:
     """A fault of limber-faults. `cycles`: within so many the drives leave ON; 0: no limit.
 
     `cause`: of JOINT_STATE, without FAULT_. `verdict`: by which most commands are refused, of
-    DRIVER_STATUS, without VERDICT_. `moved_rad`: farthest that a joint may move.
+    DRIVER_STATUS, without VERDICT_. `moved_rad`: farthest that a joint may move, and
+    `moved_on_rad`: while the drives are ON; 0: no limit.
     `referee`: why the trace cannot be judged, or "".
     """
 
@@ -36,6 +37,7 @@ class LockStepRun:
     verdict: str = ""
     cycles: int = 0
     moved_rad: float = 0.0
+    moved_on_rad: float = 0.0
     family: str = "damiao_mit"
     referee: str = ""
     known_failing: str = ""
@@ -141,8 +143,10 @@ def _lock_step(entry: Any, where: str) -> LockStepRun:
     leaves_on = run.reaction in ("FALLBACK", "DAMP", "FAULT")
     if leaves_on != bool(run.cycles):
         raise InputError(f"{where}: cycles are for {', '.join(REACTIONS[:3])}, and needed there")
-    if (run.reaction == "kept still") != bool(run.moved_rad):
-        raise InputError(f"{where}: moved_rad is for 'kept still', and needed there")
+    if (run.reaction in ("kept still", "stopped")) != bool(run.moved_rad):
+        raise InputError(f"{where}: moved_rad is for 'kept still' and 'stopped', and needed there")
+    if run.moved_on_rad and run.reaction in ("bridged", "refused", "kept still"):
+        raise InputError(f"{where}: moved_on_rad is for drives that leave ON")
     return run
 
 

@@ -117,7 +117,9 @@ def _lock_step(rows: list[Row], results: dict[int, list[RunResult]]) -> str:
     for row in rows:
         for result in results[row.number]:
             run = result.run
-            expected = run.reaction + (f" within {run.cycles}" if run.cycles else "")
+            limits = [f"{run.cycles}"] if run.cycles else []
+            limits += [f"{run.moved_on_rad:g} rad"] if run.moved_on_rad else []
+            expected = run.reaction + (f" within {' and '.join(limits)}" if limits else "")
             left = f"{result.cycles} cycles" if result.cycles > 0 else "never"
             stop = "" if result.stop_ms is None else f"{result.stop_ms:g} ms"
             word = "ok" if result.passed else "failing"
@@ -128,7 +130,9 @@ def _lock_step(rows: list[Row], results: dict[int, list[RunResult]]) -> str:
 
 
 def _motion(result: RunResult) -> str:
-    return f"{result.moved_rad:.2f} rad, {result.speed_rad_per_s:.2f} rad/s"
+    """While the drives were ON, where that is limited, and in all."""
+    on = f"{result.moved_on_rad:.2f} rad ON, " if result.run.moved_on_rad else ""
+    return f"{on}{result.moved_rad:.2f} rad, {result.speed_rad_per_s:.2f} rad/s"
 
 
 def _line(*cells: str) -> str:

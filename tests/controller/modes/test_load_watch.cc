@@ -1,0 +1,230 @@
+// What carries the arm besides its motors: the estimate in closed form, and how much of it a
+// payload, friction and a stand explain.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "controller/modes/load_watch.h"
+
+namespace limber::controller::test_load_watch {
+namespace {
+
+constexpr double kStep_s = 1.0 / 64.0;
+constexpr double kFriction_Nm = 0.5;
+constexpr double kLimit_Nm = 8.0;
+
+Robot two_joints() {
+  Robot robot;  // gravity along -z
+  robot.joints.resize(2);
+  for (JointConfig& joint : robot.joints) {
+    joint.torque_limit_Nm = kLimit_Nm;  // a twentieth is less than the friction
+    joint.friction.coulomb_Nm = kFriction_Nm;
+  }
+  return robot;
+}
+
+VectorJ vector(double a, double b) {
+  VectorJ out(2);
+  out << a, b;
+  return out;
+}
+
+/// At rest, unless told otherwise: weight 2 and 1 N m, tip 0.5 and 0.25 m in front of the joints.
+struct Bench {
+  explicit Bench(const Robot& robot = two_joints()) : watch(robot) {
+    M << 0.5, 0.1, 0.1, 0.2;
+    J.row(2) << 0.5, 0.25;
+    state.num_joints = 2;
+    watch.begin();
+  }
+  int next(double dt_s = kStep_s) { return watch.wrong(state, {g, Cv, M, B, J}, dt_s); }
+  void apply(const VectorJ& tau) { Eigen::Map<VectorJ>(state.tau_applied, 2) = tau; }
+  /// The joint that is found within half a second of this torque from outside, -1: none.
+  int found(const VectorJ& outside_Nm) {
+    apply(g - outside_Nm);
+    for (int k = 0; k < 32; ++k)
+      if (const int joint = next(); joint >= 0) return joint;
+    EXPECT_NEAR((watch.residual() - outside_Nm).norm(), 0.0, 1e-9);
+    return -1;
+  }
+
+  LoadWatch watch;
+  joint_state_t state{};
+  VectorJ g = vector(2.0, 1.0);
+  VectorJ Cv = vector(0.0, 0.0);
+  VectorJ B = vector(0.1, 0.05);
+  MatrixJ M = MatrixJ::Zero(2, 2);
+  Matrix6J J = Matrix6J::Zero(6, 2);
+};
+
+TEST(LoadWatch, FollowsATorqueFromOutsideWithTheMemoryAsTimeConstant) {
+  Bench bench;
+  const VectorJ outside = vector(0.4, -0.2);
+  bench.apply(bench.g - outside);
+  for (int k = 1; k <= 100; ++k) {
+    ASSERT_EQ(bench.next(1e-3), -1);
+    const double share = 1.0 - std::pow(1.0 - 1e-3 / LoadWatch::kMemory_s, k);
+    ASSERT_NEAR((bench.watch.residual() - share * outside).norm(), 0.0, 1e-12) << k;
+  }
+}
+
+// (M + diag(B)) a + C v + g = tau: nothing acts from outside.
+TEST(LoadWatch, TheMotionThatTheMotorsMakeIsExplained) {
+  Bench bench;
+  bench.Cv = vector(0.3, -0.4);
+  const VectorJ a = vector(3.0, -5.0);
+  const MatrixJ M_total = bench.M + MatrixJ(bench.B.asDiagonal());
+  bench.apply(M_total * a + bench.Cv + bench.g);
+  Eigen::Map<VectorJ> v(bench.state.v, 2);
+  v = vector(0.7, 0.2);
+  bench.next();
+  for (int k = 0; k < 30; ++k) {
+    v += a * kStep_s;
+    ASSERT_EQ(bench.next(), -1);
+  }
+  // The first state has no speed before it to compare with: its torque fades.
+  EXPECT_NEAR(bench.watch.residual().norm(), 0.0, 1e-9);
+}
+
+TEST(LoadWatch, BehindASensorTheSensorCountsAndNotTheRotor) {
+  Robot robot = two_joints();
+  robot.joints[1].torque_sensor.present = true;
+  robot.joints[1].transmission.kind = TransmissionKind::kElastic;
+  Bench bench(robot);
+  const VectorJ a = vector(3.0, -5.0);
+  VectorJ tau = bench.M * a + bench.g;
+  tau[0] += bench.B[0] * a[0];
+  bench.apply(vector(tau[0], 77.0));
+  bench.state.tau[0] = 88.0;
+  bench.state.tau[1] = tau[1];
+  for (int k = 0; k < 30; ++k) {
+    Eigen::Map<VectorJ>(bench.state.v, 2) += a * kStep_s;
+    ASSERT_EQ(bench.next(), -1);
+  }
+  EXPECT_NEAR(bench.watch.residual().norm(), 0.0, 1e-9);
+}
+
+TEST(LoadWatch, SpringsWithoutASensorAreNotWatched) {
+  Robot robot = two_joints();
+  robot.joints[1].transmission.kind = TransmissionKind::kElastic;
+  Bench bench(robot);
+  bench.apply(vector(-100.0, 100.0));
+  for (int k = 0; k < 32; ++k) ASSERT_EQ(bench.next(), -1);
+  EXPECT_EQ(bench.watch.residual().norm(), 0.0);
+}
+
+TEST(LoadWatch, AnyPayloadAtTheTipIsExplained) {
+  for (const double weight_N : {0.0, 1.0, 10.0, 100.0})
+    EXPECT_EQ(Bench().found(weight_N * vector(-0.5, -0.25)), -1) << weight_N;
+}
+
+TEST(LoadWatch, SoIsAStandThatCarriesTheArm) {
+  for (const double share : {0.1, 0.5, 1.0})
+    EXPECT_EQ(Bench().found(share * vector(2.0, 1.0)), -1) << share;
+}
+
+TEST(LoadWatch, AMotorWithTheWrongSignIsNot) {
+  // It carries 4 N m, told -4 N m: twice the weight seems to come from outside.
+  Bench bench;
+  bench.g = vector(4.0, 0.0);
+  EXPECT_EQ(bench.found(vector(8.0, 0.0)), 0);
+}
+
+// Without a lever to the tip there is no payload: friction and a quarter of the weight beyond
+// [0, g], either way.
+TEST(LoadWatch, FrictionAndAQuarterOfTheWeight) {
+  for (const double sign : {1.0, -1.0}) {
+    for (const int joint : {0, 1}) {
+      const auto found = [&](double outside) {
+        Bench bench;
+        bench.J.setZero();
+        bench.g *= sign;
+        VectorJ torque = VectorJ::Zero(2);
+        torque[joint] = sign * outside;
+        return bench.found(torque);
+      };
+      const double g = joint == 0 ? 2.0 : 1.0;
+      const double most = kFriction_Nm + 0.25 * g;
+      EXPECT_EQ(found(g + most - 0.001), -1);
+      EXPECT_EQ(found(g + most + 0.001), joint);
+      EXPECT_EQ(found(-most + 0.001), -1);
+      EXPECT_EQ(found(-most - 0.001), joint);
+    }
+  }
+}
+
+// (1, -2) is what no weight at the tip explains; its centre may lie 0.1 m beside the tip.
+TEST(LoadWatch, WhatThePayloadLeavesMustBeSmall) {
+  const auto found = [](double weight_N, double k) {
+    return Bench().found(weight_N * vector(-0.5, -0.25) + k * vector(1.0, -2.0));
+  };
+  for (const double weight_N : {1.0, 4.0}) {
+    const double most = kFriction_Nm + 0.25 + 0.1 * weight_N;
+    EXPECT_EQ(found(weight_N, 0.5 * most - 0.001), -1) << weight_N;
+    EXPECT_EQ(found(weight_N, 0.5 * most + 0.001), 1) << weight_N;
+    EXPECT_EQ(found(weight_N, -0.5 * (1.0 + most) + 0.001), -1) << weight_N;
+    EXPECT_EQ(found(weight_N, -0.5 * (1.0 + most) - 0.001), 1) << weight_N;
+  }
+}
+
+TEST(LoadWatch, NothingPullsTheTipUp) {
+  // A weight of -2.4 N would leave nothing of it.
+  EXPECT_EQ(Bench().found(vector(3.001, 0.0)), 0);
+  EXPECT_EQ(Bench().found(vector(2.999, 0.0)), -1);
+}
+
+TEST(LoadWatch, IsJudgedFromAnEighthOfASecondToOneAfterTheDrivesCameOn) {
+  const VectorJ wrong = vector(5.0, -5.0);
+  Bench bench;
+  bench.apply(bench.g - wrong);
+  for (int k = 1; k < 8; ++k) EXPECT_EQ(bench.next(), -1) << k;
+  for (int k = 8; k <= 64; ++k) EXPECT_GE(bench.next(), 0) << k;
+  for (int k = 65; k < 80; ++k) EXPECT_EQ(bench.next(), -1) << k;
+  bench.watch.begin();
+  for (int k = 1; k < 8; ++k) EXPECT_EQ(bench.next(), -1) << k;
+  EXPECT_GE(bench.next(), 0);
+  LoadWatch never(two_joints());
+  EXPECT_EQ(never.wrong(bench.state, {bench.g, bench.Cv, bench.M, bench.B, bench.J}, 0.5), -1);
+}
+
+TEST(LoadWatch, ANumberThatIsNoneIsWrong) {
+  Bench bench;
+  for (int k = 0; k < 10; ++k) bench.next();
+  bench.state.v[0] = std::nan("");
+  EXPECT_EQ(bench.next(), 0);
+}
+
+// A state of speed 1 rad/s is the first: no torque has made it.
+TEST(LoadWatch, ASwingThatItBeginsWithIsNoImpulse) {
+  Bench bench;
+  bench.apply(bench.g);
+  bench.state.v[0] = bench.state.v[1] = 1.0;
+  for (int k = 0; k < 3; ++k) ASSERT_EQ(bench.next(), -1);
+  EXPECT_EQ(bench.watch.residual().norm(), 0.0);
+}
+
+TEST(LoadWatch, WhatCarriesTheArmIsTheWeightLessWhatActsFromOutside) {
+  Bench bench;
+  EXPECT_EQ(bench.watch.carrying(bench.g), bench.g);
+  ASSERT_EQ(bench.found(vector(-0.5, -0.25)), -1);
+  EXPECT_NEAR((bench.watch.carrying(bench.g) - vector(2.5, 1.25)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(bench.watch.carrying(vector(20.0, -20.0)), vector(kLimit_Nm, -kLimit_Nm));
+}
+
+TEST(LoadWatch, AfterTheWatchItFades) {
+  Bench bench;
+  ASSERT_EQ(bench.found(vector(-0.5, -0.25)), -1);
+  const VectorJ before = bench.watch.residual();
+  bench.watch.relax(0.005);
+  EXPECT_NEAR((bench.watch.residual() - 0.75 * before).norm(), 0.0, 1e-12);
+  for (int k = 0; k < 40; ++k) bench.next();
+  const VectorJ late = bench.watch.residual();
+  EXPECT_LT(late.norm(), 1e-3);
+  bench.watch.relax(1.0);
+  EXPECT_EQ(bench.watch.residual().norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace limber::controller::test_load_watch
