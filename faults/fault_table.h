@@ -21,15 +21,15 @@ struct Fault {
   /// How the drives differ from robot.yaml, from the start; then the arm is not to be enabled.
   /// Empty: not at all.
   std::function<void(Robot*)> stored = {};
-  /// The count of cycles, and arm time with it, passes this number in the 50th cycle after the
-  /// beginning; 0: it counts from 0.
-  std::int64_t passes = 0;
   /// The drives leave ON within so many cycles; 0: the fault is bridged and counted.
   int most_cycles = 0;
   int watched_cycles = 100;
   /// Words of the protocols that know the fault; empty: all.
   std::vector<DriveProtocol> protocols = {};
   Place place = Place::kBus;
+  /// The count of cycles, and arm time with it, passes this number in the 50th cycle after the
+  /// beginning; 0: it counts from 0.
+  std::int64_t passes = 0;
 };
 
 /// All of them.

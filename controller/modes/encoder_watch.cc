@@ -33,6 +33,7 @@ void EncoderWatch::Rest::move(double acceleration, double friction, double dt_s)
   const double free = expected_speed + acceleration * dt_s;
   expected_speed = std::copysign(std::max(0.0, std::abs(free) - friction * dt_s), free);
   expected_angle += expected_speed * dt_s;
+  stood_s += dt_s;
 }
 
 int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
@@ -49,14 +50,14 @@ int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, co
       rest = {state.theta[i], state.q[i], state.theta_dot[i],
               state.v[i],     load_Nm,    std::to_array(state.theta),
               sudden,         speed};
+      continue;
     }
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
     rest->move(tau / M_ii, rest->sudden ? 0.0 : friction_Nm / M_ii, dt_s);
-    const double most = rest->sudden ? kCoasted : kExpected;
-    const bool may_lean = !rest->sudden && !rest->arm_moved(state);
-    if (std::abs(rest->expected_angle) >= most && !may_lean) return i;
+    const bool counts = rest->sudden ? rest->stood_s >= kStood_s : rest->arm_moved(state);
+    if (counts && std::abs(rest->expected_angle) >= (rest->sudden ? kCoasted : kExpected)) return i;
   }
   return -1;
 }

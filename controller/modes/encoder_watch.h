@@ -24,7 +24,8 @@ namespace limber::controller {
 ///
 ///   - a sudden stop: v_0 is kSudden at least, and more than torque limit and friction together can
 ///     brake within a cycle. Nothing gives way so little that it stops an arm within a cycle to the
-///     bit. So friction is left out, and integral v dt >= kCoasted is enough;
+///     bit. So friction is left out, and integral v dt >= kCoasted is enough, after kStood_s: a
+///     drive may read its encoder less often than it answers;
 ///   - else integral v dt >= kExpected while the arm moves: another joint by kOthers at least, as
 ///   it
 ///     does when this one swings unseen, and does not when the whole arm leans against something. A
@@ -35,8 +36,9 @@ class EncoderWatch {
  public:
   static constexpr double kExpected = 0.03;  ///< rad (m for prismatic joints)
   static constexpr double kCoasted = 0.01;   ///< likewise
-  static constexpr double kSudden = 0.05;    ///< rad/s (m/s)
-  static constexpr double kOthers = 0.01;    ///< likewise
+  static constexpr double kStood_s = 0.01;
+  static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
+  static constexpr double kOthers = 0.01;  ///< likewise
 
   /// For set-up.
   explicit EncoderWatch(const Robot& robot);
@@ -65,7 +67,8 @@ class EncoderWatch {
     double load_Nm;                         ///< tau - g then
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
     bool sudden;
-    double expected_speed;        ///< rad/s, from what was reported before on
+    double expected_speed;  ///< rad/s, from what was reported before on
+    double stood_s = 0.0;
     double expected_angle = 0.0;  ///< since then, rad
   };
   struct Joint {

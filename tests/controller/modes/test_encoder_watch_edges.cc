@@ -176,7 +176,7 @@ int cycles_after(double speed, double dt_s = 1e-3) {
   bench.state().theta_dot[1] = speed;
   bench.next(dt_s);
   bench.state().theta_dot[1] = 0.0;
-  for (int k = 1; k <= 10'000; ++k)
+  for (int k = 0; k <= 10'000; ++k)
     if (bench.next(dt_s) == 1) return k;
   return -1;
 }
@@ -188,6 +188,26 @@ TEST(EncoderWatchEdges, ASuddenStopIsFoundAfterAHundredthOfARadian) {
     EXPECT_NEAR(cycles_after(sign * 0.05), 200, 1);
     EXPECT_EQ(cycles_after(sign * std::nextafter(0.05, 0.0)), -1) << "friction may have stopped it";
   }
+}
+
+TEST(EncoderWatchEdges, AFastJointThatMovesOnIsLeftAlone) {
+  Bench bench;
+  for (int k = 0; k < 1000; ++k) {
+    bench.state().theta_dot[1] = 50.0;
+    bench.state().theta[1] = 0.05 * k;
+    ASSERT_EQ(bench.next(1e-3), -1) << k;
+  }
+}
+
+TEST(EncoderWatchEdges, AFastReadingMayStandFor10Ms) {
+  // 8 rad/s: a hundredth of a radian in less than two cycles. Dyadic steps: 1/128 s, 1/64 s.
+  Bench bench;
+  bench.state().theta_dot[1] = 8.0;
+  bench.next(1.0 / 128.0);
+  bench.state().theta_dot[1] = 0.0;
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(bench.next(1.0 / 128.0), -1);
+  EXPECT_EQ(bench.next(1.0 / 128.0), 1);
+  EXPECT_NEAR(cycles_after(8.0), 10, 1);
 }
 
 TEST(EncoderWatchEdges, AStopThatMotorAndFrictionCanMakeIsNotSudden) {
@@ -227,7 +247,7 @@ TEST(EncoderWatchEdges, CyclesWithoutAnAnswerDoNotCount) {
   for (int k = 0; k < 1000; ++k) ASSERT_EQ(bench.next(1e-3), -1) << "the last answer again";
   bench.state().age_cycles[1] = 0;
   bench.state().theta_dot[1] = 0.0;
-  for (int k = 1; k < 25; ++k) ASSERT_EQ(bench.next(1e-3), -1) << k;
+  for (int k = 0; k < 25; ++k) ASSERT_EQ(bench.next(1e-3), -1) << k;
   EXPECT_EQ(bench.next(1e-3), 1);
 }
 

@@ -45,6 +45,22 @@ TEST_F(OneDrive, FallbackGoesAtTheJointsTorqueRate) {
   EXPECT_NEAR(torque_of(drive.next_frame(State::kFallback, 0.0, true)), 5.0, kTorqueCount);
 }
 
+// Nobody knows whether the angle stands wrongly or the velocity: neither is held or damped by.
+TEST_F(OneDrive, FallbackUsesNoMotionThatContradictsItself) {
+  cycles(1, State::kOn, standing);
+  drive.enter(State::kFallback, 2.0, 2.0);
+  cycles(100, State::kFallback, standing);
+  const auto held = testing::raw_command(drive.next_frame(State::kFallback, 0.0, false));
+  EXPECT_GT(held.kp, 0);
+  EXPECT_GT(held.kd, 0);
+  cycles(100, State::kFallback, {kEnabled, 0.0, 15.0, 0.0});
+  ASSERT_EQ(drive.contradiction(), Contradiction::kVelocity);
+  const CanFrame frame = drive.next_frame(State::kFallback, 0.0, false);
+  EXPECT_EQ(testing::raw_command(frame).kp, 0);
+  EXPECT_EQ(testing::raw_command(frame).kd, 0);
+  EXPECT_NEAR(torque_of(frame), 2.0, kTorqueCount) << "the torque stays";
+}
+
 TEST_F(OneDrive, FeedbackIsWatchedWhileThereIsPowerAndForgottenWithIt) {
   for (State powered : {State::kOn, State::kFallback, State::kDamp}) {
     cycles(150, powered, pulling);

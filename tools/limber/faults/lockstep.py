@@ -89,8 +89,10 @@ def _wrong(run: LockStepRun, reaction: dict[str, Any]) -> Iterator[str]:
     state = constants("joint_state_t", "DRIVE_")[reaction["state"]]
     cause = constants("joint_state_t", "FAULT_")[reaction["cause"]]
     cycles = reaction["cycles"]
-    if run.reaction == "stopped" and state != "HOLD":
-        yield f"the drives are {state} in the end, expected FALLBACK"
+    if run.reaction == "stopped" and cycles < 0:
+        yield "the drives never left ON"
+    elif run.reaction == "stopped" and state != "HOLD":
+        yield f"{state} after {cycles} cycles, expected FALLBACK"
     if run.reaction in STATES:
         if not 1 <= cycles <= run.cycles:
             late = f"after {cycles} cycles" if cycles > 0 else "never"
