@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "controller/modes/friction_bound.h"
 
@@ -34,16 +35,26 @@ int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s
   return time_s_ < kBegin_s ? -1 : judge(model);
 }
 
+// Only between two states without a gap is the change of speed what the torque has made.
+bool LoadWatch::follows(const joint_state_t& state, double dt_s) noexcept {
+  const bool before = answered_;
+  const auto ages = std::span(state.age_cycles).first(static_cast<std::size_t>(r_.size()));
+  answered_ = std::ranges::all_of(ages, [](int age) { return age == 0; });
+  return before && answered_ && dt_s <= 1.5e-9 * static_cast<double>(state.period_ns);
+}
+
 void LoadWatch::observe(const joint_state_t& state, const Model& model, double dt_s) noexcept {
   const Eigen::Map<const VectorJ> v(state.v, r_.size());
   const Eigen::Map<const VectorJ> sensed(state.tau, r_.size());
   const Eigen::Map<const VectorJ> applied(state.tau_applied, r_.size());
-  if (time_s_ == 0.0) v_ = v;
-  const VectorJ tau = sensed + by_motor_.cwiseProduct(applied - sensed);
-  const VectorJ gained = model.M * (v - v_) + by_motor_.cwiseProduct(model.B.cwiseProduct(v - v_));
-  r_ += (gained - (tau - model.gravity - model.Cv + r_) * dt_s) / kMemory_s;
-  v_ = v;
+  const bool follows_on = follows(state, dt_s) && time_s_ > 0.0;
   time_s_ += dt_s;
+  const VectorJ dv = v - v_;
+  v_ = v;
+  if (!follows_on) return;
+  const VectorJ tau = sensed + by_motor_.cwiseProduct(applied - sensed);
+  const VectorJ gained = model.M * dv + by_motor_.cwiseProduct(model.B.cwiseProduct(dv));
+  r_ += (gained - (tau - model.gravity - model.Cv + r_) * dt_s) / kMemory_s;
 }
 
 int LoadWatch::judge(const Model& model) const noexcept {

@@ -65,6 +65,7 @@ class LoadWatch {
   const VectorJ& residual() const noexcept { return r_; }
 
  private:
+  bool follows(const joint_state_t& state, double dt_s) noexcept;
   void observe(const joint_state_t& state, const Model& model, double dt_s) noexcept;
   int judge(const Model& model) const noexcept;
 
@@ -74,6 +75,7 @@ class LoadWatch {
   VectorJ by_motor_;        ///< 1: the motor's torque counts, 0: the sensor's
   Eigen::Vector3d down_;    ///< of length one, or zero without gravity
   double time_s_ = kEnd_s;  ///< since begin()
+  bool answered_ = false;   ///< every joint, in the state before
   VectorJ v_;               ///< of the state before
   VectorJ r_;
 };

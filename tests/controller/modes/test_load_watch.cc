@@ -37,6 +37,7 @@ struct Bench {
     M << 0.5, 0.1, 0.1, 0.2;
     J.row(2) << 0.5, 0.25;
     state.num_joints = 2;
+    state.period_ns = std::int64_t{1'000'000'000} / 64;
     watch.begin();
   }
   int next(double dt_s = kStep_s) { return watch.wrong(state, {g, Cv, M, B, J}, dt_s); }
@@ -63,6 +64,7 @@ TEST(LoadWatch, FollowsATorqueFromOutsideWithTheMemoryAsTimeConstant) {
   Bench bench;
   const VectorJ outside = vector(0.4, -0.2);
   bench.apply(bench.g - outside);
+  bench.next(1e-3);
   for (int k = 1; k <= 100; ++k) {
     ASSERT_EQ(bench.next(1e-3), -1);
     const double share = 1.0 - std::pow(1.0 - 1e-3 / LoadWatch::kMemory_s, k);
@@ -84,7 +86,6 @@ TEST(LoadWatch, TheMotionThatTheMotorsMakeIsExplained) {
     v += a * kStep_s;
     ASSERT_EQ(bench.next(), -1);
   }
-  // The first state has no speed before it to compare with: its torque fades.
   EXPECT_NEAR(bench.watch.residual().norm(), 0.0, 1e-9);
 }
 
@@ -203,6 +204,49 @@ TEST(LoadWatch, ASwingThatItBeginsWithIsNoImpulse) {
   bench.state.v[0] = bench.state.v[1] = 1.0;
   for (int k = 0; k < 3; ++k) ASSERT_EQ(bench.next(), -1);
   EXPECT_EQ(bench.watch.residual().norm(), 0.0);
+}
+
+// What a joint does while nobody hears it shows at once afterwards: no torque of that cycle.
+TEST(LoadWatch, AGapIsNoImpulse) {
+  const auto residual_after = [](const std::function<void(Bench&)>& gap) {
+    Bench bench;
+    bench.apply(bench.g);
+    for (int k = 0; k < 2; ++k) bench.next();
+    gap(bench);
+    return bench.watch.residual().norm();
+  };
+  EXPECT_GT(residual_after([](Bench& bench) {
+              bench.state.v[1] = 0.5;
+              bench.next();
+            }),
+            1.0)
+      << "from one state to the next it is one";
+  EXPECT_EQ(residual_after([](Bench& bench) {
+              bench.state.age_cycles[1] = 1;
+              bench.next();
+              bench.state.age_cycles[1] = 0;
+              bench.state.v[1] = 0.5;
+              bench.next();
+              bench.next();
+            }),
+            0.0);
+  EXPECT_EQ(residual_after([](Bench& bench) {
+              bench.state.age_cycles[0] = 1;
+              bench.state.v[1] = 0.5;
+              bench.next();
+            }),
+            0.0);
+  EXPECT_EQ(residual_after([](Bench& bench) {
+              bench.state.v[1] = 0.5;
+              bench.next(2.0 * kStep_s);
+            }),
+            0.0);
+  EXPECT_GT(residual_after([](Bench& bench) {
+              bench.state.v[1] = 0.5;
+              bench.state.age_cycles[2] = 1;  // there are two joints
+              bench.next(1.4 * kStep_s);
+            }),
+            1.0);
 }
 
 TEST(LoadWatch, WhatCarriesTheArmIsTheWeightLessWhatActsFromOutside) {
