@@ -59,12 +59,12 @@ TEST(DriveWarnings, WithoutALimitThereIsNone) {
   EXPECT_FALSE(arm.driver->warning(0).any());
 }
 
-// 4 of 5 rad/s at rest: -0.5 s ln(1 - 5 / 16).
+// 4 rad/s at rest: -0.5 s ln(1 - (0.08 + 0.07 * 4) / (4 * 0.5)).
 TEST(Feedback, AVelocityWithoutMotionStopsTheArmWithTheReason) {
   FakeArm arm(test_robot(2));
   ASSERT_TRUE(arm.switch_on());
   arm.set_speed(1, 4.0);
-  EXPECT_NEAR(cycles_until_off(&arm, 1000), 187, 3);
+  EXPECT_NEAR(cycles_until_off(&arm, 1000), 99, 3);
   EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_HOLD);
   EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FEEDBACK);
   EXPECT_EQ(arm.state->fault_joint, 1);
@@ -83,7 +83,7 @@ TEST(Feedback, IsAcknowledgedOnceItFitsAgain) {
   ASSERT_GT(cycles_until_off(&arm, 1000), 0);
   EXPECT_FALSE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 500));
   arm.set_speed(0, 0.0);
-  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 1000));
+  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ACKNOWLEDGE, 2000));
 }
 
 TEST(Feedback, AMotionThatFitsIsNone) {
