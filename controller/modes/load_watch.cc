@@ -47,7 +47,7 @@ void LoadWatch::observe(const joint_state_t& state, const Model& model, double d
   const Eigen::Map<const VectorJ> v(state.v, r_.size());
   const Eigen::Map<const VectorJ> sensed(state.tau, r_.size());
   const Eigen::Map<const VectorJ> applied(state.tau_applied, r_.size());
-  const bool follows_on = follows(state, dt_s) && time_s_ > 0.0;
+  const bool follows_on = follows(state, dt_s);
   time_s_ += dt_s;
   const VectorJ dv = v - v_;
   v_ = v;

@@ -42,7 +42,10 @@ class LoadWatch {
   // May be called in the cycle.
 
   /// The drives follow from the next state on.
-  void begin() noexcept { time_s_ = 0.0; }
+  void begin() noexcept {
+    time_s_ = 0.0;
+    answered_ = false;
+  }
   /// The model at a state: N m, kg m^2, and the tip's Jacobian.
   struct Model {
     const VectorJ& gravity;
