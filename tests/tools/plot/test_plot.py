@@ -85,7 +85,7 @@ def test_springs_only_where_there_are_sensors(log, tmp_path):
 def test_contact_only_where_there_is_a_source(log, tmp_path):
     silent = charts.build(log, "torque")
     assert not any("contact" in chart.title for chart in silent)
-    assert all("ext" not in chart.series for chart in silent)
+    assert all("contact" not in chart.series for chart in silent)
     status = records("controller_status_t", COUNT, num_joints=7, contact=1)
     status["time_ns"] = np.arange(COUNT) * 1_000_000
     status["F_ext"][:, 1], status["F_ext"][:, 5] = 3.5, -0.25
@@ -95,7 +95,7 @@ def test_contact_only_where_there_is_a_source(log, tmp_path):
     assert (force.unit, torque.unit) == ("N", "N m")
     np.testing.assert_allclose(drawn(force, "y"), 3.5)
     np.testing.assert_allclose(drawn(torque, "z"), -0.25)
-    np.testing.assert_allclose(drawn(joints[4], "ext"), 1.5)
+    np.testing.assert_allclose(drawn(joints[4], "contact"), 1.5)
 
 
 @pytest.mark.parametrize("topic", [t for t in charts.TOPICS if t != "spring"])

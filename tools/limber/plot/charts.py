@@ -19,7 +19,14 @@ OVERVIEW = (
 )
 SPRINGS_FROM_RAD = 1e-4
 SHORT = 0.1  # share of the run that a law is too short for to count
-TERMS = ("stiffness", "damping", "null", "gravity", "coriolis", "friction")
+TERMS = {  # tau_TERM of CONTROLLER_STATUS, in the words of all pictures
+    "stiffness": "spring",
+    "damping": "damper",
+    "null": "posture",
+    "gravity": "gravity",
+    "coriolis": "Coriolis",
+    "friction": "friction",
+}
 QUANTILES = {"p50": "median", "p99": "99 %", "p999": "99.9 %", "max": "greatest"}
 
 
@@ -147,15 +154,15 @@ def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
     a source.
     """
     status = log.read("CONTROLLER_STATUS")
-    lines = ["sent"]
+    names_of = {**TERMS, "sent": "sent"}
     charts = []
     if status["contact"].any():
-        lines.append("ext")
+        names_of["ext"] = "contact"
         charts = _contact_charts(status)
     for i, label in enumerate(_labels(_joint_count(status), names)):
-        series = {term: status[f"tau_{term}"][:, i] for term in (*TERMS, *lines)}
-        title = f"torque of {label}"
-        charts.append(Chart(title, "N m", time_s(status), series, stacked=set(TERMS)))
+        series = {name: status[f"tau_{term}"][:, i] for term, name in names_of.items()}
+        title, stacked = f"torque of {label}", set(TERMS.values())
+        charts.append(Chart(title, "N m", time_s(status), series, stacked=stacked))
     return charts
 
 

@@ -9,15 +9,9 @@ from limber.log.reader import Log, time_s
 from limber.measure.pushes import BEFORE_S, MeasuredPush
 from limber.model.scenario import Scenario
 from limber.plot import stick_figure
+from limber.plot.charts import TERMS
 from limber.plot.style import COLORS, STYLE, name_axes, note
 
-TERMS = {
-    "stiffness": "spring",
-    "damping": "damper",
-    "null": "posture",
-    "gravity": "gravity",
-    "coriolis": "Coriolis",
-}
 AXIS_COLORS = dict(zip("xyz", COLORS, strict=False))
 
 
