@@ -119,3 +119,24 @@ def test_yaml_parses_and_whole_scenarios_are_right(where, text, tmp_path):
             [program("limber-check"), "scenario", path], capture_output=True, text=True
         )
         assert done.returncode == 0, f"{where}: {done.stderr}"
+
+
+def programs() -> Iterator[tuple[str, str]]:
+    """Every command with the example in its help."""
+
+    def below(command, name: str) -> Iterator[tuple[str, str]]:
+        for word, found in getattr(command, "commands", {}).items():
+            yield from below(found, f"{name} {word}")
+        if not hasattr(command, "commands"):
+            yield name, command.epilog or ""
+
+    return below(get_command(app), "limber")
+
+
+@pytest.mark.parametrize(("name", "told"), list(programs()))
+def test_every_command_has_an_example_that_is_right(name, told):
+    if name.split()[-1] in PASSED_ON:
+        return  # the help is limber-eval's own
+    assert told.startswith(f"Example: {name}")
+    line = told.removeprefix("Example: ")
+    assert complaint(line) is None

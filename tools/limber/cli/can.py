@@ -25,7 +25,7 @@ class Side(StrEnum):
     replies = "replies"
 
 
-@app.command()
+@app.command(epilog="Example: limber can dump openarm")
 def dump(
     robot: Robot = DEFAULT_ROBOT, bus: Bus = None, file: LogFile = None, duration: Duration = 0.0
 ) -> None:
@@ -33,7 +33,7 @@ def dump(
     _listen("dump", robot, bus, file, duration)
 
 
-@app.command()
+@app.command(epilog="Example: limber can stats openarm --duration 10")
 def stats(
     robot: Robot = DEFAULT_ROBOT, bus: Bus = None, file: LogFile = None, duration: Duration = 0.0
 ) -> None:
@@ -41,7 +41,7 @@ def stats(
     _listen("stats", robot, bus, file, duration)
 
 
-@app.command()
+@app.command(epilog="Example: limber can record frames.log")
 def record(
     file: Annotated[Path, typer.Argument(help="File to write, in candump's log format.")],
     robot: Robot = DEFAULT_ROBOT,
@@ -53,7 +53,7 @@ def record(
     _become("record", robot, bus, "--out", str(file), "--duration", str(duration))
 
 
-@app.command()
+@app.command(epilog="Example: limber can replay frames.log")
 def replay(
     file: Annotated[Path, typer.Argument(help="A candump log.")],
     robot: Robot = DEFAULT_ROBOT,
@@ -72,7 +72,7 @@ def replay(
     _become("replay", robot, bus, *words)
 
 
-@app.command()
+@app.command(epilog="Example: limber can dbc openarm")
 def dbc(
     robot: Robot,
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path(),

@@ -13,7 +13,7 @@ from limber.paths import ROOT
 app = typer.Typer()
 
 
-@app.command()
+@app.command(epilog="Example: limber doctor my_arm")
 def doctor(
     robot: Annotated[
         str | None, typer.Argument(help="Also its CAN interfaces: a name or folder.")
@@ -33,7 +33,7 @@ def doctor(
     raise typer.Exit(RUN_FAILED if failed else OK)
 
 
-@app.command()
+@app.command(epilog="Example: limber test pytest")
 def test(
     part: Annotated[
         str | None,
@@ -45,7 +45,7 @@ def test(
     raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
 
 
-@app.command()
+@app.command(epilog="Example: limber docs")
 def docs() -> None:
     """Write the parts of the docs that come from programs: problems, gains, keys of robot.yaml,
     faults on the bus, fuzzing, Python.
@@ -66,7 +66,7 @@ def docs() -> None:
         console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
 
 
-@app.command()
+@app.command(epilog="Example: limber mutation controller/modes/load_watch.cc")
 def mutation(
     where: Annotated[
         list[str] | None,
@@ -88,7 +88,7 @@ def mutation(
     raise typer.Exit(OK if result.passed() else OUT_OF_TOLERANCE)
 
 
-@app.command()
+@app.command(epilog="Example: limber coverage")
 def coverage(
     write: Annotated[bool, typer.Option("--write", help="Keep the figures of this run.")] = False,
 ) -> None:
@@ -109,7 +109,7 @@ def coverage(
     raise typer.Exit(OUT_OF_TOLERANCE if not write and any(e.fell for e in figures) else OK)
 
 
-@app.command()
+@app.command(epilog="Example: limber fuzz --minutes 10")
 def fuzz(
     target: Annotated[str | None, typer.Argument(help="One target; all if there is none.")] = None,
     inputs: Annotated[int, typer.Option(min=0, help="libFuzzer: inputs a target.")] = 0,
@@ -128,7 +128,7 @@ def fuzz(
     raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
 
 
-@app.command()
+@app.command(epilog="Example: limber soak --hours 24")
 def soak(
     robot: Annotated[str, typer.Option(help="The arm: name or folder.")] = "planar2r",
     hours: Annotated[float, typer.Option(min=1e-4, help="Of arm time.")] = 24,
@@ -150,7 +150,7 @@ def soak(
     raise typer.Exit(module.run(robot, hours, seconds, seed, folder, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber bench")
 def bench() -> None:
     """Build the benchmarks in release mode and run them, each beside a peer."""
     from limber.dev import bench as module

@@ -18,7 +18,7 @@ Root = Annotated[Path | None, typer.Option("--root", help="Folder with other exp
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 
 
-@app.command("list")
+@app.command("list", epilog="Example: limber experiment list")
 def list_experiments(root: Root = None) -> None:
     """All experiments: what each claims and on what it is measured."""
     from limber.experiments.catalog import catalog
@@ -30,7 +30,7 @@ def list_experiments(root: Root = None) -> None:
     console.print(table)
 
 
-@app.command("run")
+@app.command("run", epilog="Example: limber experiment run E12")
 def run_experiments(
     which: Annotated[list[str], typer.Argument(help="all, or numbers such as E04 E12.")],
     out: Out = DEFAULT_OUT,
@@ -64,7 +64,7 @@ def run_experiments(
     raise typer.Exit(OK if all(check.passed for check in checks) else OUT_OF_TOLERANCE)
 
 
-@app.command("report")
+@app.command("report", epilog="Example: limber experiment report")
 def write_report(
     out: Out = DEFAULT_OUT,
     root: Root = None,

@@ -16,7 +16,7 @@ Phases = Annotated[
 ]
 
 
-@app.command("list")
+@app.command("list", epilog="Example: limber faults list")
 def list_rows() -> None:
     """Show the rows of the matrix: what is injected, what is expected, how it is run."""
     from limber.faults.matrix import read_matrix
@@ -29,7 +29,7 @@ def list_rows() -> None:
     console.print(rows)
 
 
-@app.command()
+@app.command(epilog="Example: limber faults run 36")
 def run(
     row: Annotated[
         int | None, typer.Argument(min=1, help="One row by its number; all if there is none.")
@@ -65,7 +65,7 @@ def _word(passed: bool, known_failing: str) -> str:
     return "[green]ok[/]" if passed else "[bold red]FAILED[/]"
 
 
-@app.command()
+@app.command(epilog="Example: limber faults report")
 def report(phases: Phases = 20) -> None:
     """Run the whole matrix in lock step and write docs/fault_matrix.md."""
     from limber.faults import report as module
@@ -75,7 +75,7 @@ def report(phases: Phases = 20) -> None:
     raise typer.Exit(OUT_OF_TOLERANCE if failed else OK)
 
 
-@app.command()
+@app.command(epilog="Example: limber faults bus")
 def bus(
     fault: Annotated[
         str | None, typer.Argument(help="One fault by its name; all of the bus if there is none.")

@@ -19,7 +19,7 @@ Out = Annotated[
 ]
 
 
-@app.command("motion")
+@app.command("motion", epilog="Example: limber identify motion --robot my_arm --out tour.yaml")
 def motion(
     robot: Annotated[str, typer.Option(help="The arm's name or folder.")] = "openarm",
     out: Annotated[Path, typer.Option("--out", help="Scenario file to write.")] = Path(
@@ -40,7 +40,7 @@ def motion(
 def _from_motion(kind: str, what: str) -> None:
     """The commands that need no options of their own."""
 
-    @app.command(kind, help=what)
+    @app.command(kind, help=what, epilog=f"Example: limber identify {kind} out/tour")
     def identify(runs: Runs, robot: Robot = None, out: Out = None) -> None:
         from limber.identify import commands
 
@@ -62,7 +62,7 @@ for kind, what in (
     _from_motion(kind, what)
 
 
-@app.command("payload")
+@app.command("payload", epilog="Example: limber identify payload out/with_tool")
 def payload(
     runs: Runs,
     robot: Robot = None,

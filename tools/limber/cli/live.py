@@ -10,7 +10,7 @@ from limber.cli.options import become, console
 app = typer.Typer()
 
 
-@app.command()
+@app.command(epilog="Example: limber send 'gains: {K_x_translation_N_per_m: 200, ramp_s: 0.5}'")
 def send(
     entries: Annotated[
         list[str] | None,
@@ -27,7 +27,7 @@ def send(
     become("limber-send", *(["--robot", robot] if robot else []), *(entries or []))
 
 
-@app.command()
+@app.command(epilog="Example: limber watch --once")
 def watch(
     once: Annotated[bool, typer.Option("--once", help="Print one picture and exit.")] = False,
 ) -> None:

@@ -11,7 +11,7 @@ from limber.errors import InputError
 app = typer.Typer()
 
 
-@app.command()
+@app.command(epilog="Example: limber monitor --control")
 def monitor(
     log: Annotated[
         Path | None, typer.Argument(help="A log or the folder of a run; none: the running arm.")

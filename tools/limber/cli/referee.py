@@ -15,7 +15,7 @@ app = typer.Typer()
 SHOWN = 40
 
 
-@app.command()
+@app.command(epilog="Example: limber referee frames.log --robot openarm")
 def referee(
     trace: Annotated[Path, typer.Argument(help="A candump log of all the arm's buses.")],
     robot: Annotated[str, typer.Option("--robot", "-r", help="Its name or folder.")] = "openarm",

@@ -29,7 +29,7 @@ Plain = Annotated[
 ]
 
 
-@app.command()
+@app.command(epilog="Example: limber demo --page")
 def demo(
     out: Out = None,
     seconds: Annotated[
@@ -54,7 +54,7 @@ def demo(
     raise typer.Exit(module.demo(seconds, sensors, options, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber run scenarios/push.yaml --out out/push")
 def run(
     scenario: ScenarioPath,
     out: Out = None,
@@ -100,7 +100,7 @@ def run(
     raise typer.Exit(commands.run(scenario, options, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber lab scenarios/push.yaml --out out/push")
 def lab(
     scenario: ScenarioPath,
     out: Out = None,
@@ -117,7 +117,7 @@ def lab(
     raise typer.Exit(commands.lab(scenario, options, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber sim openarm")
 def sim(
     robot: Robot,
     bus: Bus = None,
@@ -148,7 +148,7 @@ def sim(
     become("limber-sim", "--robot", str(folder), *words)
 
 
-@app.command()
+@app.command(epilog="Example: limber measure out/push")
 def measure(folder: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
     """Measure a recorded run again, from its log and scenario."""
     from limber.run import commands
@@ -156,7 +156,7 @@ def measure(folder: Annotated[Path, typer.Argument(help="Folder of a run.")]) ->
     raise typer.Exit(commands.measure_again(folder, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber check scenarios/push.yaml")
 def check(
     what: Annotated[str, typer.Argument(help="A robot's name or folder, a URDF, or a scenario.")],
     base: Annotated[str | None, typer.Option(help="Base link, for a bare URDF.")] = None,
@@ -174,7 +174,7 @@ def check(
     become("limber-check", *arguments)
 
 
-@app.command()
+@app.command(epilog="Example: limber new my_arm.urdf --base base_link --tip tool0 --drives damiao")
 def new(
     urdf: Annotated[Path, typer.Argument(help="URDF file.")],
     drives: Annotated[
@@ -191,7 +191,7 @@ def new(
     raise typer.Exit(module.write(urdf, (base, tip), drives, name, out, console))
 
 
-@app.command()
+@app.command(epilog="Example: limber service my_arm")
 def service(
     robot: Robot,
     out: Annotated[Path, typer.Option("--out", help="Folder for the files.")] = Path("out/service"),
