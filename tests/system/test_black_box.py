@@ -70,13 +70,14 @@ def play(tmp_path, end_s: float, fault_s: float | None) -> subprocess.CompletedP
     scenario = tmp_path / "frozen.yaml"
     text = FROZEN.format(end_s=end_s, fault_s=fault_s)
     scenario.write_text(text if fault_s else text[: text.index("  - {at_s: None")])
-    command = [LIMBER, "run", str(scenario), "--out", str(tmp_path / "run"), "--no-record"]
+    command = [LIMBER, "run", str(scenario), "--out", str(tmp_path / "run")]
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
 def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     """The driver and the simulator saw nothing wrong themselves."""
-    play(tmp_path, 6.0, 1.5)
+    told = play(tmp_path, 6.0, 1.5).stdout
+    assert "kept: limber incident show" in " ".join(told.split())
     assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
     out = tmp_path / "told"
     done = subprocess.run(

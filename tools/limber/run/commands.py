@@ -78,18 +78,32 @@ def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
         return OK
     summary, _ = summarize(finished, scenario)
     console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
-    show_faults(summary, console)
+    show_faults(summary, finished.folder, console)
     console.print(f"log and summary: {finished.folder}", soft_wrap=True)
     return OK if summary.passed else OUT_OF_TOLERANCE
 
 
-def show_faults(summary: Summary, console: Console) -> None:
-    """The story of each."""
+def show_faults(summary: Summary, folder: Path, console: Console) -> None:
+    """The story of each, and where the last seconds before it are kept."""
     for fault in summary.faults:
         title, *lines = fault.lines()
         console.print(title, style="bold red", markup=False, highlight=False, soft_wrap=True)
         for line in lines:
             console.print(line, markup=False, highlight=False, soft_wrap=True)
+    boxes = _boxes(folder) if summary.faults else []
+    if boxes:
+        console.print(
+            f"The last seconds of {len(boxes)} processes are kept: limber incident show {boxes[0]}",
+            soft_wrap=True,
+        )
+
+
+def _boxes(folder: Path) -> list[str]:
+    """The black boxes that the processes' logs name; none in lock step."""
+    logs = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("limber-*.log"))]
+    return [
+        name for text in logs for name in re.findall(r"for `limber incident`: (\S+\.box)", text)
+    ]
 
 
 def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:

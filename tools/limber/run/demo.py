@@ -66,7 +66,7 @@ def demo(seconds: float | None, sensors: bool, options: RunOptions, console: Con
         folder = run_folder(beside or commands.next_folder("demo"))
         finished = runner.run(scenario, folder, again, console)
         summary, pushes = commands.summarize(finished, scenario)
-    _show(summary, pushes, scenario, console)
+    _show(summary, pushes, scenario, folder, console)
     picture = _picture(finished.log, scenario, pushes, folder)
     files = {
         picture: "the demo in one picture",
@@ -98,7 +98,11 @@ def _picture(log: Path, scenario: Scenario, pushes: list[MeasuredPush], folder: 
 
 
 def _show(
-    summary: Summary, pushes: list[MeasuredPush], scenario: Scenario, console: Console
+    summary: Summary,
+    pushes: list[MeasuredPush],
+    scenario: Scenario,
+    folder: Path,
+    console: Console,
 ) -> None:
     if pushes:
         console.print(_stiffness_table(pushes, scenario.tolerances.stiffness, summary))
@@ -115,7 +119,7 @@ def _show(
         leaning = f", {rest.value:.1f} N leaning on it" if rest is not None else ""
         console.print(f"The wall was hit with {force.value:.1f} N at most{leaning}.")
     console.print(_health(summary), highlight=False)
-    commands.show_faults(summary, console)
+    commands.show_faults(summary, folder, console)
     for result in summary.results:
         if result.passed is False:
             console.print(f"[bold red]out of tolerance:[/] {_line(result)}")
