@@ -84,3 +84,26 @@ def test_drives_that_fall_silent_leave_no_gap():
         keeper.add(batch)
     t, _ = keeper.kept["joints"]["joint position"].bins[10.0].curves()
     assert len(t) == 2 * 2.0 / (10.0 / 200), "every bin of the two seconds has its points"
+
+
+def test_the_tail_counts_every_cycle_since_the_beginning():
+    """One state in a hundred comes 500 us late; the controller takes 5 us, once 80."""
+    keeper = Keeper([], WINDOWS)
+    assert keeper.of("timing") == []
+    for batch in batches(2000, 100):
+        state = batch.arrays["JOINT_STATE"]
+        state["time_ns"][50:] += 500_000
+        status = records("controller_status_t", 20, cycle_ns=5_000, num_joints=2)
+        status["time_ns"] = state["time_ns"][::5]
+        status["cycle_ns"][7] = 80_000
+        kind = messages.native_dtype_of("controller_status_t")
+        batch.arrays["CONTROLLER_STATUS"] = status.astype(kind)
+        keeper.add(batch)
+    tail = keeper.of("timing")[-1]
+    x, (later, own) = tail.curves(10.0)
+    late = (x > 1) & (x < 499)
+    assert np.allclose(later[late], 20 / 1999)
+    assert np.isnan(later[x > 501]).all()
+    assert np.allclose(own[x < 4.9], 1.0)
+    assert np.allclose(own[(x > 5.1) & (x < 79)], 1 / 20)
+    assert np.isnan(own[x > 81]).all()

@@ -9,6 +9,7 @@ from viser import uplot
 
 from limber.monitor.bins import Bins
 from limber.monitor.feed import Batch
+from limber.monitor.tail import EDGES_US, Tail
 from limber.plot.chart import Chart
 from limber.plot.charts import TOPICS as CHARTS
 
@@ -36,6 +37,9 @@ class Kept:
     bins: dict[float, Bins]
     newest_s: float = -np.inf
 
+    def curves(self, window_s: float) -> tuple[np.ndarray, np.ndarray]:
+        return self.bins[window_s].curves()
+
 
 class Keeper:
     """The history of all charts, for each of the windows."""
@@ -43,6 +47,7 @@ class Keeper:
     def __init__(self, joint_names: list[str], windows_s: tuple[float, ...]) -> None:
         self._names, self._windows = joint_names, windows_s
         self.kept: dict[str, dict[str, Kept]] = {topic: {} for topic in TOPICS}
+        self._tail: Tail | None = None  # none in lock step, or before it is known
         self._tails: dict[str, np.ndarray] = {}
 
     def add(self, batch: Batch) -> None:
@@ -52,9 +57,20 @@ class Keeper:
         for topic, what in TOPICS.items():
             if what == "timing" and not len(joined.read("DRIVER_STATUS")):
                 continue  # it tells whether there is a clock
-            for chart in CHARTS[what](joined, self._names):
+            charts = CHARTS[what](joined, self._names)
+            if what == "timing" and charts:
+                self._tail = self._tail or Tail()
+                self._tail.add(joined, batch)
+            for chart in charts:
                 if chart.over_time and len(chart.t_s) > 1 and chart.series:
                     self._add(self.kept[topic], chart)
+
+    def of(self, topic: str) -> list[Kept | Tail]:
+        """All charts of a topic that there is something of."""
+        found: list[Kept | Tail] = list(self.kept[topic].values())
+        if TOPICS[topic] == "timing" and self._tail is not None:
+            found.append(self._tail)
+        return found
 
     def _with_tails(self, batch: Batch) -> Batch:
         """Each channel with the message before, so that differences have something to begin at."""
@@ -104,14 +120,14 @@ class ChartPanel:
 
     def draw(self) -> None:
         topic, window_s = self.topic.value, self._windows[self._window.value]
-        shown = self._chosen(list(self._keeper.kept[topic].values()), topic)
+        shown = self._chosen(self._keeper.of(topic), topic)
         key = (topic, window_s, *((one.chart.title, *one.chart.series) for one in shown))
         if key != self._drawn:
             self._rebuild(shown, window_s)
             self._drawn = key
             self.make_again()
         for one in shown:
-            t, values = one.bins[window_s].curves()
+            t, values = one.curves(window_s)
             if len(t):
                 self.handles[one.chart.title].data = (t, *values)
         if 0 < self._made_again_s < time.monotonic():
@@ -119,7 +135,7 @@ class ChartPanel:
             for handle in self.handles.values():
                 handle.padding = OTHER_PADDING if handle.padding == PADDING else PADDING
 
-    def _chosen(self, kept: list[Kept], topic: str) -> list[Kept]:
+    def _chosen(self, kept: list[Kept | Tail], topic: str) -> list[Kept | Tail]:
         """Of the torques, those of one joint and whatever belongs to none."""
         names = [one.chart.title.removeprefix("torque of ") for one in kept]
         joints = [n for n, one in zip(names, kept, strict=True) if n != one.chart.title]
@@ -134,7 +150,7 @@ class ChartPanel:
             if n == one.chart.title or n == self._joint.value
         ]
 
-    def _rebuild(self, shown: list[Kept], window_s: float) -> None:
+    def _rebuild(self, shown: list[Kept | Tail], window_s: float) -> None:
         for handle in self.handles.values():
             handle.remove()
         self._nothing.visible = not shown
@@ -142,9 +158,9 @@ class ChartPanel:
         with self._place:
             self.handles = {one.chart.title: self._chart(one, window_s) for one in shown}
 
-    def _chart(self, one: Kept, window_s: float) -> viser.GuiUplotHandle:
+    def _chart(self, one: Kept | Tail, window_s: float) -> viser.GuiUplotHandle:
         chart = one.chart
-        series = [uplot.Series(label="s")]
+        series = [uplot.Series(label="s" if chart.over_time else chart.x)]
         for name, number in zip(chart.series, chart.color_numbers(), strict=True):
             line = uplot.Series(
                 label=name,
@@ -155,14 +171,23 @@ class ChartPanel:
             if name in chart.dashed:
                 line["dash"] = (6, 4)
             series.append(line)
-        t, values = one.bins[window_s].curves()
+        t, values = one.curves(window_s)
         return self._gui.add_uplot(
             (t, *values),
             tuple(series),
             title=f"{chart.title} / {chart.unit}",
-            scales={"x": uplot.Scale(time=False, auto=False, range=(-window_s, 0.0))},
+            scales=_scales(chart, window_s),
             axes=(uplot.Axis(size=34), uplot.Axis(size=56)),
             padding=PADDING,
             height=170,
             legend=uplot.Legend(show=True, live=False),
         )
+
+
+def _scales(chart: Chart, window_s: float) -> dict[str, uplot.Scale]:
+    if chart.over_time:
+        return {"x": uplot.Scale(time=False, auto=False, range=(-window_s, 0.0))}
+    x = uplot.Scale(
+        time=False, auto=False, distr=3, range=(float(EDGES_US[0]), float(EDGES_US[-1]))
+    )
+    return {"x": x, "y": uplot.Scale(distr=3, range=(1e-6, 1.0))}

@@ -18,6 +18,8 @@ OVERVIEW = (
     "torque of pushes on the arm",
 )
 SPRINGS_FROM_RAD = 1e-4
+TAIL_TITLE, TAIL_X = "share of cycles that take longer", "time (µs)"
+LATER, OWN_TIME = "state later than its period", "controller's own time"
 SHORT = 0.1  # share of the run that a law is too short for to count
 TERMS = {  # tau_TERM of CONTROLLER_STATUS, in the words of all pictures
     "stiffness": "spring",
@@ -211,7 +213,7 @@ def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
         Chart("time from state to state", "ms", time_s(state), {"step": step}),
         Chart("lateness of the cycle, so far", "µs", t, quantiles("lateness", *QUANTILES)),
         Chart("state to torque, so far", "µs", t, quantiles("answer", "p50", "p99", "max")),
-        Chart("controller's own time", "µs", time_s(status), loop),
+        Chart(OWN_TIME, "µs", time_s(status), loop),
         Chart("late, counted so far", "cycles", t, counts),
         *_tail(step[1:], status["cycle_ns"]),
     ]
@@ -224,13 +226,13 @@ def _tail(step_ms: np.ndarray, cycle_ns: np.ndarray) -> list[Chart]:
     late_us = np.maximum(step_ms - np.median(step_ms), 0.0) * 1e3
     x = np.geomspace(1.0, max(late_us.max(), cycle_ns.max() * 1e-3, 10.0), 200)
     seldom = {
-        "state later than its period": np.array([(late_us > value).mean() for value in x]),
-        "controller's own time": np.array([(cycle_ns * 1e-3 > value).mean() for value in x]),
+        LATER: np.array([(late_us > value).mean() for value in x]),
+        OWN_TIME: np.array([(cycle_ns * 1e-3 > value).mean() for value in x]),
     }
     shown = {n: np.where(share > 0, share, np.nan) for n, share in seldom.items() if share.any()}
     if not shown:
         return []
-    return [Chart("share of cycles that take longer", "1", x, shown, x="time (µs)", log=True)]
+    return [Chart(TAIL_TITLE, "1", x, shown, x=TAIL_X, log=True)]
 
 
 def _bus_charts(log: Log, _names: list[str]) -> list[Chart]:
