@@ -13,6 +13,9 @@ from stack import BIN, Stack
 
 BRIDGED_CYCLES = 60  # 50 on virtual buses in real time, and what the machine adds
 
+# A shell that starts the tests in the background has its children ignore Ctrl-C; tests send it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 def pytest_configure(config):
     """Refuse to run where other LCM programs could hear us or disturb us."""

@@ -1,5 +1,6 @@
 """Logs made from formulas, so that every test knows what has to come out."""
 
+import signal
 import socket
 import subprocess
 import sys
@@ -16,6 +17,9 @@ from limber.model.scenario import load_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE_HZ = 200
+
+# A shell that starts the tests in the background has its children ignore Ctrl-C; tests send it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def records(type_name: str, count: int, **fields) -> np.ndarray:

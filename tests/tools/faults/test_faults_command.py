@@ -2,7 +2,12 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
+import pytest
+from typer.testing import CliRunner
+
+from limber.cli.faults import app
 from limber.faults.matrix import read_matrix
 
 
@@ -26,10 +31,17 @@ def test_a_row_is_run():
     assert "test_controller_dies" in done.stdout
 
 
-def test_a_row_that_is_known_to_fail_is_no_surprise():
-    done = faults("run", 36, "--phases", 1)
-    assert "known the encoder freezes" in done.stdout
-    assert done.returncode == 0
+@pytest.mark.parametrize(("cycles", "told", "code"), [(1, "known", 0), (200, "MENDED", 1)])
+def test_a_row_that_is_known_to_fail(monkeypatch, cycles, told, code):
+    """Its failure is no surprise; that it passes is."""
+    rows = read_matrix()
+    row = next(row for row in rows if row.number == 36)
+    fault = replace(row.lock_step[0], cycles=cycles, known_failing="for this test")
+    rows[rows.index(row)] = replace(row, lock_step=[fault])
+    monkeypatch.setattr("limber.faults.matrix.read_matrix", lambda: rows)
+    done = CliRunner().invoke(app, ["run", "36", "--phases", "1"])
+    assert f"{told} the encoder freezes" in done.output
+    assert done.exit_code == code
 
 
 def test_a_row_that_is_none():

@@ -138,6 +138,6 @@ def test_slips_are_named(tmp_path, old, new, words):
 def test_a_row_is_run_or_says_why_not(tmp_path):
     text = (ROOT / "faults" / "matrix.yaml").read_text(encoding="utf-8")
     path = tmp_path / "matrix.yaml"
-    path.write_text(text + '    tests: [{how: start, test: "a::b"}]\n', encoding="utf-8")
+    path.write_text(text + '    not_run: "the last row has runs"\n', encoding="utf-8")
     with pytest.raises(InputError, match="either runs or not_run"):
         read_matrix(path)
