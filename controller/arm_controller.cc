@@ -107,7 +107,10 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
     start_watch_.begin(state);
     load_watch_.begin();
   }
-  if (supervisor_.mode() != Mode::kHold) start_watch_.end();
+  if (supervisor_.mode() != Mode::kHold) {
+    start_watch_.end();
+    load_watch_.end();
+  }
   was_engaged_ = engaged;
   if (!engaged) return;
   if (const int joint = start_watch_.strayed(state); joint >= 0)

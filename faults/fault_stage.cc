@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kVerdicts = 16;  // room in driver_status_t
 constexpr std::int64_t kHoldAt_ns = 300'000'000;
-constexpr std::int64_t kActiveAt_ns = 500'000'000;
-constexpr std::int64_t kCircleAt_ns = 600'000'000;
+constexpr std::int64_t kActiveAt_ns = 1'100'000'000;
+constexpr std::int64_t kCircleAt_ns = 1'200'000'000;
 
 Scenario moving_arm(int joints) {
   Scenario scenario;

@@ -32,7 +32,9 @@ int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s
     return -1;
   }
   observe(state, model, dt_s);
-  return time_s_ < kBegin_s ? -1 : judge(model);
+  const int joint = judge(model);
+  wrong_s_ = joint < 0 ? 0.0 : wrong_s_ + dt_s;
+  return time_s_ >= kBegin_s && wrong_s_ >= kLasting_s ? joint : -1;
 }
 
 // Only between two states without a gap is the change of speed what the torque has made.

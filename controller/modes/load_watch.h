@@ -24,7 +24,8 @@ namespace limber::controller {
 /// A motor with the wrong sign or in another joint's place, a wrong zero, and a wrong mass show by
 /// the weight that their joints carry, before a law has moved them far. A joint about a vertical
 /// axis carries none: nothing is found there. Judged from kBegin_s to kEnd_s after the drives came
-/// on.
+/// on, while the arm is held, and found if it holds for kLasting_s: a blow, or cycles that came
+/// late, leave r in less.
 ///
 /// tau is the motor's, and M with its rotor; behind a torque sensor the sensor's, and M without it.
 /// Arms with springs in joints without sensor are not watched.
@@ -33,6 +34,7 @@ class LoadWatch {
   static constexpr double kMemory_s = 0.02;
   static constexpr double kBegin_s = 0.125;
   static constexpr double kEnd_s = 1.0;
+  static constexpr double kLasting_s = 0.03;
   static constexpr double kModelShare = 0.25;
   static constexpr double kOffset = 0.1;  ///< of the payload's centre from the tip, m
 
@@ -46,6 +48,8 @@ class LoadWatch {
     time_s_ = 0.0;
     answered_ = false;
   }
+  /// A law moves the arm now: what supported it may be left behind or pushed against.
+  void end() noexcept { time_s_ = kEnd_s; }
   /// The model at a state: N m, kg m^2, and the tip's Jacobian.
   struct Model {
     const VectorJ& gravity;
@@ -78,6 +82,7 @@ class LoadWatch {
   VectorJ by_motor_;        ///< 1: the motor's torque counts, 0: the sensor's
   Eigen::Vector3d down_;    ///< of length one, or zero without gravity
   double time_s_ = kEnd_s;  ///< since begin()
+  double wrong_s_ = 0.0;    ///< without a break
   bool answered_ = false;   ///< every joint, in the state before
   VectorJ v_;               ///< of the state before
   VectorJ r_;

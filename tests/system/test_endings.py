@@ -89,7 +89,7 @@ def test_the_events_of_a_run_with_a_fault(tmp_path):
     """A hand gives the arm, which feels weightless, more speed than hands should."""
     timeline = (
         "  - {at_s: 1.0, gains: {law: gravity_compensation}}\n"
-        "  - {at_s: 1.2, push: {torque_Nm: [0, 0, 40], ramp_s: 0.05, for_s: 0.6}}\n"
+        "  - {at_s: 1.5, push: {torque_Nm: [0, 0, 40], ramp_s: 0.05, for_s: 0.6}}\n"
     )
     done = limber("lab", written(tmp_path, timeline), "--out", str(tmp_path / "out"))
     assert done.returncode == 1, done.stdout + done.stderr

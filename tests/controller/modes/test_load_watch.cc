@@ -2,6 +2,7 @@
 // payload, friction and a stand explain.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -49,6 +50,12 @@ struct Bench {
       if (const int joint = next(); joint >= 0) return joint;
     EXPECT_NEAR((watch.residual() - outside_Nm).norm(), 0.0, 1e-9);
     return -1;
+  }
+
+  /// What is found when it is as it is for as long as it has to: two steps.
+  int lasting() {
+    EXPECT_EQ(next(), -1);
+    return next();
   }
 
   LoadWatch watch;
@@ -106,7 +113,7 @@ TEST(LoadWatch, BehindASensorTheSensorCountsAndNotTheRotor) {
   }
   EXPECT_NEAR(bench.watch.residual().norm(), 0.0, 1e-9);
   bench.state.tau[1] -= 20.0;
-  EXPECT_GE(bench.next(), 0) << "it is watched";
+  EXPECT_GE(bench.lasting(), 0) << "it is watched";
 }
 
 TEST(LoadWatch, SpringsWithoutASensorAreNotWatched) {
@@ -208,11 +215,47 @@ TEST(LoadWatch, IsJudgedFromAnEighthOfASecondToOneAfterTheDrivesCameOn) {
   EXPECT_EQ(never.wrong(bench.state, {bench.g, bench.Cv, bench.M, bench.B, bench.J}, 0.5), -1);
 }
 
+TEST(LoadWatch, WhatDoesNotLastIsNotFound) {
+  const VectorJ wrong = vector(3.0, -3.0);
+  const VectorJ nothing = vector(0.0, 0.0);
+  Bench bench;
+  const auto steps = [&](const VectorJ& outside, int count) {
+    bench.apply(bench.g - outside);
+    int found = -1;
+    for (int k = 0; k < count; ++k) found = std::max(found, bench.next());
+    return found;
+  };
+  ASSERT_EQ(steps(nothing, 12), -1);
+  EXPECT_EQ(steps(wrong, 1), -1);
+  EXPECT_EQ(steps(nothing, 3), -1);
+  EXPECT_EQ(steps(wrong, 1), -1) << "it begins anew";
+  EXPECT_GE(steps(wrong, 1), 0);
+}
+
+// Two steps of 15 ms are 30 ms to the last bit.
+TEST(LoadWatch, ExactlyThatLongIsLongEnough) {
+  Bench bench;
+  bench.state.period_ns = 15'000'000;
+  bench.apply(bench.g);
+  for (int k = 0; k < 10; ++k) ASSERT_EQ(bench.next(0.015), -1);
+  bench.apply(bench.g - vector(50.0, -50.0));
+  EXPECT_EQ(bench.next(0.015), -1);
+  EXPECT_GE(bench.next(0.015), 0);
+}
+
+TEST(LoadWatch, AnArmThatALawMovesIsNotWeighed) {
+  Bench bench;
+  bench.apply(bench.g - vector(5.0, -5.0));
+  for (int k = 0; k < 7; ++k) ASSERT_EQ(bench.next(), -1);
+  bench.watch.end();
+  for (int k = 0; k < 20; ++k) ASSERT_EQ(bench.next(), -1);
+}
+
 TEST(LoadWatch, ANumberThatIsNoneIsWrong) {
   Bench bench;
   for (int k = 0; k < 10; ++k) bench.next();
   bench.state.v[0] = std::nan("");
-  EXPECT_EQ(bench.next(), 0);
+  EXPECT_EQ(bench.lasting(), 0);
 }
 
 // A state of speed 1 rad/s is the first: no torque has made it.
