@@ -102,16 +102,10 @@ def test_python_parses_and_calls_what_there_is(where, text):
             signature.bind(None, *node.args, **given)
 
 
-def part_of(text: str) -> dict:
-    """Some blocks show the inside of an entry alone."""
-    content = yaml.safe_load(text)
-    assert isinstance(content, dict | list)
-    return content
-
-
 @pytest.mark.parametrize(("where", "text"), blocks("yaml"))
 def test_yaml_parses_and_whole_scenarios_are_right(where, text, tmp_path):
-    content = part_of(text)
+    content = yaml.safe_load(text)
+    assert isinstance(content, dict | list), where  # some blocks show the inside of an entry alone
     if isinstance(content, dict) and str(content.get("format")).startswith("limber-scenario"):
         path: Path = tmp_path / "scenario.yaml"
         path.write_text(text)

@@ -5,6 +5,7 @@ import numpy as np
 from limber import messages
 from limber.errors import RunError
 from limber.log.reader import Log, time_s
+from limber.log.rows import active
 
 __all__ = ["RAMP", "Log", "joints", "motion", "status", "time_s"]
 
@@ -21,7 +22,7 @@ def status(log: Log, start_s: float, end_s: float, allowed: frozenset[str] = RAM
     that is not `allowed`, or in which the controller refused a request.
     """
     rows = between(log, "CONTROLLER_STATUS", start_s, end_s)
-    if not (rows["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE).all():
+    if not active(rows).all():
         raise RunError(f"{log.path}: the arm is not active all the time")
     names = messages.bit_names(
         "controller_status_t", "LIMIT_", int(np.bitwise_or.reduce(rows["limits"]))

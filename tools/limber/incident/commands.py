@@ -3,7 +3,6 @@ order, one log, pictures, and a scenario that does the same in simulation.
 """
 
 import os
-import shutil
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -18,7 +17,7 @@ from limber.log.commands import show_events
 from limber.log.events import Names
 from limber.log.reader import Log, log_file
 from limber.model.gains_table import law_names
-from limber.model.robot import Robot, load_robot
+from limber.model.robot import Robot, copy_description, load_robot
 from limber.paths import ROOT, existing_file, run_folder
 from limber.plot.commands import plot
 
@@ -120,6 +119,5 @@ def _robot_of(name: str, target: Path, console: Console) -> Robot | None:
             soft_wrap=True,
         )
         return None
-    shutil.copyfile(robot.folder / "robot.yaml", target / "robot.yaml")
-    shutil.copyfile(robot.urdf, target / robot.urdf.name)
+    copy_description(robot, target)
     return load_robot(str(target.resolve()))

@@ -12,6 +12,7 @@ import numpy as np
 import yaml
 
 from limber.log.reader import Log, time_s
+from limber.log.rows import active, stretches
 from limber.messages import message_class
 from limber.model.gains_table import law_names
 from limber.problems import Problem, problem
@@ -74,10 +75,10 @@ def reproduction(log: Log, robot: str, joints: list[str]) -> Reproduction | None
         {"at_s": 0.8, "mode": "active"},
     ]
     notes: list[str] = []
-    active = status[status["mode"] == STATUS.MODE_ACTIVE]
-    if len(active):
-        timeline += _gains(active, n, at)
-        timeline += _goals(active, at, notes)
+    under_law = status[active(status)]
+    if len(under_law):
+        timeline += _gains(under_law, n, at)
+        timeline += _goals(under_law, at, notes)
     else:
         timeline.pop()
         notes.append("No law ran in the time that was kept")
@@ -135,20 +136,6 @@ def _within(records: np.ndarray, begin_s: float, end_s: float) -> np.ndarray:
     return records[(t >= begin_s) & (t <= end_s)]
 
 
-def _stretches(acts: np.ndarray, pause: int) -> Iterator[slice]:
-    """Rows in which something acts; shorter pauses are bridged."""
-    rows = np.flatnonzero(acts)
-    if not len(rows):
-        return
-    breaks = np.flatnonzero(np.diff(rows) > pause)
-    for first, last in zip([0, *(breaks + 1)], [*breaks, len(rows) - 1], strict=True):
-        yield slice(int(rows[first]), int(rows[last]) + 1)
-
-
-def _rows_of(t: np.ndarray, length_s: float) -> int:
-    return max(1, round(length_s / float(np.median(np.diff(t))))) if len(t) > 1 else 1
-
-
 def _gains(status: np.ndarray, n: int, at: Any) -> Iterator[dict[str, Any]]:
     """The stiffness and the law at the start, and what each later change led to."""
     t = time_s(status)
@@ -156,7 +143,7 @@ def _gains(status: np.ndarray, n: int, at: Any) -> Iterator[dict[str, Any]]:
     changed = np.zeros(len(status), bool)
     changed[1:] = np.any(np.diff(stiffness, axis=0) != 0, axis=1) | (np.diff(status["law"]) != 0)
     yield {"at_s": 1.0, "gains": {**_gains_of(status[0], n), "ramp_s": 0.1}}
-    for rows in _stretches(changed, _rows_of(t, PAUSE_S)):
+    for rows in stretches(t, changed, PAUSE_S):
         begin, end = float(t[rows.start - 1]), float(t[rows.stop - 1])
         gains = {**_gains_of(status[rows.stop - 1], n), "ramp_s": round(end - begin, 3)}
         yield {"at_s": at(begin), "gains": gains}
@@ -189,7 +176,7 @@ def _goals(status: np.ndarray, at: Any, notes: list[str]) -> Iterator[dict[str, 
         yield {"at_s": 1.1, "goal": _goal_of(pose[0], 0.2)}
     moves = np.zeros(len(status), bool)
     moves[1:] = np.abs(np.diff(pose, axis=0)).max(axis=1) > STILL
-    for rows in _stretches(moves, _rows_of(t, PAUSE_S)):
+    for rows in stretches(t, moves, PAUSE_S):
         begin, end = float(t[rows.start - 1]), float(t[rows.stop - 1])
         if rows.start == 1:
             notes.append("A motion of the goal had begun before")
@@ -210,8 +197,7 @@ def _pushes(truth: np.ndarray, end_s: float, at: Any) -> Iterator[dict[str, Any]
     t = time_s(truth)
     wrench = truth["F_push"] + truth["F_contact"] * (t <= end_s)[:, None]
     size = np.abs(wrench).max(axis=1, initial=0.0)
-    stretches = _stretches(size > SAME_N, _rows_of(t, PAUSE_S))
-    for number, rows in enumerate(stretches, 1):
+    for number, rows in enumerate(stretches(t, size > SAME_N, PAUSE_S), 1):
         plateau = size[rows] > 0.9 * np.quantile(size[rows], 0.7)  # not the peak of a blow
         begin, end = float(t[rows.start]), float(t[rows.stop - 1])
         rise = float(t[rows][np.argmax(plateau)]) - begin

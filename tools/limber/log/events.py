@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.log.reader import Log, time_s
+from limber.log.rows import stretches
 from limber.messages import CLIENTS, constants, message_class
 from limber.problems import Problem, groups, problem
 
@@ -72,16 +73,9 @@ def _changes(records: np.ndarray, *fields: str) -> Iterator[int]:
 
 
 def _stretches(t: np.ndarray, acts: np.ndarray) -> Iterator[tuple[slice, float]]:
-    """Where something acts, and for how long; short pauses are bridged."""
-    rows = np.flatnonzero(acts)
-    if not len(rows):
-        return
-    breaks = np.flatnonzero(np.diff(t[rows]) > PAUSE_S)
-    starts = [0, *(breaks + 1)]
-    ends = [*breaks, len(rows) - 1]
-    for start, end in zip(starts, ends, strict=True):
-        first, last = int(rows[start]), int(rows[end])
-        yield slice(first, last + 1), float(t[last] - t[first])
+    """Where something acts, and for how long."""
+    for rows in stretches(t, acts, PAUSE_S):
+        yield rows, float(t[rows.stop - 1] - t[rows.start])
 
 
 WHAT = {"MODE": ("mode_request_t", "REQUEST_"), "GOAL": ("compliance_goal_t", "GOAL_")}

@@ -9,6 +9,7 @@ import numpy as np
 
 from limber import messages
 from limber.log.reader import Log, time_s
+from limber.log.rows import active
 from limber.model.robot import Robot
 from limber.model.validation import run_checker
 from limber.problems import MORE, Problem, groups, problem, sentence
@@ -119,8 +120,7 @@ class Evidence:
         self._arm: dict[str, Any] | None = None
 
     def active_again_s(self, time: float) -> float:
-        active = self.status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE
-        times = time_s(self.status[active])
+        times = time_s(self.status[active(self.status)])
         later = times[times > time]
         return float(later[0]) if len(later) else float("inf")
 

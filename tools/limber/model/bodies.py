@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from limber.model.urdf import MOVING, Chain, Joint, numbers_of, read_joints
+from limber.model.urdf import MOVING, Chain, carrier, numbers_of, read_joints
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def bodies(urdf: Path, chain: Chain) -> list[Body]:
     children = [joint.child for joint in chain.joints if joint.kind in MOVING]
     parts: dict[str, list[tuple[str, Inertial, np.ndarray]]] = {child: [] for child in children}
     for link, element in _inertial_elements(urdf):
-        owner, X = _owner(link, parts, joints)
+        owner, X = carrier(link, parts, joints)
         inertial = _inertial(element) if owner is not None else None
         if inertial is not None:
             parts[owner].append((link, inertial, X))
@@ -75,19 +75,6 @@ def _inertial(element: ElementTree.Element) -> Inertial | None:
         return None
     R = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0")).as_matrix()
     return Inertial(mass, numbers_of(origin, "xyz", "0 0 0"), R @ inertia @ R.T)
-
-
-def _owner(
-    link: str, owners: dict[str, list], joints: dict[str, Joint]
-) -> tuple[str | None, np.ndarray]:
-    """The body a link belongs to and the link's pose in it; None for what does not move."""
-    X = np.eye(4)
-    while link not in owners:
-        if link not in joints:
-            return None, X
-        X = joints[link].X_PF @ X
-        link = joints[link].parent
-    return link, X
 
 
 def _lump(child: str, parts: list[tuple[str, Inertial, np.ndarray]]) -> Body:

@@ -1,5 +1,6 @@
 """A robot folder as the tools need it; the C++ programs are the ones that check it."""
 
+import shutil
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -93,6 +94,12 @@ def load_robot(name_or_path: str, beside: Path | None = None) -> Robot:
         raise InputError(
             f"{folder / 'robot.yaml'}: {error} is missing or wrong; see `limber check {folder}`"
         ) from error
+
+
+def copy_description(robot: Robot, folder: Path) -> None:
+    """robot.yaml and the URDF, as they are beside a log."""
+    shutil.copyfile(robot.folder / "robot.yaml", folder / "robot.yaml")
+    shutil.copyfile(robot.urdf, folder / robot.urdf.name)
 
 
 def _robot(content: dict[str, Any], folder: Path) -> Robot:

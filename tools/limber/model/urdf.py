@@ -5,6 +5,7 @@ measures.
 """
 
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -127,6 +128,21 @@ def read_joints(urdf: Path) -> dict[str, Joint]:
         for element in root.findall("joint")
         for child in [element.find("child").get("link")]
     }
+
+
+def carrier(
+    link: str, links: Collection[str], joints: dict[str, Joint]
+) -> tuple[str | None, np.ndarray]:
+    """Which of `links` carries `link` with all joints between them at zero, and the pose of `link`
+    in it, 4x4; None if none does.
+    """
+    X = np.eye(4)
+    while link not in links:
+        if link not in joints:
+            return None, X
+        X = joints[link].X_PF @ X
+        link = joints[link].parent
+    return link, X
 
 
 def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> list[Joint]:

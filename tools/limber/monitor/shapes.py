@@ -11,7 +11,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from limber.model.robot import Robot
-from limber.model.urdf import MOVING, Joint, numbers_of, read_joints
+from limber.model.urdf import MOVING, Joint, carrier, numbers_of, read_joints
 
 LIMB, JOINT, TIP = (222, 226, 232), (62, 70, 84), (240, 140, 45)
 THICKNESS = (0.062, 0.034)  # radius of the limbs at shoulder and tip over the arm's reach
@@ -74,7 +74,7 @@ def _visuals(urdf: Path, made: Figure) -> list[Shape]:
     root = ElementTree.parse(urdf).getroot()
     materials = {m.get("name"): m for m in root.findall("material")}
     for link in root.findall("link"):
-        owner, X = _owner(link.get("name"), made.links, joints)
+        owner, X = carrier(link.get("name"), made.links, joints)
         if owner is None:
             continue
         for visual in link.findall("visual"):
@@ -86,17 +86,6 @@ def _visuals(urdf: Path, made: Figure) -> list[Shape]:
             mesh.apply_transform(X @ _origin(visual))
             shapes.append(Shape(owner, mesh, _color(visual, materials)))
     return shapes
-
-
-def _owner(link: str, owners: list[str], joints: dict[str, Joint]) -> tuple[str | None, np.ndarray]:
-    """The link of the figure that carries `link`, and the pose of `link` in it."""
-    X = np.eye(4)
-    while link not in owners:
-        if link not in joints:
-            return None, X
-        X = joints[link].X_PF @ X
-        link = joints[link].parent
-    return link, X
 
 
 def _origin(visual: ElementTree.Element) -> np.ndarray:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from limber.log.reader import Log, time_s
+from limber.log.rows import active
 from limber.messages import message_class
 from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.rotations import rotation_error
@@ -80,7 +81,7 @@ def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
     moved = [chart for chart in _cartesian_charts(log, names) if chart.title in OVERVIEW]
     K_x, K_q = np.diagonal(status["K_x"], axis1=1, axis2=2)[:, :3], status["K_q"][:, :n]
     laws = law_names()
-    ran, cycles = np.unique(status["law"][_active(status)], return_counts=True)
+    ran, cycles = np.unique(status["law"][active(status)], return_counts=True)
     ran = ran[cycles > SHORT * cycles.sum()]
     at_joints = {acts_at_joints(laws[law]) for law in ran if 0 <= law < len(laws)}
     stiffness = []
@@ -91,10 +92,6 @@ def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
         stiffness.append(Chart("K_q in effect", "N m/rad", t, of_joints, zero=True))
     sent = _columns(status["tau_sent"], _labels(n, names))
     return [*moved, *stiffness, Chart("torque sent to the joints", "N m", t, sent)]
-
-
-def _active(status: np.ndarray) -> np.ndarray:
-    return status["mode"] == message_class("controller_status_t").MODE_ACTIVE
 
 
 def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:

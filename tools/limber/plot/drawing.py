@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from limber import messages
 from limber.errors import InputError
 from limber.log.events import Names
 from limber.log.reader import Log, time_s
+from limber.log.rows import active
 from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.robot import Robot, load_robot
 from limber.plot import charts
@@ -100,10 +100,10 @@ def _title(log: Log) -> str:
 def _subject(log: Log) -> list[str]:
     infos, status = log.decode("ROBOT_INFO"), log.read("CONTROLLER_STATUS")
     facts = [info.robot for info in infos[:1]]
-    active = status[status["mode"] == messages.message_class("controller_status_t").MODE_ACTIVE]
-    if not len(active):
+    under_law = status[active(status)]
+    if not len(under_law):
         return facts
-    last, laws = active[-1], law_names()
+    last, laws = under_law[-1], law_names()
     law = laws[int(last["law"])] if 0 <= last["law"] < len(laws) else ""
     K_x, K_q = np.diag(last["K_x"]), last["K_q"][: int(last["num_joints"])]
     parts = ((K_x[:3], "N/m"), (K_x[3:], "N m/rad"))

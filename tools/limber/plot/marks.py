@@ -7,7 +7,7 @@ import numpy as np
 
 from limber.log.events import Event, Names, events
 from limber.log.reader import Log, time_s
-from limber.messages import message_class
+from limber.log.rows import active
 
 MARKED = ("mode", "goal", "gains", "push", "contact", "drives")
 SAME_S = 0.005
@@ -55,13 +55,13 @@ def spans(log: Log, marks: list[Mark]) -> list[Span]:
     status = log.read("CONTROLLER_STATUS")
     if not len(status):
         return []
-    active = status["mode"] == message_class("controller_status_t").MODE_ACTIVE
-    t, changes = time_s(status), np.flatnonzero(np.diff(active)) + 1
+    under_law = active(status)
+    t, changes = time_s(status), np.flatnonzero(np.diff(under_law)) + 1
     edges = [0, *(int(row) for row in changes), len(status) - 1]
     found = []
     for start, end in pairwise(edges):
         begin_s, end_s = float(t[start]), float(t[end])
         bad = any(mark.bad and begin_s - BEFORE_S < mark.time_s < end_s for mark in marks)
-        if not active[start] and begin_s < end_s:
+        if not under_law[start] and begin_s < end_s:
             found.append(Span(begin_s, end_s, bad))
     return found

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from limber.errors import RunError
 from limber.live.receiver import driver_is_running
+from limber.model.robot import copy_description
 from limber.model.scenario import Scenario
 from limber.paths import program
 from limber.run.display import display
@@ -79,8 +80,7 @@ def lab(
 def copy_inputs(scenario: Scenario, folder: Path) -> None:
     """The scenario and the robot as they were: a log without them cannot be understood later."""
     shutil.copyfile(scenario.path, folder / "scenario.yaml")
-    shutil.copyfile(scenario.robot.folder / "robot.yaml", folder / "robot.yaml")
-    shutil.copyfile(scenario.robot.urdf, folder / scenario.robot.urdf.name)
+    copy_description(scenario.robot, folder)
 
 
 def _last_line(child: Child) -> str:
