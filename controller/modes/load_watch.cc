@@ -14,14 +14,17 @@ LoadWatch::LoadWatch(const Robot& robot)
           [](const JointConfig& joint) { return joint.rigid() || joint.torque_sensor.present; })),
       friction_Nm_(VectorJ::Zero(robot.size())),
       limit_Nm_(friction_Nm_),
+      rate_Nm_per_s_(friction_Nm_),
       by_motor_(friction_Nm_),
       down_(Eigen::Map<const Eigen::Vector3d>(robot.gravity).normalized()),
       v_(friction_Nm_),
-      r_(friction_Nm_) {
+      r_(friction_Nm_),
+      carried_(friction_Nm_) {
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
     friction_Nm_[i] = friction_bound(joint);
     limit_Nm_[i] = joint.torque_limit_Nm;
+    rate_Nm_per_s_[i] = joint.torque_rate_limit_Nm_per_s;
     by_motor_[i++] = joint.torque_sensor.present ? 0.0 : 1.0;
   }
 }
@@ -32,6 +35,7 @@ int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s
     return -1;
   }
   observe(state, model, dt_s);
+  follow(dt_s);
   const int joint = judge(model);
   wrong_s_ = joint < 0 ? 0.0 : wrong_s_ + dt_s;
   return time_s_ >= kBegin_s && wrong_s_ >= kLasting_s ? joint : -1;

@@ -62,11 +62,15 @@ class LoadWatch {
   /// `dt_s`: since the last call.
   int wrong(const joint_state_t& state, const Model& model, double dt_s) noexcept;
   /// Once a cycle otherwise: r fades.
-  void relax(double dt_s) noexcept { r_ *= std::max(0.0, 1.0 - dt_s / kMemory_s); }
-  /// The torque that carries the arm, g - r, within the joints' limits, N m: what the drives are to
-  /// hold with when the controller gives up. After the watch it is g.
+  void relax(double dt_s) noexcept {
+    r_ *= std::max(0.0, 1.0 - dt_s / kMemory_s);
+    follow(dt_s);
+  }
+  /// The torque that carries the arm, within the joints' limits, N m: what the drives are to hold
+  /// with when the controller gives up. It is g - r, but r counts no faster than the joints' torque
+  /// may change, as the gate refuses steps of it. After the watch it is g.
   VectorJ carrying(const VectorJ& gravity) const noexcept {
-    return (gravity - r_).cwiseMax(-limit_Nm_).cwiseMin(limit_Nm_);
+    return (gravity - carried_).cwiseMax(-limit_Nm_).cwiseMin(limit_Nm_);
   }
   /// N m.
   const VectorJ& residual() const noexcept { return r_; }
@@ -75,10 +79,15 @@ class LoadWatch {
   bool follows(const joint_state_t& state, double dt_s) noexcept;
   void observe(const joint_state_t& state, const Model& model, double dt_s) noexcept;
   int judge(const Model& model) const noexcept;
+  void follow(double dt_s) noexcept {
+    const VectorJ most = rate_Nm_per_s_ * dt_s;
+    carried_ += (r_ - carried_).cwiseMax(-most).cwiseMin(most);
+  }
 
   bool watched_;
   VectorJ friction_Nm_;
   VectorJ limit_Nm_;
+  VectorJ rate_Nm_per_s_;
   VectorJ by_motor_;        ///< 1: the motor's torque counts, 0: the sensor's
   Eigen::Vector3d down_;    ///< of length one, or zero without gravity
   double time_s_ = kEnd_s;  ///< since begin()
@@ -86,6 +95,7 @@ class LoadWatch {
   bool answered_ = false;   ///< every joint, in the state before
   VectorJ v_;               ///< of the state before
   VectorJ r_;
+  VectorJ carried_;  ///< of r, by what is not the motors, in carrying()
 };
 
 }  // namespace limber::controller

@@ -158,8 +158,8 @@ TEST(Check, ListsTheArmsOfAUrdf) {
   const Outcome outcome = check("urdf " + file);
   EXPECT_EQ(outcome.status, 2);
   for (const std::string& part :
-       {"3  turn, slide, roll\n          limber check " + file + " --base world --tip hand",
-        "1  neck\n          limber check " + file + " --base world --tip eye",
+       {"3  turn, slide, roll\n          --base world --tip hand",
+        "1  neck\n          --base world --tip eye",
         file + ": which arm? give --base LINK and --tip LINK"}) {
     EXPECT_TRUE(contains(outcome.output, part)) << outcome.output;
   }

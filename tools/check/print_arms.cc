@@ -10,10 +10,10 @@
 namespace limber {
 namespace {
 
-std::string row(const std::string& file, const UrdfArm& arm) {
+std::string row(const UrdfArm& arm) {
   std::string text = fmt::format("  {:>6}  {}", arm.joints.size(), joined(arm.joints));
   if (arm.joints.size() > kMaxJoints) text += fmt::format(" (more than {})", kMaxJoints);
-  text += fmt::format("\n          limber check {} --base {} --tip {}\n", file, arm.base, arm.tip);
+  text += fmt::format("\n          --base {} --tip {}\n", arm.base, arm.tip);
   if (!arm.also.empty()) text += fmt::format("          or tip: {}\n", joined(arm.also));
   return text;
 }
@@ -22,10 +22,10 @@ std::string row(const std::string& file, const UrdfArm& arm) {
 
 std::string arms_text(const std::string& file, const std::vector<UrdfArm>& arms) {
   constexpr std::size_t kRows = 40;
-  std::string text =
-      fmt::format("{}: {} chains; any link on the way may be the base\n", file, arms.size());
-  text += "  joints  names, and the command that checks this arm\n";
-  for (std::size_t i = 0; i < std::min(kRows, arms.size()); ++i) text += row(file, arms[i]);
+  std::string text = fmt::format("{}: {} chain{}; any link on the way may be the base\n", file,
+                                 arms.size(), arms.size() == 1 ? "" : "s");
+  text += "  joints  names, and the options that choose this arm\n";
+  for (std::size_t i = 0; i < std::min(kRows, arms.size()); ++i) text += row(arms[i]);
   if (arms.size() > kRows) text += fmt::format("  and {} more\n", arms.size() - kRows);
   return text;
 }

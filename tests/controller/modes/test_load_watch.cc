@@ -15,12 +15,14 @@ namespace {
 constexpr double kStep_s = 1.0 / 64.0;
 constexpr double kFriction_Nm = 0.5;
 constexpr double kLimit_Nm = 8.0;
+constexpr double kRate_Nm_per_s = 40.0;
 
 Robot two_joints() {
   Robot robot;  // gravity along -z
   robot.joints.resize(2);
   for (JointConfig& joint : robot.joints) {
     joint.torque_limit_Nm = kLimit_Nm;  // a twentieth is less than the friction
+    joint.torque_rate_limit_Nm_per_s = kRate_Nm_per_s;
     joint.friction.coulomb_Nm = kFriction_Nm;
   }
   return robot;
@@ -326,6 +328,29 @@ TEST(LoadWatch, WhatCarriesTheArmIsTheWeightLessWhatActsFromOutside) {
   ASSERT_EQ(bench.found(vector(-0.5, -0.25)), -1);
   EXPECT_NEAR((bench.watch.carrying(bench.g) - vector(2.5, 1.25)).norm(), 0.0, 1e-9);
   EXPECT_EQ(bench.watch.carrying(vector(20.0, -20.0)), vector(kLimit_Nm, -kLimit_Nm));
+}
+
+// The gate takes tau_gravity in steps of the torque only: a heavy arm that is carried by nothing of
+// the motors yet, as when the drives have just come on, has all its weight as r.
+TEST(LoadWatch, WhatCarriesTheArmChangesNoFasterThanATorqueMay) {
+  Bench bench;
+  VectorJ before = bench.watch.carrying(bench.g);
+  const auto expect_within_a_step = [&](double dt_s) {
+    const VectorJ now = bench.watch.carrying(bench.g);
+    EXPECT_LE((now - before).cwiseAbs().maxCoeff(), kRate_Nm_per_s * dt_s * (1.0 + 1e-12));
+    before = now;
+  };
+  bench.apply(bench.g - vector(6.0, -5.0));
+  for (int k = 0; k < 400; ++k) {
+    bench.next(1e-3);
+    expect_within_a_step(1e-3);
+  }
+  EXPECT_NEAR((before - bench.g + vector(6.0, -5.0)).norm(), 0.0, 1e-3);
+  for (int k = 0; k < 400; ++k) {
+    bench.watch.relax(1e-3);
+    expect_within_a_step(1e-3);
+  }
+  EXPECT_NEAR((before - bench.g).norm(), 0.0, 1e-6);
 }
 
 TEST(LoadWatch, AfterTheWatchItFades) {

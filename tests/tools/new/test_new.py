@@ -87,6 +87,17 @@ def test_placeholders_become_guesses(limber, tmp_path):
     check_and_lab(limber, tmp_path)
 
 
+def test_a_heavy_arm_is_held(limber, tmp_path):
+    """Its weight comes within the torque's rate limit, and so does the torque of the hold."""
+    urdf = tmp_path / "heavy.urdf"
+    sideways = BARE.replace('xyz="0 0 0.2"', 'xyz="0.4 0 0.2"')
+    urdf.write_text(sideways.replace('value="4"', 'value="400"'))
+    made(limber, tmp_path, urdf, "--drives", "cia402")
+    joint = yaml.safe_load((tmp_path / "mine" / "robot.yaml").read_text())["joints"]["1"]
+    assert joint["torque_rate_limit_Nm_per_s"] > 1000
+    check_and_lab(limber, tmp_path)
+
+
 def test_nothing_is_overwritten(limber, tmp_path):
     words = [str(OPENARM), *ENDS, "--drives", "damiao", "--name", "mine"]
     (tmp_path / "mine_first.yaml").write_text("mine")
@@ -108,6 +119,6 @@ def test_several_arms_are_listed(limber, tmp_path):
         assert refused.returncode == 2
         listed = refused.stdout + refused.stderr
         assert "which arm? give --base LINK and --tip LINK" in listed
-        assert "limber check arm.urdf --base base --tip hand" in listed
-        assert "limber check arm.urdf --base base --tip left" in listed
+        assert "--base base --tip hand" in listed
+        assert "--base base --tip left" in listed
     assert [path.name for path in tmp_path.iterdir()] == ["arm.urdf"]

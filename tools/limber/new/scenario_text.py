@@ -7,6 +7,7 @@ from limber.new.guesses import Guesses, number, three
 
 DEFLECTION_m = 0.02
 TORQUE_SHARE = 0.2  # of each joint's torque, for the push
+MOST_N = 200.0  # of a push in a scenario
 
 TEXT = """\
 # First steps of {name}, in simulation: the arm is held, gets soft at its joints, is pushed once at
@@ -50,9 +51,9 @@ def _push(arm: ArmFacts, guesses: Guesses) -> tuple[np.ndarray, float]:
     compliance, axes = np.linalg.eigh(C)
     direction = np.where(np.abs(axes[:, -1]) < 1e-3, 0.0, axes[:, -1])
     direction /= np.linalg.norm(direction)
-    most = min(
+    bearable = min(
         TORQUE_SHARE * joint.torque / max(abs(torque), 1e-9)
         for joint, torque in zip(guesses.joints, J.T @ direction, strict=True)
     )
-    force = min(DEFLECTION_m / compliance[-1], most)
+    force = min(DEFLECTION_m / compliance[-1], bearable, MOST_N)
     return force * direction, float(force * compliance[-1])
