@@ -212,6 +212,7 @@ Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
   const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_));
   if (refusal) return counted(refusal);
   supervisor_.take_lease(goal.client);
+  supervisor_.take_goal(goal.valid_for_s);
   return refusal;  // perhaps with a warning
 }
 

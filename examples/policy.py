@@ -5,6 +5,7 @@ import numpy as np
 from limber import Arm
 
 RATE_HZ = 50
+SILENCE_S = 0.5  # the arm is held if this program sends nothing for so long
 CENTRE_STEP_M = np.array([-0.04, 0.0, 0.0])
 
 
@@ -25,7 +26,9 @@ with Arm() as arm:
         if t > 2 * np.pi:
             break
         observation = {"q": state.q, "v": state.v, "start": start.p, "time_s": t}
-        arm.track(position_m=policy(observation), quaternion_wxyz=start.quat)
+        goal = policy(observation)
+        arm.track(position_m=goal, quaternion_wxyz=start.quat, valid_for_s=SILENCE_S)
         worst_mm = max(worst_mm, 1e3 * float(np.linalg.norm(state.error[:3])))
     print(f"a circle in {t:.1f} s; the arm was at most {worst_mm:.1f} mm from its goal")
-    arm.wait(at_rest=True)  # the last goal was also the end: nothing to stop
+    arm.track(position_m=goal, quaternion_wxyz=start.quat)  # this one lasts
+    arm.wait(at_rest=True)

@@ -57,6 +57,9 @@ Refusal GoalLimits::check(const compliance_goal_t& message, GoalType type, const
   if (!(message.duration_s >= 0.0 && message.duration_s <= kLongestMotion_s)) {
     return too_much("duration_s must be within 0..600 s");
   }
+  const double valid_s = message.valid_for_s;
+  if (valid_s != 0.0 && !(valid_s >= kShortestValidity_s && valid_s <= kLongestMotion_s))
+    return too_much("valid_for_s must be 0, or within 0.01..600 s");
   if (type == GoalType::kNone)
     return {request_answer_t::REFUSED_GOAL_KIND, "the law follows no goal"};
   const Vector6 F = six_of(message.F_ff);

@@ -24,6 +24,7 @@ class GoalLimits {
   static constexpr double kFastestJointShare = 0.5;
   static constexpr double kShortestMotion_s = 0.1;
   static constexpr double kLongestMotion_s = 600.0;
+  static constexpr double kShortestValidity_s = 0.01;
   static constexpr double kShortestPeriod_s = 0.2;  ///< of a circle
   static constexpr double kFarthest_m = 10.0;
   static constexpr double kMaxForce_N = 200.0;

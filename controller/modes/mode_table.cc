@@ -33,6 +33,8 @@ constexpr Transition kTransitions[] = {
     {Mode::kFault, Event::kRequestStop, Mode::kFault, kKeep},
     {Mode::kEstop, Event::kRequestStop, Mode::kEstop, kKeep},
 
+    {Mode::kActive, Event::kClientSilent, Mode::kSoftStop, Status::REASON_CLIENT_SILENT},
+
     // Without power: check again from the beginning.
     {Mode::kInit, Event::kStateLost, Mode::kInit, kKeep},
     {Mode::kInit, Event::kStateInvalid, Mode::kInit, kKeep},

@@ -44,9 +44,10 @@ enum class Event : std::uint8_t {
   kStrayed,         ///< held, but it moves away
   kEncoderStopped,  ///< it must be moving, but its encoder does not count
   kEnergy,          ///< the arm moves with energy that its torques have not given it
+  kClientSilent,    ///< the goal's time is over
   kEstopPressed,
 };
-inline constexpr int kEvents = 18;
+inline constexpr int kEvents = 19;
 
 struct Transition {
   Mode from;

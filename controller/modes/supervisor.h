@@ -1,9 +1,11 @@
 // Decides the mode: what the state stream, the drives and the clients mean for it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
+#include <limits>
 
 #include "controller/modes/mode_table.h"
 #include "controller/modes/state_judge.h"
@@ -38,6 +40,11 @@ class Supervisor {
     lease_ = client;
     lease_renewed_ns_ = time_ns_;
   }
+  /// A goal was accepted. If it is valid for a time, s, and no other is accepted within it, the arm
+  /// comes to rest; 0: it lasts.
+  void take_goal(double valid_for_s) noexcept {
+    goal_ends_ns_ = valid_for_s > 0.0 ? time_ns_ + std::llround(1e9 * valid_for_s) : kNever_ns;
+  }
   /// Something the cycle noticed, at a joint or (-1) at none. False if the table has no row for it.
   bool raise(Event event, int joint = -1) noexcept;
 
@@ -62,6 +69,8 @@ class Supervisor {
   const StateJudge& states() const noexcept { return judge_; }
 
  private:
+  static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
+
   void count_steady(const StateJudgement& judgement) noexcept;
   void watch_drives() noexcept;
   void enter(Mode mode) noexcept;
@@ -73,6 +82,7 @@ class Supervisor {
   int reason_joint_ = -1;
   std::int64_t lease_ = 0;
   std::int64_t lease_renewed_ns_ = 0;
+  std::int64_t goal_ends_ns_ = kNever_ns;
   std::int64_t steady_ = 0;    ///< good states in a row
   bool acknowledged_ = false;  ///< a fault that the drives are still in
   bool engaged_ = false;

@@ -29,6 +29,7 @@ std::int8_t goal_kind(const YamlMap& yaml) {
   if (circle) return compliance_goal_t::GOAL_CIRCLE;
   if (wrench) return compliance_goal_t::GOAL_WRENCH;
   yaml.has("duration_s");
+  yaml.has("valid_for_s");
   yaml.finish();  // a misspelt key is the likelier reason
   yaml.refuse(
       "no goal; expected offset_m, offset_rad, position_m with quaternion_wxyz, "
@@ -70,6 +71,7 @@ compliance_goal_t read_goal(const YamlMap& yaml, const Robot& robot) {
   read_three(yaml, "force_N", kForceRange_N, goal.F_ff);
   read_three(yaml, "torque_Nm", kTorqueRange_Nm, goal.F_ff + 3);
   goal.duration_s = yaml.number_or("duration_s", {0.0, 600.0}, 0.0);
+  goal.valid_for_s = yaml.number_or("valid_for_s", {0.0, 600.0}, 0.0);
   yaml.finish();
   return goal;
 }

@@ -165,6 +165,15 @@ def behind_fingerprint(data: bytes) -> bytes:
     return data[8:]
 
 
+def on_any_machine(type_name: str, data: bytes) -> bytes:
+    """ROBOT_INFO names a folder of the machine that recorded it."""
+    if type_name != "robot_info_t":
+        return data
+    info = messages.decode(type_name, data)
+    info.folder = f"/{Path(info.folder).relative_to(ROOT)}"
+    return info.encode()
+
+
 def message_inputs(logs: list[Path]) -> None:
     names = sorted(path.stem for path in (ROOT / "lcmtypes").glob("*.lcm"))
     for number, name in enumerate(names):
@@ -177,6 +186,7 @@ def message_inputs(logs: list[Path]) -> None:
         for channel, data in last_of_each_channel(log):
             row = messages.channels().get(channel)
             if row:
+                data = on_any_machine(row.type_name, data)
                 kind = names.index(row.type_name)
                 keep(
                     "messages",

@@ -21,6 +21,7 @@ from limber import (
 )
 from limber.lcmtypes.compliance_gains_t import compliance_gains_t
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.lcmtypes.joint_state_t import joint_state_t as State
 from limber.log.reader import Log
 from stack import BIN
 
@@ -216,6 +217,30 @@ def test_a_script_that_forgets_to_close_leaves_it_held_too(standing):
     )
     assert done.stdout.strip() == "active", done.stderr
     standing.until(lambda: standing.mode == Status.MODE_HOLD, 5, "HOLD")
+
+
+STREAM = """
+from limber import Arm
+with Arm() as arm:
+    arm.activate()
+    for state in arm.states(hz=50):
+        arm.track(position_m=arm.goal.p, valid_for_s=0.2)
+        print(".", flush=True)
+"""
+
+
+def test_a_script_that_is_killed_in_its_stream_leaves_it_held(standing):
+    with subprocess.Popen(
+        [sys.executable, "-c", STREAM], stdout=subprocess.PIPE, text=True
+    ) as script:
+        for _ in range(20):
+            assert script.stdout.readline() == ".\n"
+        assert standing.mode == Status.MODE_ACTIVE
+        script.kill()
+    standing.until(lambda: standing.mode == Status.MODE_HOLD, 20, "HOLD")
+    status = standing.user.latest("CONTROLLER_STATUS")
+    assert status.reason == Status.REASON_CLIENT_SILENT
+    assert standing.state.drive_state == State.DRIVE_ON
 
 
 def test_a_stop_ends_a_motion(arm):

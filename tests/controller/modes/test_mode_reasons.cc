@@ -20,6 +20,7 @@ const std::map<Event, int> kReasons = {
     {Event::kStrayed, +Status::REASON_STRAYED},
     {Event::kEncoderStopped, +Status::REASON_ENCODER_STOPPED},
     {Event::kEnergy, +Status::REASON_ENERGY},
+    {Event::kClientSilent, +Status::REASON_CLIENT_SILENT},
 };
 
 /// What went wrong is kept wherever it ends something; INIT has nothing to end. A stop is kept

@@ -33,6 +33,7 @@ const std::map<Event, std::string> kExpected = {
     {Event::kStrayed, "...FFF.."},
     {Event::kEncoderStopped, "...FFF.."},
     {Event::kEnergy, "...FFF.."},
+    {Event::kClientSilent, "....S..."},
     {Event::kEstopPressed, "EEEEEEE."},
 };
 

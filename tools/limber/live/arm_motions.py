@@ -71,7 +71,7 @@ class Motions(ArmBase):
         """Sets any goal of a scenario and returns its REQUEST_ANSWER, without waiting for a motion.
 
         offset_m, offset_rad; position_m, quaternion_wxyz; joints_rad; circle_centre_m, circle_axis;
-        force_N, torque_Nm; with posture_rad and duration_s (scenarios/README.md).
+        force_N, torque_Nm; with posture_rad, duration_s and valid_for_s (scenarios/README.md).
         """
         return self._send(request_messages.goal(len(self.joint_names), **keys))
 
@@ -89,6 +89,8 @@ class Motions(ArmBase):
         The goal moves on without a jump in position, velocity or acceleration, so as to come to
         rest at the new one in `horizon_s`; the next one comes before that. So it follows 0.6
         horizons and up to half a period behind, and comes to rest by itself when the stream ends.
+        With `valid_for_s`, say five periods, the controller ends the motion and holds the arm if
+        this program dies or hangs in the middle of its stream.
         `horizon_s`: three periods of the stream or more, at least 0.1 s; less is jerky. Further
         keys as in set_goal().
         """

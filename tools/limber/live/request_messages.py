@@ -15,7 +15,7 @@ _WAYS = {
     "GOAL_JOINT": ("joints_rad",),
     "GOAL_CIRCLE": ("circle_centre_m", "circle_axis"),
 }
-_MORE = ("force_N", "torque_Nm", "posture_rad", "duration_s")
+_MORE = ("force_N", "torque_Nm", "posture_rad", "duration_s", "valid_for_s")
 
 
 def goal(joints: int, **given: Any) -> Any:
@@ -39,6 +39,7 @@ def goal(joints: int, **given: Any) -> Any:
     message.kind = getattr(message, ways[0] if ways else "GOAL_WRENCH")
     message.num_joints = joints
     message.duration_s = number("duration_s", given.get("duration_s", 0.0), 0.0, LONGEST_S)
+    message.valid_for_s = number("valid_for_s", given.get("valid_for_s", 0.0), 0.0, LONGEST_S)
     message.quat_BD = [1.0, 0.0, 0.0, 0.0]
     if "GOAL_OFFSET" in ways:
         message.offset = _six(given, "offset_m", "offset_rad")

@@ -51,6 +51,7 @@ def live(
             console.print(f"{served.url}  [dim]{_kind(control)}; Ctrl-C ends it[/]", soft_wrap=True)
             page = Page(served, robot, list_laws(robot.folder), feed, walls, Guard(console))
             if not _show(page, feed, running, control, follow=named is None):
+                console.print(feed.received())
                 return
             console.print(f"another arm is running: {running.name}", style="yellow")
             port = served.get_port()  # the browser connects again by itself

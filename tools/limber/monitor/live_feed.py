@@ -46,6 +46,12 @@ class LiveFeed:
         words = f"Lost on the way to this page: {', '.join(lost)}. limber doctor names what helps."
         return [*unreadable, words]
 
+    def received(self) -> str:
+        """What came in all, in a sentence."""
+        states = self.receiver.channels.values()
+        count, lost = sum(state.count for state in states), sum(state.lost for state in states)
+        return f"{count} messages received, {lost} lost"
+
     def close(self) -> None:
         self.receiver.close()
 
