@@ -1,4 +1,4 @@
-"""Files that commands make of a log: never over another one, never half of one."""
+"""Files that commands make of a log: never half of one, and not over another one unasked."""
 
 import shutil
 from collections.abc import Iterator
@@ -11,10 +11,17 @@ from limber.paths import output_folder
 
 @contextmanager
 def complete_or_nothing(target: Path) -> Iterator[Path]:
-    """The place to write to; it gets its name when all is written, and goes away if it fails."""
+    """As written_whole(), but never over another file."""
     require_new(target)
     output_folder(target.parent)
-    part = target.with_name(f".{target.name}.part")
+    with written_whole(target) as part:
+        yield part
+
+
+@contextmanager
+def written_whole(target: Path) -> Iterator[Path]:
+    """The place to write to; it gets its name when all is written, and goes away if it fails."""
+    part = target.with_name(f".part-{target.name}")
     _remove(part)
     try:
         yield part

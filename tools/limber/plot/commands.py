@@ -6,6 +6,7 @@ from rich.console import Console
 
 from limber.errors import InputError
 from limber.log.reader import log_file
+from limber.log.results import written_whole
 from limber.paths import output_folder
 from limber.plot import charts, page
 from limber.plot.drawing import drawing
@@ -26,9 +27,11 @@ def plot(
 
     written = [folder / f"{prefix}{topic}.png" for topic in drawn.topics]
     for topic, file in zip(drawn.topics, written, strict=True):
-        png.save(topic, drawn, file, other)
+        with written_whole(file) as part:
+            png.save(topic, drawn, part, other)
     written.append(folder / f"{prefix}plot.html")
-    page.save(drawn, written[-1], other)
+    with written_whole(written[-1]) as part:
+        page.save(drawn, part, other)
     for file in written:
         console.print(f"wrote {file}", soft_wrap=True)
     return written
