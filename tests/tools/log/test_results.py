@@ -11,10 +11,10 @@ from limber.log.results import complete_or_nothing, written_whole
 def test_what_fails_leaves_the_old_file_and_no_other(tmp_path):
     target = tmp_path / "plot.html"
     target.write_text("old")
-    with pytest.raises(RunError, match=r"plot\.html cannot be written: No space left"):
-        with written_whole(target) as part:
-            part.write_text("ha")
-            raise OSError(errno.ENOSPC, "No space left on device")
+    told = pytest.raises(RunError, match=r"plot\.html cannot be written: No space left")
+    with told, written_whole(target) as part:
+        part.write_text("ha")
+        raise OSError(errno.ENOSPC, "No space left on device")
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
     with written_whole(target) as part:
