@@ -13,6 +13,7 @@ PROGRAMS = {
     "limber-bench": [],
     "limber-bench-loop": ["--controller", str(RELEASE / "limber-controller")],
 }
+MODULES = ("limber.dev.bench_receiver", "limber.dev.bench_page", "limber.dev.bench_viewer")
 
 
 def bench(console: Console) -> int:
@@ -22,8 +23,8 @@ def bench(console: Console) -> int:
     prefix = network.private_command() or []
     for name, arguments in PROGRAMS.items():
         _run([*prefix, str(RELEASE / name), *arguments], console, name)
-    receiver = "limber.dev.bench_receiver"
-    _run([*prefix, sys.executable, "-m", receiver], console, receiver)
+    for module in MODULES:
+        _run([*prefix, sys.executable, "-m", module], console, module)
     return OK
 
 

@@ -13,6 +13,9 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import lcm
@@ -113,31 +116,45 @@ def _processor_s(process: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+@dataclass
+class Monitor:
+    """`limber monitor` and, once it has ended, its last line."""
+
+    process: subprocess.Popen
+    address: str
+    last_line: str = ""
+
+
+@contextmanager
+def monitor(robot: str) -> Iterator[Monitor]:
+    command = [sys.executable, "-m", "limber", "monitor", "--robot", robot]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    served = Monitor(process, process.stdout.readline().split()[0].replace("http", "ws"))
+    try:
+        yield served
+    finally:
+        process.terminate()
+        told, _ = process.communicate(timeout=20)
+        served.last_line = told.strip().splitlines()[-1]
+
+
 def main(seconds: float) -> None:
     own = [sys.executable, "-m", "limber.dev.bench_page", "publish", str(seconds)]
-    command = [sys.executable, "-m", "limber", "monitor", "--robot", ROBOT]
-    monitor = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    try:
-        address = monitor.stdout.readline().split()[0].replace("http", "ws")
-        begun, cost = time.monotonic(), _processor_s(monitor.pid)
+    with monitor(ROBOT) as page:
+        begun, cost = time.monotonic(), _processor_s(page.process.pid)
         publisher = subprocess.Popen(own, stdout=subprocess.PIPE, text=True)
         joint = load_robot(ROBOT).chain.joints[0].child
-        latencies, told_s = asyncio.run(view(address, joint))
+        latencies, told_s = asyncio.run(view(page.address, joint))
         dead_s = told_s - float(publisher.stdout.read())
-        lasted, end = time.monotonic() - begun, _processor_s(monitor.pid)
-    finally:
-        monitor.terminate()
-        told, _ = monitor.communicate(timeout=20)
+        lasted, end = time.monotonic() - begun, _processor_s(page.process.pid)
     p50, p99 = np.quantile(latencies, [0.5, 0.99]) * 1e3
-    print(
-        f"{lasted:.0f} s with one viewer: {100 * (end - cost) / lasted:.0f} % of a processor core"
-    )
+    print(f"{lasted:.0f} s with one viewer: {100 * (end - cost) / lasted:.0f} % of a core")
     print(
         f"{len(latencies)} jumps: shown after {p50:.0f} ms (median), {p99:.0f} ms (99 %), "
         f"{1e3 * max(latencies):.0f} ms at most"
     )
     print(f"the end of the messages is told after {dead_s:.2f} s")
-    print(told.strip().splitlines()[-1])
+    print(page.last_line)
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ def run(name: str, hours: float, seed: int, out: Path, console: Console) -> int:
     bus.subscribe("DRIVER_STATUS", watch.on_status)
     bus.subscribe("JOINT_STATE", watch.on_state).set_queue_capacity(1)
     with ExitStack() as stack:
-        children = [stack.enter_context(_started(name, robot, folder)) for name in PROGRAMS]
+        children = [stack.enter_context(started(name, robot, folder)) for name in PROGRAMS]
         stack.callback(lambda: [child.terminate() for child in children])
         _listen(bus, START_S / 2)
         arm = stack.enter_context(Arm())
@@ -63,7 +63,7 @@ def run(name: str, hours: float, seed: int, out: Path, console: Console) -> int:
 PROGRAMS = ("limber-sim", "limber-controller", "limber-driver")
 
 
-def _started(name: str, robot: Robot, folder: Path) -> subprocess.Popen:
+def started(name: str, robot: Robot, folder: Path) -> subprocess.Popen:
     with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
         command = [str(program(name)), "--robot", str(robot.folder)]
         return subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
