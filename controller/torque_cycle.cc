@@ -234,14 +234,14 @@ VectorJ TorqueCycle::null_space_torque() noexcept {
                                        null_limit_);
 }
 
-VectorJ TorqueCycle::friction_torque(GoalType type) const noexcept {
+VectorJ TorqueCycle::friction_torque(GoalType type) noexcept {
   if (gains_.effective().settings.friction_compensation == FrictionCompensation::kNone) {
     return zero_;
   }
   const Goal& goal = goals_.goal();
   const VectorJ v_d =
       follows_joints(type) ? goal.v_d : VectorJ(damped_inverse(arm_.terms().J).inverse * goal.V_BD);
-  return observers_.friction(v_d, arm_.point().v);
+  return observers_.friction(v_d, arm_.point().v, arm_.terms());
 }
 
 TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, bool simulated)

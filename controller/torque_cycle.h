@@ -81,7 +81,7 @@ class TorqueCycle {
   void add_model_torque(const LawEntry& law) noexcept;
   VectorJ null_space_torque() noexcept;
   void trace_result() noexcept;
-  VectorJ friction_torque(GoalType type) const noexcept;
+  VectorJ friction_torque(GoalType type) noexcept;
 
   ArmState state_;
   ArmView arm_;

@@ -39,8 +39,10 @@ constexpr GainWord kVelocity[] = {{"drive", M::VELOCITY_DRIVE},
                                   {"filtered_difference", M::VELOCITY_FILTERED_DIFFERENCE},
                                   {"alpha_beta", M::VELOCITY_ALPHA_BETA},
                                   {"levant", M::VELOCITY_LEVANT}};
-constexpr GainWord kFriction[] = {
-    {"none", M::FRICTION_NONE}, {"model", M::FRICTION_MODEL}, {"observer", M::FRICTION_OBSERVER}};
+constexpr GainWord kFriction[] = {{"none", M::FRICTION_NONE},
+                                  {"model", M::FRICTION_MODEL},
+                                  {"observer", M::FRICTION_OBSERVER},
+                                  {"dither", M::FRICTION_DITHER}};
 constexpr GainWord kTerms[] = {{"jacobian", M::PERIOD_J},
                                {"inertia", M::PERIOD_M},
                                {"coriolis", M::PERIOD_C},

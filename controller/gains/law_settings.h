@@ -74,6 +74,7 @@ enum class FrictionCompensation : std::int8_t {
   kNone = compliance_gains_t::FRICTION_NONE,
   kModel = compliance_gains_t::FRICTION_MODEL,
   kObserver = compliance_gains_t::FRICTION_OBSERVER,
+  kDither = compliance_gains_t::FRICTION_DITHER,
 };
 
 /// Terms with an evaluation period of their own.

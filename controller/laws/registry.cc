@@ -128,6 +128,11 @@ const char* check_settings(const LawSettings& settings, unsigned available) noex
       (available & sensors::kTorqueSensor) == 0) {
     return "friction_compensation: the observer needs joint torque sensors";
   }
+  if (settings.friction_compensation == FrictionCompensation::kDither &&
+      (available & sensors::kSprings) != 0) {
+    return "friction_compensation: dither would shake the springs of elastic joints; choose the "
+           "observer where there are torque sensors, else model";
+  }
   return nullptr;
 }
 

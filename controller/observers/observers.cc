@@ -50,6 +50,7 @@ Observers::Observers(const LoadedRobot& robot)
       v_(q_),
       position_noise_(rounding_noise(robot.robot)),
       friction_(friction_model(robot.robot)),
+      dither_(robot.robot),
       filtered_difference_(joints_, settings_.velocity_cutoff_rad_per_s, T_),
       alpha_beta_(joints_, {settings_.velocity_acceleration_rad_per_s2, position_noise_, T_}, T_),
       levant_(joints_, settings_.velocity_acceleration_rad_per_s2, T_),
@@ -100,6 +101,7 @@ void Observers::set(const LawSettings& settings) noexcept {
   if (settings.friction_compensation != before.friction_compensation ||
       settings.friction_observer_gain_per_s != before.friction_observer_gain_per_s) {
     make_friction_observer();
+    dither_.restart();
   }
   if (settings.acceleration_filter_s != before.acceleration_filter_s) {
     tip_acceleration_.set_corner(1.0 / settings.acceleration_filter_s);
@@ -114,6 +116,7 @@ void Observers::restart() noexcept {
   make_velocity_estimators();
   make_contact_observers();
   make_friction_observer();
+  dither_.restart();
   tip_acceleration_ = {6, 1.0 / settings_.acceleration_filter_s, T_};
   estimates_.A_BT.setZero();
 }
@@ -177,7 +180,9 @@ void Observers::observe_joint_torque(const ArmState& state, const ArmTerms& term
   estimates_.F_ext = inverse.inverse.transpose() * estimates_.tau_ext;
 }
 
-VectorJ Observers::friction(const VectorJ& v_d, const VectorJ& v) const noexcept {
+VectorJ Observers::friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept {
+  if (settings_.friction_compensation == FrictionCompensation::kDither)
+    return dither_.next(terms.M_total.diagonal(), T_);
   if (settings_.friction_compensation == FrictionCompensation::kObserver && friction_observer_) {
     return settings_.friction_share * friction_observer_->friction();
   }

@@ -10,6 +10,7 @@
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 #include "controller/observers/alpha_beta.h"
+#include "controller/observers/dither.h"
 #include "controller/observers/filtered_difference.h"
 #include "controller/observers/friction_feedforward.h"
 #include "controller/observers/friction_observer.h"
@@ -35,9 +36,9 @@ class Observers {
   /// Contact and tip acceleration, from the terms at this state. In the cycle.
   void observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
                ArmModel* model) noexcept;
-  /// Torque that compensates the gear's friction, N m; zero unless chosen. v_d, v: wanted and
-  /// present joint velocity, n. In the cycle.
-  VectorJ friction(const VectorJ& v_d, const VectorJ& v) const noexcept;
+  /// Torque of this cycle that compensates the gear's friction, N m. v_d, v: wanted and present
+  /// joint velocity, n; from the terms: the inertia. Once a cycle, in the cycle.
+  VectorJ friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept;
 
   const Estimates& estimates() const noexcept { return estimates_; }
 
@@ -60,6 +61,7 @@ class Observers {
   double position_noise_;  // rad
   LawSettings settings_ = default_settings();
   FrictionFeedforward friction_;
+  Dither dither_;
   FilteredDifference<VectorJ> filtered_difference_;
   AlphaBeta alpha_beta_;
   LevantDifferentiator levant_;

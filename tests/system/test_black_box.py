@@ -85,6 +85,7 @@ def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert "ENCODER_STOPPED" in done.stdout
+    assert (out / "reproduce.yaml").is_file(), told + done.stdout
     assert (out / "overview.png").stat().st_size > 20_000
     scenario = yaml.safe_load((out / "reproduce.yaml").read_text())
     (fault,) = [entry["fault"] for entry in scenario["timeline"] if "fault" in entry]

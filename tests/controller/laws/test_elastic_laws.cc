@@ -228,6 +228,16 @@ TEST(VariableStiffness, StaysStiffEnoughForTheWeight) {
   EXPECT_NEAR(rig.controller.status().law_outputs[0], std::sqrt(800.0 * tau), 1.5);
 }
 
+TEST(DitherOnSprings, IsRefused) {
+  Rig rig(one_joint({}), "joint_pd");
+  rig.to_active();
+  Gains gains = rig.gains();
+  gains.friction_compensation = Gains::FRICTION_DITHER;
+  const Refusal refusal = rig.controller.on_gains(gains);
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(std::string(refusal.reason).find("shake the springs"), std::string::npos);
+}
+
 // The estimate rises as 1 - exp(-L t) and takes the friction off the joint.
 TEST(FrictionObserverInCycle, TakesFrictionOffTheMotor) {
   Rig rig(one_joint({.weight = 0.0}), "joint_pd");

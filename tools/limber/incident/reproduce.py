@@ -55,7 +55,8 @@ def reproduction(log: Log, robot: str, joints: list[str]) -> Reproduction | None
     """
     state, status, truth = (log.read(c) for c in ("JOINT_STATE", "CONTROLLER_STATUS", "SIM_TRUTH"))
     n = len(joints)
-    known = ((state["joint_flags"][:, :n] & STATE.JOINT_FRESH) != 0).all(axis=1)
+    fresh = (state["joint_flags"][:, :n] & STATE.JOINT_FRESH) != 0
+    known = np.logical_or.accumulate(fresh).all(axis=1)
     if not known.any():
         return None
     state = state[np.argmax(known) :]
