@@ -35,7 +35,7 @@ bool TorqueCycle::point_depends_on_goal() const noexcept {
 
 void TorqueCycle::evaluate_and_observe(Potential potential) noexcept {
   evaluate_model(potential, trace_.tau_null);
-  observers_.observe(state_, arm_.terms(), last_rows(), &arm_.model());
+  observers_.observe(state_, arm_.terms(), last_rows());
 }
 
 bool TorqueCycle::step(Activity activity, double dt_s) noexcept {

@@ -2,7 +2,6 @@
 #include "controller/gains/stiffness_mapping.h"
 #include "controller/model/pose_error.h"
 #include "controller/model/singularity.h"
-#include "controller/observers/coriolis_transpose.h"
 #include "eval/arm.h"
 #include "eval/law_run.h"
 
@@ -20,8 +19,6 @@ Json quaternion_list(const Eigen::Quaterniond& Q) {
 
 Json kin_dyn(Arm& arm, Inputs& in) {
   const ArmTerms terms = arm.terms(in);
-  const VectorJ q = in.vector("q", arm.size());
-  const VectorJ v = in.vector_or_zero("v", arm.size());
   const Vector6 W = arm.task.embed(in.vector_or_zero("W", arm.task.size()));
   const Task& task = arm.task;
   return {{"p", list_of(terms.X_BT.p.head(task.position()))},
@@ -31,7 +28,7 @@ Json kin_dyn(Arm& arm, Inputs& in) {
           {"Jdot_v", list_of(task.of(terms.Jdot_v))},
           {"M", rows_of(terms.M)},
           {"Cv", list_of(terms.Cv)},
-          {"CTv", list_of(coriolis_transpose(&arm.model, terms, q, v))},
+          {"CTv", list_of(terms.CTv)},
           {"g", list_of(terms.g)},
           {"Lambda", rows_of(task.of(task_inertia(terms, task.rows(), kLostOnlyWhenSingular)))},
           {"KG", rows_of(geometric_term(terms.J, W))}};

@@ -2,7 +2,6 @@
 #include "controller/gains/energy_tank.h"
 #include "controller/observers/admittance_filter.h"
 #include "controller/observers/alpha_beta.h"
-#include "controller/observers/coriolis_transpose.h"
 #include "controller/observers/filtered_difference.h"
 #include "controller/observers/friction_observer.h"
 #include "controller/observers/levant.h"
@@ -38,7 +37,7 @@ Json momentum_seq(Arm& arm, Inputs& in) {
   Json r = Json::array();
   for (std::size_t k = 0; k < q.size(); ++k) {
     arm.model.evaluate(q[k], v[k], &terms);
-    const VectorJ beta = coriolis_transpose(&arm.model, terms, q[k], v[k]) - terms.g;
+    const VectorJ beta = terms.CTv - terms.g;
     r.push_back(list_of(observer.update(terms.M_total * v[k], tau[k], beta)));
   }
   return {{"r", r}};

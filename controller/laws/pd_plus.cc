@@ -2,7 +2,7 @@
 //   tau = M a_d + C(q, v) v_d + g - K_q (q - q_d) - D_q (v - v_d)
 // Exact tracking on an exact model, and the stiffness at the joints is K_q itself. C is the matrix
 // of the Christoffel symbols, bilinear in its velocities: with c(x) = C(q, x) x,
-//   C(q, v) v_d = (c(v + v_d) - c(v) - c(v_d)) / 2.
+//   C(q, v) v_d = (c(v + v_d) - c(v - v_d)) / 4.
 #include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
 
@@ -29,9 +29,7 @@ class PdPlus : public Law {
     const VectorJ& v = in.point.v;
     const VectorJ& v_d = in.goal.v_d;
     const VectorJ error = q - in.goal.q_d;
-    const VectorJ both = v + v_d;
-    const VectorJ Cv_d =
-        0.5 * (model_.coriolis(q, both) - model_.coriolis(q, v) - model_.coriolis(q, v_d));
+    const VectorJ Cv_d = 0.25 * (model_.coriolis(q, v + v_d) - model_.coriolis(q, v - v_d));
     out->tau_stiffness = -in.gains.K_q * error;
     out->tau_damping = -D_ * (v - v_d);
     out->tau_feedforward = in.terms.M_total * in.goal.a_d + Cv_d;

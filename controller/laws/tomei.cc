@@ -11,7 +11,6 @@
 #include <random>
 #include <string>
 
-#include "controller/elastic/gravity_gradient.h"
 #include "controller/elastic/joint_springs.h"
 #include "controller/gains/chosen_damping.h"
 #include "controller/laws/law.h"
@@ -35,7 +34,7 @@ double steepest_weight(const Robot& robot, ArmModel* model) {
           limited ? joint.position_min : -EIGEN_PI,
           limited ? joint.position_max : EIGEN_PI)(generator);
     }
-    const MatrixJ slope = gravity_gradient(model, q);
+    const MatrixJ slope = model->gravity_gradient(q);
     alpha = std::max(alpha, Eigen::SelfAdjointEigenSolver<MatrixJ>(slope, Eigen::EigenvaluesOnly)
                                 .eigenvalues()
                                 .cwiseAbs()

@@ -1,14 +1,9 @@
 #include "controller/model/arm_terms.h"
 
-#include <Eigen/Cholesky>
-#include <kdl/chaindynparam.hpp>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl/chainidsolver_recursive_newton_euler.hpp>
-#include <kdl/chainjnttojacdotsolver.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
 #include <string>
 
 #include "common/config_error.h"
+#include "controller/model/spd_solve.h"
 
 namespace limber::controller {
 namespace {
@@ -24,27 +19,23 @@ std::vector<double> rotor_inertias(const Robot& robot) {
   return inertias;
 }
 
-int checked_size(const KDL::Chain& chain, std::size_t expected) {
-  const unsigned joints = chain.getNrOfJoints();
-  if (joints < 1 || joints > static_cast<unsigned>(kMaxJoints) || joints != expected) {
+using Kernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
+
+Kernel make_kernel(const BodyChain& chain, const double gravity[3]) {
+  const Eigen::Map<const Eigen::Vector3d> acceleration(gravity);
+  if (chain.bodies.size() <= 8) return ArmKernel<8>(chain, acceleration);
+  return ArmKernel<16>(chain, acceleration);
+}
+
+BodyChain checked_chain(const KDL::Chain& kdl_chain, std::size_t expected) {
+  BodyChain chain = body_chain(kdl_chain);
+  const std::size_t joints = chain.bodies.size();
+  if (joints < 1 || joints > static_cast<std::size_t>(kMaxJoints) || joints != expected) {
     throw ConfigError("the chain from base to tip has " + std::to_string(joints) +
                       " moving joints; the robot names " + std::to_string(expected) +
                       ", and 1 to " + std::to_string(kMaxJoints) + " are allowed");
   }
-  return static_cast<int>(joints);
-}
-
-Vector6 six(const KDL::Twist& twist) noexcept {
-  Vector6 result;
-  for (int i = 0; i < 6; ++i) result[i] = twist[i];
-  return result;
-}
-
-Pose pose_of(const KDL::Frame& frame) noexcept {
-  Pose pose;
-  pose.p << frame.p.x(), frame.p.y(), frame.p.z();
-  frame.M.GetQuaternion(pose.Q.x(), pose.Q.y(), pose.Q.z(), pose.Q.w());
-  return pose;
+  return chain;
 }
 
 }  // namespace
@@ -58,65 +49,19 @@ ArmTerms::ArmTerms(int joints)
       M_total(MatrixJ::Identity(joints, joints)),
       Minv_JT(MatrixJ6::Zero(joints, 6)),
       Cv(VectorJ::Zero(joints)),
-      g(VectorJ::Zero(joints)) {}
-
-// KDL works on heap-allocated arrays; these are sized once.
-struct ArmModel::Solvers {
-  Solvers(const KDL::Chain& given, const KDL::Vector& gravity)
-      : chain(given),
-        position(chain),
-        jacobian(chain),
-        jacobian_rate(chain),
-        dynamics(chain, gravity),
-        newton_euler(chain, gravity),
-        q(chain.getNrOfJoints()),
-        qv(chain.getNrOfJoints()),
-        vector(chain.getNrOfJoints()),
-        J(chain.getNrOfJoints()),
-        a(chain.getNrOfJoints()),
-        M(chain.getNrOfJoints()),
-        no_wrench(chain.getNrOfSegments(), KDL::Wrench::Zero()) {}
-
-  KDL::Chain chain;  // the solvers keep references to it
-  KDL::ChainFkSolverPos_recursive position;
-  KDL::ChainJntToJacSolver jacobian;
-  KDL::ChainJntToJacDotSolver jacobian_rate;
-  KDL::ChainDynParam dynamics;
-  KDL::ChainIdSolver_RNE newton_euler;
-  KDL::JntArray q;
-  KDL::JntArrayVel qv;
-  KDL::JntArray vector;
-  KDL::Jacobian J;
-  KDL::JntArray a;
-  KDL::JntSpaceInertiaMatrix M;
-  KDL::Wrenches no_wrench;
-  int error = 0;  // the first KDL reported
-
-  void note(int code) noexcept {
-    if (error == 0) error = code;
-  }
-};
+      CTv(Cv),
+      g(Cv) {}
 
 ArmModel::ArmModel(const KDL::Chain& chain, const double gravity[3],
                    const std::vector<double>& rotor_inertia)
-    : size_(checked_size(chain, rotor_inertia.size())),
-      rotor_inertia_(Eigen::Map<const Eigen::VectorXd>(rotor_inertia.data(), size_)),
-      solvers_(std::make_unique<Solvers>(chain, KDL::Vector(gravity[0], gravity[1], gravity[2]))) {
-  ArmTerms probe(size_);
-  const VectorJ zero = VectorJ::Zero(size_);
-  evaluate(zero, zero, &probe);
-  inverse_dynamics(zero, zero, zero);
-  // KDL's error codes come from sizes and structure alone: right here, right for ever.
-  if (solvers_->error != KDL::SolverI::E_NOERROR) {
-    throw ConfigError("the kinematic chain cannot be solved (KDL error " +
-                      std::to_string(solvers_->error) + ")");
-  }
-}
+    : rotor_inertia_(Eigen::Map<const Eigen::VectorXd>(
+          rotor_inertia.data(), static_cast<Eigen::Index>(rotor_inertia.size()))),
+      zero_(VectorJ::Zero(rotor_inertia_.size())),
+      size_(static_cast<int>(rotor_inertia_.size())),
+      kernel_(make_kernel(checked_chain(chain, rotor_inertia.size()), gravity)) {}
 
 ArmModel::ArmModel(const LoadedRobot& robot)
     : ArmModel(robot.chain, robot.robot.gravity, rotor_inertias(robot.robot)) {}
-
-ArmModel::~ArmModel() = default;
 
 void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept {
   evaluate(q, v, TermsDue{}, terms);
@@ -124,81 +69,123 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noe
 
 void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
                         ArmTerms* terms) noexcept {
-  Solvers& s = *solvers_;
-  terms->X_BT = tip_pose(q);
-  if (due.jacobian) {
-    terms->J = jacobian(q);
-    s.qv.q.data = q;
-    s.qv.qdot.data = v;
-    KDL::Twist jdot_v;
-    s.note(s.jacobian_rate.JntToJacDot(s.qv, jdot_v));
-    terms->Jdot_v = six(jdot_v);
-  }
-  terms->V_BT.noalias() = terms->J * v;
+  std::visit([&](auto& kernel) { evaluate_with(&kernel, q, v, due, terms); }, kernel_);
   if (due.inertia) {
-    terms->M = mass(q);
     terms->B = rotor_inertia_;
     terms->M_total = terms->M;
     terms->M_total.diagonal() += terms->B;
   }
   if (due.inertia || due.jacobian) {
     terms->Minv_JT = terms->J.transpose();
-    terms->M_total.llt().solveInPlace(terms->Minv_JT);
+    solve_spd(terms->M_total, &terms->Minv_JT);
   }
-  if (due.coriolis) terms->Cv = coriolis(q, v);
-  terms->g = gravity(q);
+}
+
+template <typename Kernel>
+void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
+                             const TermsDue& due, ArmTerms* terms) noexcept {
+  kernel->place(q);
+  kernel->gravity(&terms->g);
+  terms->X_BT = kernel->tip();
+  if (due.jacobian) kernel->jacobian(&terms->J);
+  terms->V_BT.noalias() = terms->J * v;
+  if (due.jacobian || due.coriolis) kernel->move(v, zero_);
+  if (due.jacobian) terms->Jdot_v = kernel->tip_acceleration(terms->V_BT);
+  if (due.inertia || due.coriolis) kernel->weigh();
+  if (due.inertia) kernel->mass(&terms->M);
+  if (due.coriolis) kernel->torque(&terms->Cv, &terms->CTv);
 }
 
 Pose ArmModel::tip_pose(const VectorJ& q) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  KDL::Frame frame;
-  s.note(s.position.JntToCart(s.q, frame));
-  return pose_of(frame);
+  return std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        return kernel.tip();
+      },
+      kernel_);
 }
 
 Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.note(s.jacobian.JntToJac(s.q, s.J));
-  return s.J.data;
+  Matrix6J J(6, size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.jacobian(&J);
+      },
+      kernel_);
+  return J;
 }
 
 MatrixJ ArmModel::mass(const VectorJ& q) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.note(s.dynamics.JntToMass(s.q, s.M));
-  return s.M.data;
+  MatrixJ M(size_, size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.mass(&M);
+      },
+      kernel_);
+  return M;
 }
 
 VectorJ ArmModel::coriolis(const VectorJ& q, const VectorJ& v) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.qv.qdot.data = v;
-  s.note(s.dynamics.JntToCoriolis(s.q, s.qv.qdot, s.vector));
-  return s.vector.data;
+  VectorJ Cv(size_), CTv(size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.move(v, zero_);
+        kernel.torque(&Cv, &CTv);
+      },
+      kernel_);
+  return Cv;
 }
 
 VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.qv.qdot.data = v;
-  s.a.data = a;
-  s.note(s.newton_euler.CartToJnt(s.q, s.qv.qdot, s.a, s.no_wrench, s.vector));
-  return s.vector.data + rotor_inertia_.cwiseProduct(a);
+  VectorJ tau(size_), CTv(size_), g(size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.move(v, a);
+        kernel.torque(&tau, &CTv);
+        kernel.gravity(&g);
+      },
+      kernel_);
+  return tau + g + rotor_inertia_.cwiseProduct(a);
 }
 
 VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
-  Solvers& s = *solvers_;
-  s.q.data = q;
-  s.note(s.dynamics.JntToGravity(s.q, s.vector));
-  return s.vector.data;
+  VectorJ g(size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.gravity(&g);
+      },
+      kernel_);
+  return g;
+}
+
+MatrixJ ArmModel::gravity_gradient(const VectorJ& q) noexcept {
+  MatrixJ slope(size_, size_);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.gravity_gradient(&slope);
+      },
+      kernel_);
+  return slope;
 }
 
 void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
-  terms->X_BT = tip_pose(q);
-  terms->J = jacobian(q);
-  terms->g = gravity(q);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        terms->X_BT = kernel.tip();
+        kernel.jacobian(&terms->J);
+        kernel.gravity(&terms->g);
+      },
+      kernel_);
 }
 
 }  // namespace limber::controller

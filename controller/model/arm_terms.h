@@ -1,10 +1,11 @@
 // Kinematics and dynamics of the arm at one state: everything the laws need, computed once a cycle.
+// The equations are in arm_kernel.h.
 #pragma once
 
-#include <kdl/chain.hpp>
-#include <memory>
+#include <variant>
 
 #include "common/types.h"
+#include "controller/model/arm_kernel.h"
 #include "controller/model/pose.h"
 #include "robots/loader/load_robot.h"
 
@@ -25,6 +26,7 @@ struct ArmTerms {
   MatrixJ M_total;   ///< M + diag(B): what a rigidly geared joint has to accelerate
   MatrixJ6 Minv_JT;  ///< M_total^-1 J^T, n x 6: joint acceleration by a wrench at the tip
   VectorJ Cv;        ///< Coriolis and centrifugal torque, N m
+  VectorJ CTv;       ///< C^T v = (dM/dt) v - C v: what momentum has and acceleration has not, N m
   VectorJ g;         ///< torque that holds the arm still against gravity, N m
 
   /// v^T M_total v / 2, J.
@@ -35,31 +37,30 @@ struct ArmTerms {
 struct TermsDue {
   bool jacobian = true;  ///< J, Jdot_v
   bool inertia = true;   ///< M, M_total, Minv_JT
-  bool coriolis = true;  ///< Cv
+  bool coriolis = true;  ///< Cv, CTv
 };
 
-/// Computes the terms; the only place that knows KDL's solvers.
+/// Computes the terms, for 1 to kMaxJoints joints, revolute and prismatic. All members but the
+/// constructor may be called in the cycle.
 class ArmModel {
  public:
   /// Gravity is the acceleration in axes of the chain's base, m/s^2. Throws ConfigError if the
-  /// chain has no joints, more than kMaxJoints, another number than `rotor_inertia`, or a part of
-  /// it that KDL refuses.
+  /// chain has no joints, more than kMaxJoints, another number than `rotor_inertia`, or a joint
+  /// that body_chain() refuses.
   ArmModel(const KDL::Chain& chain, const double gravity[3],
            const std::vector<double>& rotor_inertia);
   explicit ArmModel(const LoadedRobot& robot);
-  ~ArmModel();
 
   int size() const noexcept { return size_; }
   const VectorJ& rotor_inertia() const noexcept { return rotor_inertia_; }
 
-  /// All terms at (q, v), both of length size(). May be called in the cycle.
+  /// All terms at (q, v), both of length size().
   void evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noexcept;
   /// Only what is due; the rest stays as it was evaluated last. The tip's pose, V_BT = J v and
-  /// gravity are always of this instant. May be called in the cycle.
+  /// gravity are always of this instant.
   void evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due, ArmTerms* terms) noexcept;
 
-  // Single terms, for laws that look at other states than the present one. All may be called in
-  // the cycle.
+  // Single terms, for laws that look at other states than the present one.
   Pose tip_pose(const VectorJ& q) noexcept;
   Matrix6J jacobian(const VectorJ& q) noexcept;
   MatrixJ mass(const VectorJ& q) noexcept;
@@ -69,15 +70,21 @@ class ArmModel {
   VectorJ inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept;
   /// Torque that holds the arm still, g.
   VectorJ gravity(const VectorJ& q) noexcept;
+  /// dg/dq, symmetric, n x n, N m/rad. Its greatest norm over the workspace is what a motor-side
+  /// position law has to exceed.
+  MatrixJ gravity_gradient(const VectorJ& q) noexcept;
   /// What torques at rest depend on, X_BT, J and g; the other terms stay as they are.
   void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
-  struct Solvers;
+  template <typename Kernel>
+  void evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v, const TermsDue& due,
+                     ArmTerms* terms) noexcept;
 
-  int size_;
   VectorJ rotor_inertia_;
-  std::unique_ptr<Solvers> solvers_;
+  VectorJ zero_;
+  int size_;
+  std::variant<ArmKernel<8>, ArmKernel<16>> kernel_;
 };
 
 }  // namespace limber::controller

@@ -6,7 +6,6 @@
 
 #include "controller/laws/registry.h"
 #include "controller/model/singularity.h"
-#include "controller/observers/coriolis_transpose.h"
 
 namespace limber::controller {
 namespace {
@@ -150,12 +149,12 @@ void Observers::estimate_velocity(ArmState* state) noexcept {
   started_ = true;
 }
 
-void Observers::observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
-                        ArmModel* model) noexcept {
+void Observers::observe(const ArmState& state, const ArmTerms& terms,
+                        const TaskRows& rows) noexcept {
   estimates_.A_BT = tip_acceleration_.update(terms.V_BT);
   if (settings_.friction_compensation == FrictionCompensation::kObserver) observe_friction(state);
   if (settings_.contact == ContactSource::kJointTorque) {
-    observe_joint_torque(state, terms, rows, model);
+    observe_joint_torque(state, terms, rows);
   } else if (settings_.contact == ContactSource::kTipSensor && tip_force_) {
     tip_force_->update(state.tip, terms, estimates_.A_BT);
     estimates_.F_ext = tip_force_->F_ext();
@@ -171,8 +170,8 @@ void Observers::observe_friction(const ArmState& state) noexcept {
 // From the sensed torque and the momentum of the links alone; or from the motors' torque and the
 // momentum of links and rotors: their friction is then in it, too.
 void Observers::observe_joint_torque(const ArmState& state, const ArmTerms& terms,
-                                     const TaskRows& rows, ArmModel* model) noexcept {
-  const VectorJ beta = coriolis_transpose(model, terms, state.q, state.v) - terms.g;
+                                     const TaskRows& rows) noexcept {
+  const VectorJ beta = terms.CTv - terms.g;
   estimates_.tau_ext = torque_sensors_
                            ? momentum_.update(terms.M * state.v, state.tau_measured, beta)
                            : momentum_.update(terms.M_total * state.v, state.tau_applied, beta);

@@ -34,8 +34,7 @@ class Observers {
   /// those of the motors, where damping acts. In the cycle, before the terms are evaluated.
   void estimate_velocity(ArmState* state) noexcept;
   /// Contact and tip acceleration, from the terms at this state. In the cycle.
-  void observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
-               ArmModel* model) noexcept;
+  void observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows) noexcept;
   /// Torque of this cycle that compensates the gear's friction, N m. v_d, v: wanted and present
   /// joint velocity, n; from the terms: the inertia. Once a cycle, in the cycle.
   VectorJ friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept;
@@ -48,8 +47,8 @@ class Observers {
   void make_friction_observer() noexcept;
   void set_period(double T) noexcept;
   void observe_friction(const ArmState& state) noexcept;
-  void observe_joint_torque(const ArmState& state, const ArmTerms& terms, const TaskRows& rows,
-                            ArmModel* model) noexcept;
+  void observe_joint_torque(const ArmState& state, const ArmTerms& terms,
+                            const TaskRows& rows) noexcept;
 
   int joints_;
   bool elastic_;         // some joint has a spring

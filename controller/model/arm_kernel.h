@@ -1,0 +1,84 @@
+// The dynamics of a serial arm, one algorithm for all terms. Every line below is one line of
+// arm_kernel.cc, which runs over all joints at once; only the poses and the sums go joint by joint.
+//
+// All vectors are in base axes. Twists, momenta and wrenches are taken at the base origin, linear
+// part first; z_i is the axis of joint i and p_i a point on it. Body i has mass m, centre of mass
+// c, first moment h = m c and, about the base origin, the inertia I_O.
+//   S_i = (p_i x z_i, z_i), prismatic (z_i, 0)       twist of joint i at unit rate
+//   I V     = (m v + w x h, I_O w + h x v)           momentum of a body with the twist V = (v, w)
+//   V x S   = (w x s_v + v x s_w, w x s_w)           rate of a twist S = (s_v, s_w) fixed to it
+//   V x* H  = (w x l, w x k + v x l)                 rate of a momentum H = (l, k) fixed to it
+// Summed from the base:
+//   V_i = sum S_k v_k,  A_i = sum ((V_k x S_k) v_k + S_k a_k)        twist and its rate, k <= i
+// Summed from the tip, over the bodies k >= i that joint i carries:
+//   P_i = (sum I_k) S_i                              M_ij = S_i . P_j  (i <= j)
+//   F_i = sum (I_k A_k + V_k x* I_k V_k)             (M a + C v)_i = S_i . F_i
+//   L_i = sum I_k V_k                                (C^T v)_i = (V_i x S_i) . L_i
+//   l_i = linear part of P_i                         g_i = -gravity . l_i
+//                                                    dg_i/dq_j = (w_j x gravity) . l_i  (j <= i)
+// Source of M and M a + C v: R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5 and
+// 6. C^T v: the momentum p = M v of the joints changes by dp_i/dt = S_i . F_i + (V_i x S_i) . L_i
+// at a = 0, and dM/dt = C + C^T. dg/dq: with joint j all of l_i turns about its axis; w_j is the
+// angular part of S_j.
+#pragma once
+
+#include "common/types.h"
+#include "controller/model/body_chain.h"
+#include "controller/model/joint_rows.h"
+#include "controller/model/pose.h"
+
+namespace limber::controller {
+
+/// For arms of at most N joints. place() comes first; each of the others says what it needs
+/// besides. Results have as many entries as the arm has joints. After construction all may be
+/// called in the cycle.
+template <int N>
+class ArmKernel {
+ public:
+  /// Gravity: acceleration in base axes, m/s^2.
+  ArmKernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
+
+  /// Poses of all bodies, S, c and h.
+  void place(const VectorJ& q) noexcept;
+  Pose tip() const noexcept { return {p_tip_, Eigen::Quaterniond(R_tip_)}; }
+  void jacobian(Matrix6J* J) const noexcept;
+  void gravity(VectorJ* g) const noexcept;
+  void gravity_gradient(MatrixJ* slope) const noexcept;
+
+  /// I_O of each body.
+  void weigh() noexcept;
+  /// After weigh().
+  void mass(MatrixJ* M) const noexcept;
+
+  /// V and A.
+  void move(const VectorJ& v, const VectorJ& a) noexcept;
+  /// After move(): acceleration of the tip, which moves with the twist V_BT.
+  Vector6 tip_acceleration(const Vector6& V_BT) const noexcept;
+  /// After weigh() and move(): M a + C v and C^T v.
+  void torque(VectorJ* tau, VectorJ* CTv) const noexcept;
+
+ private:
+  Row3<N> linear_momentum() const noexcept;
+
+  // Of the chain.
+  BodyChain chain_;
+  int size_;
+  Eigen::Vector3d gravity_;
+  Row<N> m_;
+  Row3<N> com_;          // in body axes
+  RowSymmetric<N> I_C_;  // about the centre of mass, body axes
+  // Of the present state.
+  Row3<N> R_x_, R_y_, R_z_;  // columns: axes of the bodies
+  Row3<N> p_;
+  Row6<N> S_;
+  Row3<N> c_, h_;
+  RowSymmetric<N> I_O_;
+  Row6<N> V_, V_x_S_, A_;
+  Eigen::Matrix3d R_tip_;
+  Eigen::Vector3d p_tip_;
+};
+
+extern template class ArmKernel<8>;
+extern template class ArmKernel<16>;
+
+}  // namespace limber::controller

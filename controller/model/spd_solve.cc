@@ -1,0 +1,36 @@
+#include "controller/model/spd_solve.h"
+
+#include <limits>
+
+namespace limber::controller {
+
+void solve_spd(const MatrixJ& M, MatrixJ6* X) noexcept {
+  const auto n = M.rows();
+  // By rows: six right-hand sides at once.
+  using Six = Eigen::Array<double, 6, 1>;
+  double L[kMaxJoints][kMaxJoints];
+  double inverse_D[kMaxJoints];
+  Six Y[kMaxJoints];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Y[i] = X->row(i).transpose();
+    double LD[kMaxJoints];  // row i of L D
+    double d = M(i, i);
+    for (Eigen::Index j = 0; j < i; ++j) {
+      double sum = M(j, i);
+      for (Eigen::Index k = 0; k < j; ++k) sum -= LD[k] * L[j][k];
+      LD[j] = sum;
+      L[i][j] = sum * inverse_D[j];
+      d -= sum * L[i][j];
+      Y[i] -= L[i][j] * Y[j];
+    }
+    inverse_D[i] = d > 0.0 ? 1.0 / d : std::numeric_limits<double>::quiet_NaN();
+  }
+  for (Eigen::Index i = n - 1; i >= 0; --i) {
+    Six x = inverse_D[i] * Y[i];
+    for (Eigen::Index k = i + 1; k < n; ++k) x -= L[k][i] * Y[k];
+    Y[i] = x;
+    X->row(i) = x.transpose();
+  }
+}
+
+}  // namespace limber::controller
