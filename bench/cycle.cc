@@ -1,16 +1,12 @@
-// What a control cycle costs: arm terms beside bare KDL calls, each law through the whole
-// controller, the whole lab. Figures that travel are ratios within one run.
+// What a control cycle costs: each law through the whole controller, the whole lab. Figures that
+// travel are ratios within one run.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <kdl/chaindynparam.hpp>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
 #include <string>
 
 #include "controller/arm_controller.h"
 #include "controller/laws/registry.h"
-#include "controller/model/arm_terms.h"
 #include "controller/modes/state_judge.h"
 #include "lab/lab.h"
 #include "robots/loader/default_gains.h"
@@ -19,52 +15,11 @@ namespace {
 
 using namespace limber;
 
-const LoadedRobot& openarm() {
-  static const LoadedRobot robot = load_robot("openarm");
-  return robot;
-}
-
-VectorJ home(const Robot& robot = openarm().robot) {
+VectorJ home(const Robot& robot) {
   VectorJ q(robot.size());
   for (int i = 0; i < q.size(); ++i) q[i] = robot.joints[static_cast<std::size_t>(i)].home;
   return q;
 }
-
-/// The peer of BM_ArmTerms: what a user of KDL would call for pose, J, M, C v and g.
-void BM_BareKdl(benchmark::State& run) {
-  const KDL::Chain& chain = openarm().chain;
-  KDL::ChainFkSolverPos_recursive position(chain);
-  KDL::ChainJntToJacSolver jacobian(chain);
-  const double* g = openarm().robot.gravity;
-  KDL::ChainDynParam dynamics(chain, KDL::Vector(g[0], g[1], g[2]));
-  const unsigned n = chain.getNrOfJoints();
-  KDL::JntArray q(n), v(n), c(n), gravity(n);
-  q.data = home();
-  KDL::Frame tip;
-  KDL::Jacobian J(n);
-  KDL::JntSpaceInertiaMatrix M(n);
-  for (auto _ : run) {
-    position.JntToCart(q, tip);
-    jacobian.JntToJac(q, J);
-    dynamics.JntToMass(q, M);
-    dynamics.JntToCoriolis(q, v, c);
-    dynamics.JntToGravity(q, gravity);
-    benchmark::DoNotOptimize(M.data.data());
-  }
-}
-BENCHMARK(BM_BareKdl);
-
-void BM_ArmTerms(benchmark::State& run) {
-  controller::ArmModel model(openarm());
-  controller::ArmTerms terms(model.size());
-  const VectorJ q = home();
-  const VectorJ v = VectorJ::Constant(model.size(), 0.1);
-  for (auto _ : run) {
-    model.evaluate(q, v, &terms);
-    benchmark::DoNotOptimize(terms.M.data());
-  }
-}
-BENCHMARK(BM_ArmTerms);
 
 /// A controller that has been led to ACTIVE by a driver that answers at once.
 class ActiveController {

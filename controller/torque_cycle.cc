@@ -240,7 +240,7 @@ VectorJ TorqueCycle::friction_torque(GoalType type) noexcept {
   }
   const Goal& goal = goals_.goal();
   const VectorJ v_d =
-      follows_joints(type) ? goal.v_d : VectorJ(damped_inverse(arm_.terms().J).inverse * goal.V_BD);
+      follows_joints(type) ? goal.v_d : VectorJ(damped_pseudo_inverse(arm_.terms().J) * goal.V_BD);
   return observers_.friction(v_d, arm_.point().v, arm_.terms());
 }
 

@@ -5,7 +5,7 @@
 
 namespace limber::controller {
 
-/// x with pair.torque(c, x) = tau, rad, by bisection; at most kFarthest_rad. Quadratic springs that
+/// x with pair.torque(c, x) = tau, rad; at most kFarthest_rad. Quadratic springs that
 /// are taut: tau / (2 k2 c). May be called in the cycle.
 double pair_deflection(const SpringPair& pair, double c, double tau) noexcept;
 

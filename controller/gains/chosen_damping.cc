@@ -12,10 +12,28 @@ MatrixJ chosen_joint_damping(const Gains& gains, const MatrixJ& M, const MatrixJ
   return D;
 }
 
+KeptJointDamping::KeptJointDamping(int joints)
+    : M_(MatrixJ::Zero(joints, joints)), K_q_(M_), D_(M_) {}
+
+const MatrixJ& KeptJointDamping::of(const Gains& gains, const MatrixJ& M,
+                                    const MatrixJ& K_q) noexcept {
+  const DampingDesign design = gains.settings.joint_damping;
+  if (design == DampingDesign::kGiven) {
+    D_ = gains.D_q;
+  } else if (design != design_ || gains.joint_damping_ratio != ratio_ || M != M_ || K_q != K_q_) {
+    M_ = M;
+    K_q_ = K_q;
+    ratio_ = gains.joint_damping_ratio;
+    D_ = chosen_joint_damping(gains, M, K_q);
+  }
+  design_ = design;
+  return D_;
+}
+
 Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms) noexcept {
   const DampingDesign design = gains.settings.damping;
   if (design == DampingDesign::kGiven) return gains.D_x;
-  return tip_damping(design, tip_mobility(terms.J, terms.Minv_JT), gains.K_x, gains.damping_ratio);
+  return tip_damping(design, terms.J, terms.Minv_JT, gains.K_x, gains.damping_ratio);
 }
 
 }  // namespace limber::controller

@@ -18,6 +18,22 @@ namespace limber::controller {
 /// stiffness unless it is given. In the cycle.
 MatrixJ chosen_joint_damping(const Gains& gains, const MatrixJ& M, const MatrixJ& K_q) noexcept;
 
+/// The same for an inertia and a stiffness that seldom change: designed anew when one of them, or a
+/// gain, is another than in the last call.
+class KeptJointDamping {
+ public:
+  explicit KeptJointDamping(int joints);
+  /// In the cycle.
+  const MatrixJ& of(const Gains& gains, const MatrixJ& M, const MatrixJ& K_q) noexcept;
+
+ private:
+  DampingDesign design_ = DampingDesign::kGiven;
+  double ratio_ = -1.0;
+  MatrixJ M_;
+  MatrixJ K_q_;
+  MatrixJ D_;
+};
+
 /// For K_x at the tip, without the floor. In the cycle.
 Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms) noexcept;
 

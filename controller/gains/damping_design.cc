@@ -4,12 +4,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace limber::controller {
 namespace {
 
 // Share of the greatest eigenvalue below which the tip cannot be said to move.
 constexpr double kOutOfReach = 1e-9;
+constexpr double kRegular = 1e-6;  // above it a Cholesky decomposition will do
 constexpr double kInertiaRounding = 1e-12;
 constexpr double kFloorLinear = 5.0;    // N s/m
 constexpr double kFloorAngular = 0.2;   // N m s/rad
@@ -82,8 +84,29 @@ struct Reach {
     L = mobility.S.cwiseInverse().asDiagonal() * mobility.U * root.asDiagonal();
     inverse_transpose = mobility.S.asDiagonal() * mobility.U * inverse.asDiagonal();
   }
+  /// From the Cholesky factor; only for |G| |G^-1| up to 1 / kRegular, else empty.
+  static std::optional<Reach> regular(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
+    const Matrix6 G = scaled_mobility(J, Minv_JT);
+    const Eigen::LLT<Matrix6> cholesky(G);
+    if (cholesky.info() != Eigen::Success) return std::nullopt;
+    Matrix6 inverse = Matrix6::Identity();
+    cholesky.matrixL().solveInPlace(inverse);
+    // The trace of G^-1: at least 1 over the least eigenvalue.
+    if (!(kRegular * G.norm() * inverse.squaredNorm() <= 1.0)) return std::nullopt;
+    const Vector6 S = row_scale();
+    return Reach(S.cwiseInverse().asDiagonal() * Matrix6(cholesky.matrixL()),
+                 S.asDiagonal() * inverse.transpose());
+  }
+  Matrix6 damping(const Matrix6& K, double ratio) const noexcept {
+    return 2.0 * ratio * inverse_transpose * root<Matrix6>(L.transpose() * K * L) *
+           inverse_transpose.transpose();
+  }
   Matrix6 L;
   Matrix6 inverse_transpose;
+
+ private:
+  Reach(const Matrix6& factor, const Matrix6& its_inverse_transpose) noexcept
+      : L(factor), inverse_transpose(its_inverse_transpose) {}
 };
 
 }  // namespace
@@ -107,12 +130,8 @@ Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept {
   switch (design) {
-    case DampingDesign::kDoubleDiagonalisation: {
-      const Reach reach(mobility);
-      const Matrix6 D = reach.inverse_transpose * root<Matrix6>(reach.L.transpose() * K * reach.L) *
-                        reach.inverse_transpose.transpose();
-      return 2.0 * ratio * D;
-    }
+    case DampingDesign::kDoubleDiagonalisation:
+      return Reach(mobility).damping(K, ratio);
     case DampingDesign::kFactorisation:
       return never_driving<Matrix6>(factorised_tip_damping(mobility, K, ratio));
     case DampingDesign::kWithoutInertia:
@@ -121,6 +140,14 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
       break;
   }
   return Matrix6::Zero();
+}
+
+Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
+                    const Matrix6& K, double ratio) noexcept {
+  if (design == DampingDesign::kDoubleDiagonalisation) {
+    if (const auto reach = Reach::regular(J, Minv_JT)) return reach->damping(K, ratio);
+  }
+  return tip_damping(design, tip_mobility(J, Minv_JT), K, ratio);
 }
 
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {

@@ -27,6 +27,11 @@ MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept;
 
+/// The same from J and M^-1 J^T. Any L with G = L L^T gives the same D: away from singularities it
+/// is the Cholesky factor.
+Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
+                    const Matrix6& K, double ratio) noexcept;
+
 /// The factorisation as it stands, with the negative eigenvalues it may have.
 Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
                                double ratio) noexcept;

@@ -73,24 +73,29 @@ Vector6 TaskRows::of(Vector6 F) const noexcept {
 }
 
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
-  const TipMobility mobility = task_mobility(terms, rows);
-  if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
-  return damped_tip_inertia(mobility, mobility.threshold(lost_share));
+  return damped_tip_inertia(rows.of(terms.J), rows.of(terms.Minv_JT), lost_share);
 }
+
+namespace {
+
+// N X.
+template <typename Matrix>
+Matrix projected(const ArmTerms& terms, const TaskRows& rows, Projector projector,
+                 double lost_share, const Matrix& X) noexcept {
+  if (projector == Projector::kNone) return X;
+  const Matrix6J J = rows.of(terms.J);
+  MatrixJ6 Minv_JT = J.transpose();  // unit inertia
+  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT);
+  const Matrix6 inertia = damped_tip_inertia(J, Minv_JT, lost_share);
+  return X - J.transpose() * (inertia * (Minv_JT.transpose() * X));
+}
+
+}  // namespace
 
 MatrixJ null_space_projector(const ArmTerms& terms, const TaskRows& rows, Projector projector,
                              double lost_share) noexcept {
   const auto n = terms.J.cols();
-  MatrixJ N = MatrixJ::Identity(n, n);
-  if (projector == Projector::kNone) return N;
-  const Matrix6J J = rows.of(terms.J);
-  MatrixJ6 Minv_JT = J.transpose();  // unit inertia
-  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT);
-  const TipMobility mobility = tip_mobility(J, Minv_JT);
-  if (!(mobility.s[5] > 0.0)) return N;  // no task
-  const Matrix6 inertia = damped_tip_inertia(mobility, mobility.threshold(lost_share));
-  N.noalias() -= J.transpose() * (inertia * Minv_JT.transpose());
-  return N;
+  return projected<MatrixJ>(terms, rows, projector, lost_share, MatrixJ::Identity(n, n));
 }
 
 VectorJ null_space_torque(const ControlPoint& point, const ArmTerms& terms, const Goal& goal,
@@ -99,7 +104,7 @@ VectorJ null_space_torque(const ControlPoint& point, const ArmTerms& terms, cons
   VectorJ tau_0 = -gains.K_null * (point.q - goal.q_null) - gains.D_null * point.v;
   tau_0 = tau_0.cwiseMax(-torque_limit).cwiseMin(torque_limit);
   const LawSettings& s = gains.settings;
-  return null_space_projector(terms, rows, s.projector, s.lost_share) * tau_0;
+  return projected<VectorJ>(terms, rows, s.projector, s.lost_share, tau_0);
 }
 
 }  // namespace limber::controller

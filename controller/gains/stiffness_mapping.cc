@@ -39,9 +39,10 @@ MatrixJ geometric_term(const Matrix6J& J, const Vector6& W) noexcept {
 
 VectorJ holding_torque(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                        Orientation orientation) noexcept {
-  const PoseError error = pose_error(model->tip_pose(q), X_BD, orientation);
+  const ArmModel::Tip tip = model->tip(q);
+  const PoseError error = pose_error(tip.X_BT, X_BD, orientation);
   const Vector6 W = error.A.transpose() * (K_x * error.e);
-  return model->jacobian(q).transpose() * W;
+  return tip.J.transpose() * W;
 }
 
 MatrixJ full_tangent(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
@@ -64,8 +65,8 @@ MatrixJ full_tangent(ArmModel* model, const VectorJ& q, const Pose& X_BD, const 
 MatrixJ joint_stiffness(StiffnessTerms terms, ArmModel* model, const VectorJ& q, const Pose& X_BD,
                         const Matrix6& K_x, Orientation orientation) noexcept {
   if (terms == StiffnessTerms::kFull) return full_tangent(model, q, X_BD, K_x, orientation);
-  const PoseError error = pose_error(model->tip_pose(q), X_BD, orientation);
-  const Matrix6J J = model->jacobian(q);
+  const auto [X_BT, J] = model->tip(q);
+  const PoseError error = pose_error(X_BT, X_BD, orientation);
   MatrixJ K_q = first_term(J, error, K_x);
   if (terms == StiffnessTerms::kGeometric) {
     K_q += geometric_term(J, error.A.transpose() * (K_x * error.e));

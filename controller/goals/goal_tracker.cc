@@ -23,8 +23,9 @@ void GoalTracker::match(double period_s, GoalType type, const TaskRows& rows) no
   if (generator_.at_tip()) {
     inverse_kinematics_.track(rows, period_s, &goal_);
   } else {
-    goal_.X_BD = model_->tip_pose(goal_.q_d);
-    goal_.V_BD = model_->jacobian(goal_.q_d) * goal_.v_d;
+    const auto [X_BD, J] = model_->tip(goal_.q_d);
+    goal_.X_BD = X_BD;
+    goal_.V_BD = J * goal_.v_d;
   }
 }
 

@@ -25,9 +25,10 @@ void InverseKinematics::reset(const VectorJ& q) noexcept {
 }
 
 void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
-  const PoseError error = pose_error(model_.tip_pose(q_), X_BD, Orientation::kLog);
-  const Matrix6J J = rows.of(Matrix6J(error.A * model_.jacobian(q_)));
-  VectorJ step = -damped_inverse(J).inverse * error.e;
+  model_.evaluate_statics(q_, &terms_);
+  const PoseError error = pose_error(terms_.X_BT, X_BD, Orientation::kLog);
+  const Matrix6J J = rows.of(Matrix6J(error.A * terms_.J));
+  VectorJ step = -damped_pseudo_inverse(J) * error.e;
   const double longest = step.cwiseAbs().maxCoeff();
   if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
   if (step.allFinite()) q_ += step;
@@ -41,7 +42,7 @@ void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noe
   q_ += dt_s * drift_;
   for (int i = 0; i < kStepsPerCycle; ++i) correct(rows, goal->X_BD);
   const Matrix6J J = rows.of(model_.jacobian(q_));
-  const MatrixJ6 inverse = damped_inverse(J).inverse;
+  const MatrixJ6 inverse = damped_pseudo_inverse(J);
   const VectorJ posture = kPostureRate_per_s * (goal->q_null - q_);
   drift_ = posture - inverse * (J * posture);
 

@@ -22,7 +22,8 @@ GainRow M_q = {
 
 class JointImpedance : public Law {
  public:
-  explicit JointImpedance(int joints) : M_start_(MatrixJ::Identity(joints, joints)), D_(M_start_) {}
+  explicit JointImpedance(int joints)
+      : M_start_(MatrixJ::Identity(joints, joints)), D_(M_start_), kept_(joints) {}
 
   const char* check(const Gains& gains) const noexcept override {
     const MatrixJ& M = gains.parameters.matrix(M_q);
@@ -39,9 +40,9 @@ class JointImpedance : public Law {
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.damping_due) design(in);
-    const Eigen::LLT<MatrixJ> M_d(wanted(in.gains));
+    const VectorJ M_d = wanted(in.gains).diagonal();  // all there is: one number a joint
     const auto torque = [&](const VectorJ& effort) -> VectorJ {
-      return in.terms.M_total * M_d.solve(effort);
+      return in.terms.M_total * effort.cwiseQuotient(M_d);
     };
     out->tau_stiffness = torque(-in.gains.K_q * (in.point.q - in.goal.q_d));
     out->tau_damping = torque(-D_ * (in.point.v - in.goal.v_d));
@@ -56,11 +57,12 @@ class JointImpedance : public Law {
   }
 
   void design(const LawInputs& in) noexcept {
-    D_ = chosen_joint_damping(in.gains, wanted(in.gains), in.gains.K_q);
+    D_ = kept_.of(in.gains, wanted(in.gains), in.gains.K_q);
   }
 
   MatrixJ M_start_;
   MatrixJ D_;
+  KeptJointDamping kept_;
 };
 
 }  // namespace

@@ -15,20 +15,21 @@ class Salisbury : public Law {
       : J_start_(Matrix6J::Zero(6, joints)),
         M_start_(MatrixJ::Identity(joints, joints)),
         K_q_(MatrixJ::Zero(joints, joints)),
-        K_v_(K_q_) {}
+        K_v_(K_q_),
+        kept_(joints) {}
 
   void start(const LawInputs& in) noexcept override {
     J_start_ = in.terms.J;
     M_start_ = in.terms.M_total;
     K_q_ = mapped(in.terms.J, in.gains.K_x);
-    K_v_ = chosen_joint_damping(in.gains, M_start_, K_q_);
+    K_v_ = kept_.of(in.gains, M_start_, K_q_);
   }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.stiffness_due) K_q_ = mapped(in.terms.J, in.gains.K_x);
     // Constant over the workspace, not over the gains.
     if (in.damping_due) {
-      K_v_ = chosen_joint_damping(in.gains, M_start_, mapped(J_start_, in.gains.K_x));
+      K_v_ = kept_.of(in.gains, M_start_, mapped(J_start_, in.gains.K_x));
     }
     out->tau_stiffness = -K_q_ * (in.point.q - in.goal.q_d);
     out->tau_damping = -K_v_ * (in.point.v - in.goal.v_d);
@@ -43,6 +44,7 @@ class Salisbury : public Law {
   MatrixJ M_start_;
   MatrixJ K_q_;
   MatrixJ K_v_;
+  KeptJointDamping kept_;
 };
 
 }  // namespace

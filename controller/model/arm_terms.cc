@@ -96,24 +96,20 @@ void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
   if (due.coriolis) kernel->torque(&terms->Cv, &terms->CTv);
 }
 
-Pose ArmModel::tip_pose(const VectorJ& q) noexcept {
-  return std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        return kernel.tip();
-      },
-      kernel_);
-}
+Pose ArmModel::tip_pose(const VectorJ& q) noexcept { return tip(q).X_BT; }
 
-Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept {
-  Matrix6J J(6, size_);
+Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept { return tip(q).J; }
+
+ArmModel::Tip ArmModel::tip(const VectorJ& q) noexcept {
+  Tip tip{Pose(), Matrix6J(6, size_)};
   std::visit(
       [&](auto& kernel) {
         kernel.place(q);
-        kernel.jacobian(&J);
+        tip.X_BT = kernel.tip();
+        kernel.jacobian(&tip.J);
       },
       kernel_);
-  return J;
+  return tip;
 }
 
 MatrixJ ArmModel::mass(const VectorJ& q) noexcept {

@@ -63,6 +63,11 @@ class ArmModel {
   // Single terms, for laws that look at other states than the present one.
   Pose tip_pose(const VectorJ& q) noexcept;
   Matrix6J jacobian(const VectorJ& q) noexcept;
+  struct Tip {
+    Pose X_BT;
+    Matrix6J J;
+  };
+  Tip tip(const VectorJ& q) noexcept;
   MatrixJ mass(const VectorJ& q) noexcept;
   /// C(q, v) v.
   VectorJ coriolis(const VectorJ& q, const VectorJ& v) noexcept;

@@ -7,7 +7,7 @@
 namespace limber::controller {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kUnitRounding = 1e-9;
 
 Eigen::Vector3d to_eigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -27,7 +27,7 @@ KDL::Rotation with_z(const KDL::Vector& axis) {
 void check(const KDL::Joint& joint) {
   const KDL::Twist rate = joint.twist(1.0);
   const KDL::Vector& moving = slides(joint) ? rate.vel : rate.rot;
-  if (KDL::Equal(moving, joint.JointAxis(), kRounding) && joint.getInertia() == 0.0) return;
+  if (KDL::Equal(moving, joint.JointAxis(), kUnitRounding) && joint.getInertia() == 0.0) return;
   throw ConfigError("joint '" + joint.getName() +
                     "' of the chain has a scale or an inertia of its own; neither is allowed");
 }

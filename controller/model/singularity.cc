@@ -1,16 +1,37 @@
 #include "controller/model/singularity.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 namespace limber::controller {
 
+Vector6 row_scale() noexcept {
+  return (Vector6() << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationLength_m))
+      .finished();
+}
+
+// |G^-1| is at least 1 over the least eigenvalue, whatever norm.
+std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept {
+  const Eigen::LLT<Matrix6> cholesky(G);
+  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  Matrix6 inverse = Matrix6::Identity();
+  cholesky.solveInPlace(inverse);
+  if (!(least * inverse.norm() <= 1.0)) return std::nullopt;
+  return inverse;
+}
+
+Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
+  const Vector6 S = row_scale();
+  const Matrix6 G = S.asDiagonal() * J.lazyProduct(Minv_JT) * S.asDiagonal();
+  return 0.5 * (G + G.transpose());
+}
+
 TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
   TipMobility mobility;
-  mobility.S << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationLength_m);
-  Matrix6 G = mobility.S.asDiagonal() * (J * Minv_JT) * mobility.S.asDiagonal();
-  G = (0.5 * (G + G.transpose())).eval();
+  mobility.S = row_scale();
+  const Matrix6 G = scaled_mobility(J, Minv_JT);
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(G);
   mobility.U = eigen.eigenvectors();
   mobility.s = eigen.eigenvalues().cwiseMax(0.0);
@@ -26,6 +47,23 @@ Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexce
   }
   const Matrix6 scaled = mobility.S.asDiagonal() * mobility.U;
   return scaled * inverse.asDiagonal() * scaled.transpose();
+}
+
+Matrix6 damped_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT, double lost_share) noexcept {
+  const Matrix6 G = scaled_mobility(J, Minv_JT);
+  if (const auto inverse = regular_inverse(G, lost_share * G.norm())) {
+    const Vector6 S = row_scale();
+    return S.asDiagonal() * *inverse * S.asDiagonal();
+  }
+  const TipMobility mobility = tip_mobility(J, Minv_JT);
+  if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
+  return damped_tip_inertia(mobility, mobility.threshold(lost_share));
+}
+
+MatrixJ6 damped_pseudo_inverse(const Matrix6J& J) noexcept {
+  const Matrix6 G = J.lazyProduct(J.transpose());
+  if (const auto inverse = regular_inverse(G, kSigma_0 * kSigma_0)) return J.transpose() * *inverse;
+  return damped_inverse(J).inverse;
 }
 
 DampedInverse damped_inverse(const Matrix6J& J, double sigma_0, double lambda_max) noexcept {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "common/types.h"
 
@@ -28,6 +29,17 @@ struct TipMobility {
   }
 };
 
+/// G^-1 by a Cholesky decomposition, if it proves that no eigenvalue of G is below `least`; an
+/// order of magnitude cheaper than the eigenvalues themselves. G: symmetric. May be called in the
+/// cycle.
+std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept;
+
+/// S of TipMobility.
+Vector6 row_scale() noexcept;
+
+/// diag(S) J M^-1 J^T diag(S), see TipMobility. May be called in the cycle.
+Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
+
 /// J (6 x n), M^-1 J^T (n x 6). Rows of J that are zero count as directions out of reach. May be
 /// called in the cycle.
 TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
@@ -36,6 +48,11 @@ TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
 /// eigenvalues above the threshold; below, 1/s is faded out with 3 x^2 - 2 x^3, x = s / threshold,
 /// so that it stays finite and continuous through a singularity. May be called in the cycle.
 Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexcept;
+
+/// The same from J and M^-1 J^T, with the threshold TipMobility::threshold(lost_share); zero where
+/// the tip cannot move at all. The eigenvalues are only formed where a direction may be lost. May
+/// be called in the cycle.
+Matrix6 damped_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT, double lost_share) noexcept;
 
 /// Damped pseudo-inverse of J (Nakamura, Hanafusa 1986), n x 6:
 ///   J^T (J J^T + lambda^2 I)^-1,  lambda^2 = lambda_max^2 (1 - (sigma_min / sigma_0)^2)
@@ -54,5 +71,9 @@ inline constexpr double kLambdaMax = 0.05;
 /// May be called in the cycle.
 DampedInverse damped_inverse(const Matrix6J& J, double sigma_0 = kSigma_0,
                              double lambda_max = kLambdaMax) noexcept;
+
+/// DampedInverse::inverse with kSigma_0 and kLambdaMax; the singular values are only formed where
+/// the least may be below kSigma_0. May be called in the cycle.
+MatrixJ6 damped_pseudo_inverse(const Matrix6J& J) noexcept;
 
 }  // namespace limber::controller

@@ -175,8 +175,7 @@ void Observers::observe_joint_torque(const ArmState& state, const ArmTerms& term
   estimates_.tau_ext = torque_sensors_
                            ? momentum_.update(terms.M * state.v, state.tau_measured, beta)
                            : momentum_.update(terms.M_total * state.v, state.tau_applied, beta);
-  const DampedInverse inverse = damped_inverse(rows.of(terms.J));
-  estimates_.F_ext = inverse.inverse.transpose() * estimates_.tau_ext;
+  estimates_.F_ext = damped_pseudo_inverse(rows.of(terms.J)).transpose() * estimates_.tau_ext;
 }
 
 VectorJ Observers::friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept {

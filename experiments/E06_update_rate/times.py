@@ -20,7 +20,7 @@ TERMS = {
     "term_inverse_dynamics": "inverse\ndynamics",
     "term_stiffness": "all of\nEq. 4",
 }
-CYCLE = "BM_ControllerCycle/computed_torque"
+CYCLE = "BM_ControllerCycle/rigid/computed_torque"
 TIMEOUT_S = 60.0
 
 

@@ -151,8 +151,10 @@ def soak(
 
 
 @app.command(epilog="Example: limber bench")
-def bench() -> None:
+def bench(
+    as_json: Annotated[bool, typer.Option("--json", help="Figures as JSON.")] = False,
+) -> None:
     """Build the benchmarks in release mode and run them, each beside a peer."""
     from limber.dev import bench as module
 
-    raise typer.Exit(module.bench(console))
+    raise typer.Exit(module.bench(console, as_json))
