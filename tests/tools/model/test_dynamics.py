@@ -35,11 +35,16 @@ def test_same_arm_as_the_controllers(name):
     np.testing.assert_allclose(Cv, told["Cv"], atol=1e-9)
 
 
-def test_gravity_is_linear_in_masses_and_moments():
-    arm = dynamics_of("openarm")
-    q = np.random.default_rng(2).uniform(-1.5, 1.5, (6, arm.size))
+@pytest.mark.parametrize("name", ["openarm", "desktop2r", "antagonist7"])
+def test_torque_is_linear_in_masses_moments_and_inertias(name):
+    arm = dynamics_of(name)
+    q, v, a = np.random.default_rng(2).uniform(-1.5, 1.5, (3, 6, arm.size))
     np.testing.assert_allclose(
-        arm.gravity_regressor(q) @ arm.parameters(), arm.gravity_torque(q), atol=1e-12
+        arm.regressor(q, v, a) @ arm.parameters(), arm.torque(q, v, a), atol=1e-10
+    )
+    by_weight = arm.parameters().reshape(-1, 10)[:, :4].ravel()
+    np.testing.assert_allclose(
+        arm.gravity_regressor(q) @ by_weight, arm.gravity_torque(q), atol=1e-12
     )
 
 

@@ -5,9 +5,13 @@ arms without torque sensors that is all friction of the joint. Link side: the se
 what the model of a free arm needs.
 """
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 
 from limber.identify.arm import Arm, JointBelief
+from limber.identify.doubt import Loads
 from limber.identify.findings import Findings, Panel, Value
 from limber.identify.motion import Motion
 from limber.identify.motor_side import (
@@ -19,26 +23,28 @@ from limber.identify.motor_side import (
     VISCOUS,
     MotorSide,
     balance,
-    loads,
 )
-from limber.identify.regression import PoorLogError, fit, ratio
+from limber.identify.regression import PoorLogError, Unknowns, fit, ratio
 
 KAPPA_STD = 0.02  # below it the torque constant is measured along with friction
 KAPPA_OFF = 0.03  # beyond it a note is added
-SURE = 3.0  # standard errors
+SURE = 4.0  # standard errors
 LEAST_LOAD = 0.1  # N m; less load does not determine the scale of the model
+SLOW, LEAST_SLOW = 0.1, 50  # rad/s or m/s, and samples below it that show Coulomb friction
+LEAST_REVERSALS = 4
 SECTION, LINK_SECTION = "friction", "link_friction"
 COULOMB_KEY, VISCOUS_KEY = "coulomb_Nm", "viscous_Nms_per_rad"
 STATIC_KEY, STRIBECK_KEY = "static_Nm", "stribeck_rad_per_s"
 
 
-def identify(arm: Arm, motion: Motion) -> Findings:
-    found = Findings("friction")
-    all_loads = loads(arm, motion)
-    model = arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
+def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Findings:
+    """`weights_share`: how well the URDF's masses are known; None: as CAD usually is."""
+    found, own = Findings("friction"), []
+    loads = Loads(arm, motion, *([] if weights_share is None else [weights_share]))
     for i, joint in enumerate(arm.joints):
         try:
-            side = _motor_side(arm, motion, all_loads, i)
+            side = _motor_side(loads, i)
+            better = _beats_robot_yaml(joint, side)
         except PoorLogError as reason:
             found.refused[joint.name] = str(reason)
             continue
@@ -47,22 +53,84 @@ def identify(arm: Arm, motion: Motion) -> Findings:
                 f"{joint.name}: its true motor torque is {side.kappa:.3f} of the drive's value; "
                 "friction is given in true torque (identify torque-constant)."
             )
-        found.values += _values(joint, side, bool(motion.torque_sensor[i]))
+        found.notes += [f"{joint.name}: {warning}" for warning in _warnings(side)]
+        own += [joint.name] if side.known else []
+        values = _values(joint, side, bool(motion.torque_sensor[i]))
+        if not better:
+            found.notes.append(f"{joint.name}: robot.yaml's friction does as well; it stays.")
+            values = [replace(value, path=None, proposed=None) for value in values]
+        found.values += values
         found.panels.append(_panel(joint, side))
         if motion.torque_sensor[i]:
-            found.values += _link_side(joint, motion, all_loads, model, i)
+            found.values += _link_side(joint, loads, i)
+    if own:
+        found.notes.append(
+            f"{', '.join(own)}: torque constants do not show in this log; friction is given in the "
+            "drives' own N m, which is what compensates it."
+        )
     return found
 
 
-def _motor_side(arm: Arm, motion: Motion, all_loads: np.ndarray, i: int) -> MotorSide:
+def _motor_side(loads: Loads, i: int) -> MotorSide:
     """With the torque constant from the same log if it is certain, else that of robot.yaml."""
     try:
-        side = balance(arm, motion, all_loads, i)
+        side = balance(loads, i)
         if side.kappa_std <= KAPPA_STD:
             return side
     except PoorLogError:
         pass
-    return balance(arm, motion, all_loads, i, known=True)
+    return balance(loads, i, known=True)
+
+
+def _beats_robot_yaml(joint: JointBelief, side: MotorSide) -> bool:
+    """In parts of the recording that the fit has not seen. Raises PoorLogError if no friction would
+    do as well.
+    """
+    none = side.unseen()
+    found = _rms(side.unseen(COULOMB, VISCOUS, STRIBECK))
+    if not found < _rms(none):
+        raise PoorLogError(
+            f"no friction leaves {_rms(none):.3g} N m rms of held-out torques unexplained, the "
+            f"best law {found:.3g}: something else is at work; identify gravity first"
+        )
+    return found < _rms(none - _believed(joint, side.speed) / side.kappa)
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _believed(joint: JointBelief, speed: np.ndarray) -> np.ndarray:
+    """Friction of robot.yaml on both sides of the transmission in steady sliding, N m."""
+    total = np.zeros_like(speed)
+    for section in (SECTION, LINK_SECTION):
+        coulomb, viscous, static, stribeck = (
+            joint.believed(section, joint.key(key)) or 0.0
+            for key in (COULOMB_KEY, VISCOUS_KEY, STATIC_KEY, STRIBECK_KEY)
+        )
+        total += np.sign(speed) * coulomb + viscous * speed
+        if static > coulomb and stribeck > 0.0:
+            bell = np.exp(-((speed / stribeck) ** 2))
+            total += (static - coulomb) * np.sign(speed) * bell
+    return total
+
+
+def _warnings(side: MotorSide) -> list[str]:
+    """What the motion lacks."""
+    found = []
+    slow = np.count_nonzero(np.abs(side.speed) < SLOW)
+    if slow < LEAST_SLOW:
+        found.append(
+            f"only {slow} of {len(side.speed)} samples are slower than {SLOW:g} rad/s: Coulomb "
+            "friction is extrapolated from faster ones and may be a third too high; add a creep"
+        )
+    reversals = sum(a != b for a, b in pairwise(np.sign(side.speed)))
+    if reversals < LEAST_REVERSALS:
+        found.append(
+            f"it reverses {reversals} times: what depends on the pose may pass for friction; move "
+            "there and back through the same places"
+        )
+    return found
 
 
 def _values(joint: JointBelief, side: MotorSide, sensor: bool) -> list[Value]:
@@ -103,24 +171,29 @@ def _value(
     return Value(joint.name, f"{section}: {key}", unit, value, std, believed, path, proposed)
 
 
-def _link_side(
-    joint: JointBelief, motion: Motion, sensed: np.ndarray, model: np.ndarray, i: int
-) -> list[Value]:
-    """From tau = s model + F_c sign(v) + d v + o; nothing if it does not stand out."""
+def _link_side(joint: JointBelief, loads: Loads, i: int) -> list[Value]:
+    """From tau = s model + F_c sign(v) + d v + o with the model's likely errors; nothing if it does
+    not stand out.
+    """
+    motion = loads.motion
     rows = motion.moving[:, i]
-    speed = motion.v[rows, i]
-    A = np.stack([np.sign(speed), speed, model[rows, i], np.ones_like(speed)], axis=1)
-    if not np.ptp(model[rows, i]) > LEAST_LOAD:
-        A = np.delete(A, 2, axis=1)
+    speed, model = motion.v[rows, i], loads.model[rows, i]
+    columns = [np.sign(speed), speed, np.ones_like(speed)]
+    if np.ptp(model) > LEAST_LOAD:
+        columns.append(model)
+    errors = loads.errors_of_links(rows, i)
+    A = np.column_stack([*columns, errors])
+    unknowns = Unknowns.free(A.shape[1])
+    unknowns.low[:2], unknowns.prior[len(columns) :] = 0.0, 1.0
     try:
-        found = fit(A, sensed[rows, i], motion.block[rows])
+        found = fit(A, loads.torque[rows, i], motion.block[rows], unknowns)
     except PoorLogError:
         return []
     if not np.any(found.x[:2] > SURE * found.std[:2]):
         return []
     keys = ((COULOMB_KEY, "N m"), (VISCOUS_KEY, "N m s/rad"))
     return [
-        _value(joint, LINK_SECTION, joint.key(key), unit, x, std, max(float(x), 0.0))
+        _value(joint, LINK_SECTION, joint.key(key), unit, float(x), float(std), float(x))
         for (key, unit), x, std in zip(keys, found.x, found.std, strict=False)
     ]
 

@@ -1,87 +1,129 @@
 """The weight of the links from joint torques, compared with the URDF.
 
-From slow motions; `weights.py` has the estimate. Torque constants and the scale of torque sensors
-are taken as believed.
+`weights.py` has the estimate. Torque constants and the scale of torque sensors are taken as
+believed: the weights are in the drives' own N m, which is what holds the arm up.
 """
 
 import numpy as np
 
 from limber.identify.arm import Arm
+from limber.identify.doubt import Loads, prior_std
 from limber.identify.findings import Findings, Panel, Value
 from limber.identify.motion import Motion
-from limber.identify.motor_side import loads
-from limber.identify.weights import Weights, estimate, own_terms, prior_std, slow
+from limber.identify.regression import PoorLogError
+from limber.identify.weights import Weights, estimate, held_out, own_terms, problems
+from limber.model.dynamics import PARAMETERS, UPPER
 
 LEAST_NM = 0.1  # by which gravity's torque has to be able to change
 LEAST_BLOCKS = 10
+ENOUGH = 0.99  # of held-out squares: what else is proposed has to leave less
 
 
 def identify(arm: Arm, motion: Motion) -> Findings:
     found = Findings("weight of the links")
-    Y = arm.robot.dynamics.gravity_regressor(motion.q)
+    loads = Loads(arm, motion)
     used = []
     for i, joint in enumerate(arm.joints):
-        reason = _refusal(arm, motion, Y, i)
+        reason = _refusal(loads, i)
         if reason:
             found.refused[joint.name] = reason
         else:
             used.append(i)
     if not used:
         return found
-    excess = _excess(arm, motion)
-    weights = estimate(arm, motion, Y, excess, used)
+    excess = _excess(loads)
+    parts = problems(loads, excess, used)
+    try:
+        weights = estimate(loads, parts, used)
+        before, after = held_out(loads, parts, used, lambda change: _of_urdf(arm, change))
+    except PoorLogError as reason:
+        found.refused |= {arm.joints[i].name: str(reason) for i in used}
+        return found
     found.values = _values(arm, weights) + _offsets(arm, weights, used)
-    found.notes = _notes(arm, weights, used)
-    links = [changed_link(arm, weights, i) for i in range(arm.robot.dynamics.size)]
-    found.inertials = {link: (mass, com) for link, mass, com in links}
-    g = Y @ arm.robot.dynamics.parameters()
-    changed = g + Y @ weights.change
+    found.notes = _notes(arm, weights, used, before, after)
+    if np.sum((after / before) ** 2) < ENOUGH * len(used):
+        links = [changed_link(arm, weights.change, i) for i in range(arm.robot.dynamics.size)]
+        found.inertials = {link: (mass, com) for link, mass, com in links}
+    else:
+        found.notes.append("The URDF explains them as well: no other is proposed.")
+    change = loads.regressor @ weights.change
     for k, i in enumerate(used):
-        rows = slow(motion, i)
-        measured = (excess + g)[rows, i] - own_terms(motion, i) @ weights.own[k]
-        panel = _panel(arm.joints[i].name, measured, g[rows, i], changed[rows, i])
-        found.panels.append(panel)
+        rows = motion.moving[:, i]
+        measured = (excess + loads.model)[rows, i] - own_terms(loads, i) @ weights.own[k]
+        model = loads.model[rows, i]
+        found.panels.append(_panel(arm.joints[i].name, measured, model, model + change[rows, i]))
     return found
 
 
-def _notes(arm: Arm, weights: Weights, used: list[int]) -> list[str]:
-    fits = zip(used, weights.before, weights.after, strict=True)
+def _notes(
+    arm: Arm, weights: Weights, used: list[int], before: np.ndarray, after: np.ndarray
+) -> list[str]:
+    fits = zip(used, before, after, strict=True)
     return [
-        f"{weights.seen} combinations of masses and centres show in these torques. The change "
-        "proposed for the URDF is the least one that explains them; how it is spread over the "
-        "links is a choice, their gravity torque is not. Torque constants are taken as believed.",
-        "Unexplained, N m rms, before and after: "
+        f"{weights.seen} combinations of masses, centres and inertias show in these torques. The "
+        "change proposed for the URDF is the least one that explains them; how it is spread over "
+        "the links is a choice, their gravity torque is not. Torque constants are taken as "
+        "believed.",
+        "Unexplained of held-out torques, N m rms, before and after: "
         + ", ".join(f"{arm.joints[i].name} {was:.3g} {now:.3g}" for i, was, now in fits),
     ]
 
 
-def _refusal(arm: Arm, motion: Motion, Y: np.ndarray, i: int) -> str:
+def _refusal(loads: Loads, i: int) -> str:
+    arm, motion = loads.arm, loads.motion
     empty = [body.heaviest for body in arm.robot.dynamics.bodies if not body.mass > 0]
     if empty:
         return f"the URDF gives no mass to {', '.join(empty)}; give each a mass, however small"
-    rows = slow(motion, i)
+    rows = motion.moving[:, i]
     if arm.joints[i].two_motors:
         return "two motors pull at this joint"
-    if len(np.unique(motion.block[rows])) < LEAST_BLOCKS:
-        return "it moves too little"
-    swing = float(np.linalg.norm(np.ptp(Y[rows, i], axis=0) * prior_std(arm)))
+    blocks = len(np.unique(motion.block[rows]))
+    if blocks < LEAST_BLOCKS:
+        return (
+            f"it moves too little: in {np.count_nonzero(rows)} of {len(rows)} samples it moves one "
+            f"way for a while, {blocks} half seconds of {LEAST_BLOCKS} that are needed"
+        )
+    Y = arm.robot.dynamics.gravity_regressor(motion.q[rows])[:, i]
+    likely = prior_std(arm).reshape(-1, PARAMETERS)[:, :4].ravel()
+    swing = float(np.linalg.norm(np.ptp(Y, axis=0) * likely))
     if not swing > LEAST_NM:
         return f"likely errors of the URDF change its torque by only {swing:.2g} N m"
     return ""
 
 
-def _excess(arm: Arm, motion: Motion) -> np.ndarray:
+def _excess(loads: Loads) -> np.ndarray:
     """Sensed torque or, without a sensor, motor torque, less what model and rotor need."""
-    inertia = np.array([joint.rotor_inertia for joint in arm.joints])
+    motion = loads.motion
+    inertia = np.array([joint.rotor_inertia for joint in loads.arm.joints])
     driven = motion.motor - inertia * motion.theta_ddot
-    measured = np.where(motion.torque_sensor, loads(arm, motion), driven)
-    return measured - arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
+    return np.where(motion.torque_sensor, loads.torque, driven) - loads.model
 
 
-def changed_link(arm: Arm, weights: Weights, i: int) -> tuple[str, float, np.ndarray]:
+def _of_urdf(arm: Arm, change: np.ndarray) -> np.ndarray:
+    """The change of all parameters that other masses and centres of the heaviest links make, their
+    inertias about their centres left as they are.
+    """
+    found = np.zeros_like(change)
+    for i, body in enumerate(arm.robot.dynamics.bodies):
+        _, mass, com = changed_link(arm, change, i)
+        R, p = body.X_CH[:3, :3], body.X_CH[:3, 3]
+        old, new = R @ body.inertial.com + p, R @ com + p
+        part = found[PARAMETERS * i : PARAMETERS * (i + 1)]
+        part[0] = mass - body.inertial.mass
+        part[1:4] = mass * new - body.inertial.mass * old
+        part[4:] = (_about(mass, new) - _about(body.inertial.mass, old))[UPPER]
+    return found
+
+
+def _about(mass: float, p: np.ndarray) -> np.ndarray:
+    """Inertia of a point mass."""
+    return mass * (p @ p * np.eye(3) - np.outer(p, p))
+
+
+def changed_link(arm: Arm, change: np.ndarray, i: int) -> tuple[str, float, np.ndarray]:
     """The heaviest link of body i with the mass and centre (its own frame) it should have."""
     body = arm.robot.dynamics.bodies[i]
-    d_mass, d_moment = weights.change[4 * i], weights.change[4 * i + 1 : 4 * i + 4]
+    d_mass, d_moment = change[PARAMETERS * i], change[PARAMETERS * i + 1 : PARAMETERS * i + 4]
     R, p = body.X_CH[:3, :3], body.X_CH[:3, 3]
     mass = body.inertial.mass + d_mass
     moment = body.inertial.mass * (R @ body.inertial.com + p) + d_moment
@@ -90,18 +132,19 @@ def changed_link(arm: Arm, weights: Weights, i: int) -> tuple[str, float, np.nda
 
 def _values(arm: Arm, weights: Weights) -> list[Value]:
     values = []
-    std = np.sqrt(np.diag(weights.covariance))
     for i, body in enumerate(arm.robot.dynamics.bodies):
-        link, mass, com = changed_link(arm, weights, i)
-        name = arm.joints[i].name
-        believed = body.inertial.mass
-        values.append(Value(name, f"mass of {link}", "kg", mass, float(std[4 * i]), believed))
-        for axis, value, before, deviation in zip(
-            "xyz", com, body.inertial.com, std[4 * i + 1 : 4 * i + 4] / mass, strict=True
-        ):
-            values.append(
-                Value(name, f"centre of {link}, {axis}", "m", float(value), deviation, before)
-            )
+        link, mass, com = changed_link(arm, weights.change, i)
+        R, p = body.X_CH[:3, :3], body.X_CH[:3, 3]
+        four = slice(PARAMETERS * i, PARAMETERS * i + 4)
+        cov = weights.covariance[four, four]
+        slope = np.column_stack([-(com + R.T @ p), R.T]) / mass  # of the centre, by the four
+        name, believed = arm.joints[i].name, body.inertial.mass
+        std = float(np.sqrt(cov[0, 0]))
+        values.append(Value(name, f"mass of {link}", "kg", mass, std, believed))
+        spread = np.sqrt(np.diag(slope @ cov @ slope.T))
+        for axis, value, before, std in zip("xyz", com, body.inertial.com, spread, strict=True):
+            title = f"centre of {link}, {axis}"
+            values.append(Value(name, title, "m", float(value), float(std), before))
     return values
 
 
@@ -118,7 +161,7 @@ def _panel(name: str, measured: np.ndarray, before: np.ndarray, after: np.ndarra
     ends = np.array([after.min(), after.max()])
     return Panel(
         name,
-        "gravity torque with the change (N m)",
+        "torque of the model with the change (N m)",
         "torque less friction\nand offset (N m)",
         after,
         measured,

@@ -1,8 +1,7 @@
-"""What the joints did in recorded runs, smoothed, with speeds and accelerations.
+"""What the joints did in recordings, smoothed, with speeds and accelerations.
 
 Every channel passes the same zero-phase low-pass filter, so that what was linear between them stays
-so; speeds and accelerations are differences of filtered positions. Only stretches without gaps in
-which the drives were on count.
+so; speeds and accelerations are differences of filtered positions.
 """
 
 from dataclasses import dataclass, fields
@@ -12,29 +11,20 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import butter, sosfiltfilt
 
-from limber import messages
-from limber.errors import InputError
 from limber.identify.arm import Arm
-from limber.log.reader import Log
+from limber.identify.recording import Recording, read_logs
 
 CUTOFF_HZ = 10.0
 SAMPLES_HZ = 50.0
-STAND_S = 1.0  # from the drives being on until the arm rests on them alone
-EDGE_S = 0.3  # at the end: there the filter has no future
-LEAST_S = 2.0
-OLDEST = 3  # cycles that a lost reply may be bridged
-BLOCK_S = 0.5  # what is further apart than this counts as independent
+EDGE_S = 0.3  # at both ends: there the filter has no past or no future
+BLOCK_S = 0.5
 SLOWEST = 0.02  # rad/s or m/s: below it friction is on its way from stick to slip
 SETTLE_S = 0.1  # from rest until the filter has forgotten it
 
 
 @dataclass(frozen=True)
 class Motion:
-    """One row a sample, one column a joint; SI at the joint.
-
-    `motor` is the motor's torque as the drive believes it, from its command or, behind a torque
-    loop, from its current; `tau` what the torque sensors read, zero without them.
-    """
+    """One row a sample, one column a joint; SI at the joint; `motor` and `tau` as in Recording."""
 
     q: np.ndarray
     v: np.ndarray
@@ -42,7 +32,7 @@ class Motion:
     theta: np.ndarray
     theta_dot: np.ndarray
     theta_ddot: np.ndarray
-    preload: np.ndarray  # of two motors; theta is their equilibrium
+    preload: np.ndarray
     motor: np.ndarray
     tau: np.ndarray
     moving: np.ndarray  # bool: the motor turns, and has for a while
@@ -53,15 +43,14 @@ class Motion:
 
 def read_motion(paths: list[Path], arm: Arm) -> Motion:
     """Throws InputError if there is no stretch to use."""
+    return motion_of(read_logs(paths, arm))
+
+
+def motion_of(recordings: list[Recording]) -> Motion:
     stretches: list[Motion] = []
-    for path in paths:
-        for state in _stretches(Log(path)):
-            first = 1 + int(stretches[-1].block[-1]) if stretches else 0
-            stretches.append(_smooth(state, arm, first))
-    if not stretches:
-        raise InputError(
-            f"the drives are never on for {LEAST_S:g} s without a gap: is this the log of a run?"
-        )
+    for recording in recordings:
+        first = 1 + int(stretches[-1].block[-1]) if stretches else 0
+        stretches.append(_smooth(recording, first))
     joined = {}
     for field in fields(Motion):
         parts = [getattr(stretch, field.name) for stretch in stretches]
@@ -70,32 +59,12 @@ def read_motion(paths: list[Path], arm: Arm) -> Motion:
     return Motion(**joined)
 
 
-def _stretches(log: Log) -> list[np.ndarray]:
-    state = log.read("JOINT_STATE")
-    if not len(state):
-        raise InputError(f"{log.path} holds no JOINT_STATE")
-    flags = messages.message_class("joint_state_t")
-    n = int(state["num_joints"].max())
-    enabled = state["joint_flags"][:, :n] & flags.JOINT_ENABLED != 0
-    fresh = state["age_cycles"][:, :n] <= OLDEST
-    good = (state["drive_state"] == flags.DRIVE_ON) & np.all(enabled & fresh, axis=1)
-    broken = (np.diff(state["seq"]) != 1) | (np.diff(good.astype(int)) != 0)
-    parts = np.split(np.arange(len(state)), np.flatnonzero(broken) + 1)
-    least = LEAST_S * 1e9 / max(int(state["period_ns"][0]), 1)
-    return [state[part] for part in parts if good[part[0]] and len(part) >= least]
-
-
-def _smooth(state: np.ndarray, arm: Arm, first_block: int) -> Motion:
-    n = len(arm.joints)
-    if int(state["num_joints"][0]) != n:
-        raise InputError(
-            f"the log has {state['num_joints'][0]} joints, {arm.robot.name} has {n}: "
-            "give the arm of the run with --robot"
-        )
-    rate = 1e9 / float(state["period_ns"][0])
-    sos = butter(4, CUTOFF_HZ, fs=rate, output="sos")
+def _smooth(recording: Recording, first_block: int) -> Motion:
+    rate = recording.rate_hz
+    sos = butter(4, min(CUTOFF_HZ, rate / 5.0), fs=rate, output="sos")
     every = max(round(rate / SAMPLES_HZ), 1)
-    keep = slice(int(STAND_S * rate), len(state) - int(EDGE_S * rate), every)
+    start_s = max(recording.settled_s, EDGE_S)
+    keep = slice(int(start_s * rate), len(recording.q) - int(EDGE_S * rate), every)
 
     def smooth(values: np.ndarray) -> np.ndarray:
         return sosfiltfilt(sos, np.asarray(values, float), axis=0)
@@ -105,11 +74,9 @@ def _smooth(state: np.ndarray, arm: Arm, first_block: int) -> Motion:
         speed = np.gradient(position, 1.0 / rate, axis=0)
         return position[keep], speed[keep], np.gradient(speed, 1.0 / rate, axis=0)[keep]
 
-    q, v, a = speeds(state["q"][:, :n])
-    theta, theta_dot, theta_ddot = speeds(state["theta"][:, :n])
-    time_s = (state["time_ns"] - state["time_ns"][0])[keep] * 1e-9
-    flags = messages.message_class("joint_state_t")
-    bits = np.bitwise_and.reduce(state["joint_flags"][:, :n], axis=0)
+    q, v, a = speeds(recording.q)
+    theta, theta_dot, theta_ddot = speeds(recording.theta)
+    time_s = np.arange(len(recording.q))[keep] / rate
     return Motion(
         q=q,
         v=v,
@@ -117,24 +84,14 @@ def _smooth(state: np.ndarray, arm: Arm, first_block: int) -> Motion:
         theta=theta,
         theta_dot=theta_dot,
         theta_ddot=theta_ddot,
-        preload=smooth(state["preload"][:, :n])[keep],
-        motor=smooth(_motor_torque(state, arm))[keep],
-        tau=smooth(state["tau"][:, :n])[keep],
+        preload=smooth(recording.preload)[keep],
+        motor=smooth(recording.motor)[keep],
+        tau=smooth(recording.tau)[keep],
         moving=_moving(theta_dot, rate / every),
         block=first_block + (time_s // BLOCK_S).astype(int),
-        torque_sensor=bits & flags.JOINT_TORQUE_SENSOR != 0,
-        link_encoder=bits & flags.JOINT_LINK_ENCODER != 0,
+        torque_sensor=recording.torque_sensor,
+        link_encoder=recording.link_encoder,
     )
-
-
-def _motor_torque(state: np.ndarray, arm: Arm) -> np.ndarray:
-    columns = [
-        state["current_A"][:, i] * joint.torque_constant
-        if joint.torque_loop
-        else state["tau_applied"][:, i]
-        for i, joint in enumerate(arm.joints)
-    ]
-    return np.stack(columns, axis=1)
 
 
 def _moving(speed: np.ndarray, rate: float) -> np.ndarray:

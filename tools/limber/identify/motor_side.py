@@ -3,7 +3,8 @@
     tau_motor = (load + B theta'' + F_c sign(theta') + d theta') / kappa + offset
 
 tau_motor is what the drive believes it makes, kappa = true / believed torque constant, load what
-the joint's torque sensor reads, or without one what the model of a free arm needs at (q, v, a).
+the joint's torque sensor reads, or without one what the model of a free arm needs at (q, v, a);
+the likely errors of that model are further unknowns (`doubt.py`).
 Over motions in both directions through the same places friction and load stand apart
 (Swevers, Verdonck, De Schutter, "Dynamic model identification for industrial robots", 2007).
 """
@@ -13,96 +14,126 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from limber.identify.arm import Arm
-from limber.identify.motion import Motion
-from limber.identify.regression import Fit, PoorLogError, fit
+from limber.identify.doubt import Loads
+from limber.identify.regression import Fit, PoorLogError, Unknowns, fit, held_out, unexplained
 
 LOAD, COULOMB, VISCOUS, OFFSET, STRIBECK, STRIBECK_SPEED = range(6)
+KAPPA_LOW, KAPPA_HIGH = 0.4, 2.5  # a drive that is further off is another drive
 SURE = 4.0  # standard errors
 HIGHEST_STRIBECK = 0.3  # rad/s or m/s
+EDGE = 0.02  # of the range of Stribeck speeds, logarithmic: there nothing was found
 LEAST_SLOW = 50  # samples below half the Stribeck speed: without them it is extrapolated
 LESS = 0.98  # of what is unexplained without it
+RISE_SHARE, RISE_SPEED = (
+    0.3,
+    0.1,
+)  # breakaway over Coulomb, and at which rad/s, where it is not seen
 
 
 @dataclass(frozen=True)
 class MotorSide:
-    """Coefficients in the order of the constants above; rows are the samples that count."""
+    """Coefficients in the order of the constants above, then errors of the model; rows are the
+    samples that count. `known`: kappa is taken as 1, exactly.
+    """
 
     fit: Fit
     load: np.ndarray  # with the rotor's inertia
     motor: np.ndarray
     speed: np.ndarray
     block: np.ndarray
+    errors: np.ndarray
+    known: bool
     stribeck_speed: float | None = None  # None: not seen
 
     @property
     def kappa(self) -> float:
         return float(1.0 / self.fit.x[LOAD])
 
+    @property
+    def kappa_std(self) -> float:
+        return float(self.fit.std[LOAD] * self.kappa**2)
+
     def friction(self, speed: np.ndarray) -> np.ndarray:
-        """In steady sliding, true N m."""
+        """In steady sliding, N m; true ones as far as kappa is."""
         x, sign = self.fit.x, np.sign(speed)
         believed = x[COULOMB] * sign + x[VISCOUS] * speed
         if self.stribeck_speed is not None:
             believed += x[STRIBECK] * sign * np.exp(-((speed / self.stribeck_speed) ** 2))
         return self.kappa * believed
 
-    @property
-    def kappa_std(self) -> float:
-        return float(self.fit.std[LOAD] * self.kappa**2)
+    def unseen(self, *laws: int) -> np.ndarray:
+        """What load, offset and these terms leave of the motor's torque, each sample by a fit to
+        other parts of the recording; without what was found to be wrong with the model.
+        """
+        A, y, unknowns = _problem(self, self.stribeck_speed)
+        terms = np.arange(A.shape[1]) + self.known
+        return held_out(A, y, self.block, unknowns, np.isin(terms, [LOAD, OFFSET, *laws]))
 
 
-def loads(arm: Arm, motion: Motion) -> np.ndarray:
-    """Torque behind each gear, N x n: sensed where there is a sensor, else by the model."""
-    model = arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
-    return np.where(motion.torque_sensor, sensed(arm, motion), model)
-
-
-def sensed(arm: Arm, motion: Motion) -> np.ndarray:
-    """What springs and, as far as robot.yaml knows them, dampers pass on to the links, N x n.
-
-    A torque sensor feels the spring; the damper beside it adds D_J (theta' - q').
-    """
-    damping = [
-        joint.believed("transmission", joint.key("damping_Nms_per_rad")) or 0.0
-        for joint in arm.joints
-    ]
-    return motion.tau + np.array(damping) * (motion.theta_dot - motion.v)
-
-
-def balance(arm: Arm, motion: Motion, loads: np.ndarray, i: int, known: bool = False) -> MotorSide:
+def balance(loads: Loads, i: int, known: bool = False) -> MotorSide:
     """Of joint i. `known`: take the torque constant as it is believed. Raises PoorLogError."""
-    joint, rows = arm.joints[i], motion.moving[:, i]
+    joint, motion = loads.arm.joints[i], loads.motion
+    rows = motion.moving[:, i]
     if joint.two_motors:
         raise PoorLogError("two motors pull at this joint: only one motor's balance is read")
     if not rows.any():
         raise PoorLogError("it does not move")
-    load = (loads[:, i] + joint.rotor_inertia * motion.theta_ddot[:, i])[rows]
-    speed, motor, block = motion.theta_dot[rows, i], motion.motor[rows, i], motion.block[rows]
+    load = (loads.torque[:, i] + joint.rotor_inertia * motion.theta_ddot[:, i])[rows]
+    speed = motion.theta_dot[rows, i]
     if not speed.min() < 0.0 < speed.max():
         raise PoorLogError("it moves in one direction only")
-    fitted = _fit(load, motor, [np.sign(speed), speed, np.ones_like(speed)], block, known)
-    return _with_stribeck(MotorSide(fitted, load, motor, speed, block), known)
+    nothing = Fit(np.zeros(0), np.zeros((0, 0)), np.zeros(0))
+    side = MotorSide(
+        nothing,
+        load,
+        motion.motor[rows, i],
+        speed,
+        motion.block[rows],
+        loads.errors(rows, i),
+        known,
+    )
+    return _with_stribeck(replace(side, fit=_fit(side, None)))
 
 
-def _fit(
-    load: np.ndarray,
-    motor: np.ndarray,
-    columns: list[np.ndarray],
-    block: np.ndarray,
-    known: bool,
-) -> Fit:
-    """`known`: as if kappa were 1, exactly."""
-    others = np.stack(columns, axis=1)
-    if not known:
-        return fit(np.column_stack([load, others]), motor, block)
-    rest = fit(others, motor - load, block)
-    covariance = np.zeros((len(rest.x) + 1, len(rest.x) + 1))
-    covariance[1:, 1:] = rest.covariance
-    return Fit(np.concatenate([[1.0], rest.x]), covariance, rest.residual, rest.blocks)
+def _columns(side: MotorSide, speed: float | None, rise: float | None = None) -> np.ndarray:
+    """With `rise` the derivative by the Stribeck speed is a column, too: its standard error comes
+    out.
+    """
+    sign = np.sign(side.speed)
+    columns = [side.load, sign, side.speed, np.ones_like(sign)]
+    if speed is not None:
+        bell = sign * np.exp(-((side.speed / speed) ** 2))
+        columns.append(bell)
+        if rise is not None:
+            columns.append(rise * bell * 2.0 * side.speed**2 / speed**3)
+    return np.column_stack([*columns, side.errors])
 
 
-def _with_stribeck(side: MotorSide, known: bool) -> MotorSide:
+def _problem(
+    side: MotorSide, speed: float | None, rise: float | None = None
+) -> tuple[np.ndarray, np.ndarray, Unknowns]:
+    """A x = y and what is allowed: friction does not drive, errors of the model have priors."""
+    A, y = _columns(side, speed, rise), side.motor
+    found = Unknowns.free(A.shape[1])
+    found.prior[A.shape[1] - side.errors.shape[1] :] = 1.0
+    found.low[LOAD], found.high[LOAD] = 1.0 / KAPPA_HIGH, 1.0 / KAPPA_LOW
+    found.low[[COULOMB, VISCOUS] + ([] if speed is None else [STRIBECK])] = 0.0
+    if side.known:
+        A, y = A[:, 1:], y - side.load
+        found = Unknowns(found.prior[1:], found.low[1:], found.high[1:])
+    return A, y, found
+
+
+def _fit(side: MotorSide, speed: float | None, rise: float | None = None) -> Fit:
+    A, y, unknowns = _problem(side, speed, rise)
+    found = fit(A, y, side.block, unknowns)
+    if not side.known:
+        return found
+    covariance = np.pad(found.covariance, ((1, 0), (1, 0)))
+    return replace(found, x=np.concatenate([[1.0], found.x]), covariance=covariance)
+
+
+def _with_stribeck(side: MotorSide) -> MotorSide:
     """Adds (F_s - F_c) exp(-(theta'/v_s)²) sign(theta') if it is there beyond doubt.
 
     Steady sliding of the bristle model (Canudas de Wit, Olsson, Astrom, Lischinsky, "A new model
@@ -111,31 +142,43 @@ def _with_stribeck(side: MotorSide, known: bool) -> MotorSide:
     slow = np.sort(np.abs(side.speed))
     lowest = 2.0 * slow[min(LEAST_SLOW, len(slow) - 1)]
     if not lowest < HIGHEST_STRIBECK:
-        return side
+        return _with_doubt(side)
 
-    def unexplained(log_speed: float) -> float:
+    def left(log_speed: float) -> float:
+        A, y, unknowns = _problem(side, float(np.exp(log_speed)))
         try:
-            return _stribeck_fit(side, float(np.exp(log_speed)), known).rms
+            return unexplained(A, y, side.block, unknowns)
         except PoorLogError:
             return np.inf
 
-    bounds = (np.log(lowest), np.log(HIGHEST_STRIBECK))
-    speed = float(np.exp(minimize_scalar(unexplained, bounds=bounds, method="bounded").x))
+    low, high = np.log(lowest), np.log(HIGHEST_STRIBECK)
+    log_speed = float(minimize_scalar(left, bounds=(low, high), method="bounded").x)
+    if not EDGE < (log_speed - low) / (high - low) < 1.0 - EDGE:
+        return _with_doubt(side)
+    speed = float(np.exp(log_speed))
     try:
-        coarse = _stribeck_fit(side, speed, known)
-        found = _stribeck_fit(side, speed, known, float(coarse.x[STRIBECK]))
+        coarse = _fit(side, speed)
+        found = replace(side, fit=_fit(side, speed, float(coarse.x[STRIBECK])))
     except PoorLogError:
-        return side
-    sure = found.x[STRIBECK] > SURE * found.std[STRIBECK] and found.std[STRIBECK_SPEED] < speed / 2
-    if not sure or found.rms > LESS * side.fit.rms:
-        return side
-    return replace(side, fit=found, stribeck_speed=speed)
+        return _with_doubt(side)
+    found = replace(found, stribeck_speed=speed)
+    rise, std = found.fit.x[STRIBECK], found.fit.std
+    sure = rise > SURE * std[STRIBECK] and std[STRIBECK_SPEED] < speed / 2
+    if not sure or not _smaller(found, side):
+        return _with_doubt(side)
+    return found
 
 
-def _stribeck_fit(side: MotorSide, speed: float, known: bool, rise: float | None = None) -> Fit:
-    """With `rise` the derivative by the speed is a column, too: its standard error comes out."""
-    sign, bell = np.sign(side.speed), np.exp(-((side.speed / speed) ** 2))
-    columns = [sign, side.speed, np.ones_like(sign), sign * bell]
-    if rise is not None:
-        columns.append(rise * sign * bell * 2.0 * side.speed**2 / speed**3)
-    return _fit(side.load, side.motor, columns, side.block, known)
+def _with_doubt(side: MotorSide) -> MotorSide:
+    """A usual rise towards breakaway, where none shows, is one more thing that may be wrong."""
+    rise = RISE_SHARE * side.fit.x[COULOMB] * np.sign(side.speed)
+    bell = rise * np.exp(-((side.speed / RISE_SPEED) ** 2))
+    doubted = replace(side, errors=np.column_stack([side.errors, bell]))
+    return replace(doubted, fit=_fit(doubted, None))
+
+
+def _smaller(found: MotorSide, side: MotorSide) -> bool:
+    """Whether the Stribeck term makes held-out residuals smaller."""
+    everything = [COULOMB, VISCOUS, *range(STRIBECK, STRIBECK + 1 + side.errors.shape[1])]
+    with_it, without = found.unseen(*everything), side.unseen(*everything)
+    return float(np.std(with_it)) < LESS * float(np.std(without))

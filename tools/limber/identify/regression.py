@@ -1,19 +1,31 @@
-"""Least squares with standard errors that hold when neighbouring samples err together.
+"""Bounded least squares with priors; standard errors and held-out residuals from blocks of time.
 
-Friction, cogging and model errors change slowly against the sampling, so samples are no independent
-witnesses. Whole blocks of time are: the covariance of the estimate is the cluster-robust one,
+    minimise |y - A x|² / (s² T) + sum (x_j / prior_j)²   within  low <= x <= high
 
-    (AᵀA)⁻¹ (Σ_b A_bᵀ r_b r_bᵀ A_b) (AᵀA)⁻¹ · G / (G - p)
+s² is the variance of the residual; T samples in a row count as one, because friction, cogging and
+model errors change slowly against the sampling. The covariance is that of the delete-one-block
+jackknife (Efron, Stein, "The jackknife estimate of variance", 1981), its blocks as long as makes it
+largest, and of what the priors leave open:
 
-(Liang, Zeger, "Longitudinal data analysis using generalized linear models", 1986), with G blocks
-and p unknowns.
+    cov x = (G - 1)/G sum_b d_b d_bᵀ + H⁻¹ P H⁻¹,   d_b = (H - A_bᵀ A_b/(s² T))⁻¹ A_bᵀ r_b/(s² T)
+
+with H the Hessian, P the part of the priors, r_b the residual of block b of G.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import cho_factor, cholesky, solve_triangular
+from scipy.linalg import cho_solve as solve_factored
+from scipy.optimize import lsq_linear
 
 WORST_CONDITION = 1000.0
+FLOOR = 1e-4  # no torque is known better, N m; no deflection matters below it, either
+ROUNDS = 3
+JOINED = (1, 2, 4, 8)  # blocks that may err together
+LEAST_BLOCKS = 10
+FOLDS = 5
 
 
 class PoorLogError(Exception):
@@ -25,7 +37,12 @@ class Fit:
     x: np.ndarray
     covariance: np.ndarray
     residual: np.ndarray
-    blocks: int
+    weight: float = 0.0
+    hessian: np.ndarray | None = None
+
+    def response(self, A: np.ndarray, dy: np.ndarray) -> np.ndarray:
+        """How x moves if these rows of the right side move."""
+        return np.linalg.solve(self.hessian, self.weight * A.T @ dy)
 
     @property
     def std(self) -> np.ndarray:
@@ -36,21 +53,142 @@ class Fit:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
-def fit(A: np.ndarray, y: np.ndarray, block: np.ndarray) -> Fit:
-    """Raises PoorLogError if columns of A are nearly dependent or blocks are too few."""
-    groups = np.unique(block)
-    unknowns = A.shape[1]
-    if len(groups) < 2 * unknowns + 2:
-        raise PoorLogError(f"too little motion: {len(groups)} half seconds that count")
+@dataclass(frozen=True)
+class Unknowns:
+    """Of a fit, one entry each: how far from 0 they are likely to be, and what is allowed."""
+
+    prior: np.ndarray  # inf: nothing is known
+    low: np.ndarray
+    high: np.ndarray
+
+    @classmethod
+    def free(cls, count: int) -> "Unknowns":
+        return cls(np.full(count, np.inf), np.full(count, -np.inf), np.full(count, np.inf))
+
+
+def fit(
+    A: np.ndarray,
+    y: np.ndarray,
+    block: np.ndarray,
+    unknowns: Unknowns | None = None,
+    together: float | None = None,
+) -> Fit:
+    """`together`: how many samples count as one; default: those of a block. Raises PoorLogError if
+    columns of A are nearly dependent or blocks are too few.
+    """
+    unknowns = unknowns or Unknowns.free(A.shape[1])
+    flat = np.isinf(unknowns.prior)
+    blocks = len(np.unique(block))
+    if blocks < 2 * np.count_nonzero(flat) + 2:
+        raise PoorLogError(f"too little motion: {blocks} half seconds that count")
+    _require_different(A[:, flat])
+    x, weight, H = solve(A, y, together or len(y) / blocks, unknowns)
+    residual = y - A @ x
+    covariance = _covariance(A, residual, block, weight, H, unknowns.prior)
+    return Fit(x, covariance, residual, weight, H)
+
+
+def unexplained(A: np.ndarray, y: np.ndarray, block: np.ndarray, unknowns: Unknowns) -> float:
+    """rms."""
+    x, _, _ = solve(A, y, len(y) / len(np.unique(block)), unknowns)
+    return float(np.sqrt(np.mean((y - A @ x) ** 2)))
+
+
+def held_out(
+    A: np.ndarray, y: np.ndarray, block: np.ndarray, unknowns: Unknowns, shown: np.ndarray
+) -> np.ndarray:
+    """What is left of y by the columns `shown`, each sample by a fit that has not seen its part of
+    the recording.
+    """
+    left = np.empty(len(y))
+    for out in folds(block):
+        seen = ~out
+        together = np.count_nonzero(seen) / len(np.unique(block[seen]))
+        x, _, _ = solve(A[seen], y[seen], together, unknowns)
+        left[out] = y[out] - A[out][:, shown] @ x[shown]
+    return left
+
+
+def folds(block: np.ndarray) -> Iterator[np.ndarray]:
+    """Rows of each of FOLDS parts of the recording, one after the other in time."""
+    for part in np.array_split(np.unique(block), FOLDS):
+        yield np.isin(block, part)
+
+
+def _require_different(A: np.ndarray) -> None:
     scale = np.linalg.norm(A, axis=0)
     if not np.all(scale > 0) or not np.linalg.cond(A / scale) <= WORST_CONDITION:
         raise PoorLogError("the motion is too uniform to separate the unknowns")
-    normal = np.linalg.inv((A / scale).T @ (A / scale)) / np.outer(scale, scale)
-    x = np.linalg.lstsq(A / scale, y, rcond=None)[0] / scale
-    residual = y - A @ x
-    scores = np.array([A[block == group].T @ residual[block == group] for group in groups])
-    meat = scores.T @ scores * len(groups) / (len(groups) - unknowns)
-    return Fit(x, normal @ meat @ normal, residual, len(groups))
+
+
+def solve(
+    A: np.ndarray, y: np.ndarray, together: float, unknowns: Unknowns
+) -> tuple[np.ndarray, float, np.ndarray]:
+    """Estimate, 1/(s² T) and H; s follows from what stays unexplained. `together`: T."""
+    x = np.zeros(A.shape[1])
+    gram, moment = A.T @ A, A.T @ y
+    prior = np.diag(unknowns.prior**-2.0)
+    sigma = max(float(np.std(y)), FLOOR)
+    for _ in range(ROUNDS):
+        weight = 1.0 / (together * sigma**2)
+        H = weight * gram + prior
+        x = bounded(H, weight * moment, unknowns.low, unknowns.high)
+        sigma = max(float(np.sqrt(np.mean((y - A @ x) ** 2))), FLOOR)
+    return x, weight, H
+
+
+def bounded(H: np.ndarray, h: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """The x within bounds that minimises xᵀ H x / 2 - hᵀ x."""
+    scale = np.sqrt(np.diag(H))
+    try:
+        R = cholesky(H / np.outer(scale, scale))
+    except np.linalg.LinAlgError as error:
+        raise PoorLogError("the motion is too uniform to separate the unknowns") from error
+    target = solve_triangular(R, h / scale, trans="T")
+    x = solve_triangular(R, target)
+    if np.any(x < low * scale) or np.any(x > high * scale):
+        x = lsq_linear(R, target, (low * scale, high * scale), method="bvls").x
+    return x / scale
+
+
+def _covariance(
+    A: np.ndarray,
+    residual: np.ndarray,
+    block: np.ndarray,
+    weight: float,
+    H: np.ndarray,
+    prior: np.ndarray,
+) -> np.ndarray:
+    inverse = np.linalg.inv(H)
+    found = [_jackknife(A, residual, block // length, weight, H) for length in JOINED]
+    found = [cov for cov in found if cov is not None]
+    if not found:
+        raise PoorLogError("too little motion: its parts cannot be compared with each other")
+    scale = np.sqrt(np.diag(inverse))
+    largest = max(found, key=lambda cov: float(np.sum(np.diag(cov) / scale**2)))
+    return largest + inverse @ np.diag(prior**-2.0) @ inverse
+
+
+def _jackknife(
+    A: np.ndarray, residual: np.ndarray, group: np.ndarray, weight: float, H: np.ndarray
+) -> np.ndarray | None:
+    """None if there are too few groups, or one of them alone shows an unknown."""
+    order = np.argsort(group, kind="stable")
+    A, residual, group = A[order], residual[order], group[order]
+    starts = np.flatnonzero(np.diff(group, prepend=group[0] - 1))
+    count = len(starts)
+    if count < LEAST_BLOCKS:
+        return None
+    steps = []
+    for rows in np.split(np.arange(len(group)), starts[1:]):
+        part = A[rows]
+        try:
+            factor = cho_factor(H - weight * part.T @ part)
+        except np.linalg.LinAlgError:
+            return None
+        steps.append(solve_factored(factor, weight * part.T @ residual[rows]))
+    d = np.array(steps)
+    return (count - 1) / count * d.T @ d
 
 
 def ratio(fitted: Fit, above: tuple[int, ...], below: int) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from limber import messages
 from limber.errors import InputError
-from limber.identify.motion import STAND_S
+from limber.identify.recording import STAND_S
 from limber.log.reader import Log
 from limber.model.dynamics import ArmDynamics
 

@@ -1,11 +1,12 @@
 """Stiffness of joint springs: how far the motor is ahead of the link for the torque between them.
 
-    theta - q = tau / K_J + offset
+    theta - q = tau / K_J + T (q' + T q''/2) + offset
 
-tau is what the joint's torque sensor reads or, without one, what the model of a free arm needs. The
-deflection is fitted to the torque and not the other way round, because a sensor whose counts are
-coarse against the deflection then biases nothing. For two motors with quadratic springs, preload c
-and equilibrium e, likewise 2 c (e - q) = tau / k2 + offset, both tendons taut.
+T is by how much the link's encoder answers later than the motor's, tau what the joint's torque
+sensor reads or, without one, what the model of a free arm needs. The deflection is fitted to the
+torque and not the other way round, because a sensor whose counts are coarse against the deflection
+then biases nothing. For two motors with quadratic springs, preload c and equilibrium e, likewise
+2 c (e - q) = tau / k2 + T q' + offset, both tendons taut.
 """
 
 import numpy as np
@@ -16,6 +17,9 @@ from limber.identify.motion import Motion
 from limber.identify.regression import Fit, PoorLogError, fit
 
 WORST_STD = 0.1  # of the stiffness
+DELAY = 2  # which unknown
+SURE = 4.0  # standard errors
+LEAST_DELAY_S = 1e-5
 LAWS = {"elastic": "linear", "antagonistic": "quadratic"}
 KEYS = {"elastic": "stiffness_Nm_per_rad", "antagonistic": "k2_Nm_per_rad2"}
 
@@ -34,7 +38,7 @@ def identify(arm: Arm, motion: Motion) -> Findings:
             found.refused[joint.name] = str(reason)
             continue
         value = _value(joint, key, fitted)
-        found.values.append(value)
+        found.values += [value, *_delay(joint, fitted)]
         found.panels.append(_panel(joint, tau, bend, fitted, value.believed))
     if found.values and not motion.torque_sensor.all():
         found.notes.append(AGAINST_URDF)
@@ -62,6 +66,8 @@ def _bend(joint: JointBelief, motion: Motion, i: int) -> np.ndarray:
 
 def _fit(motion: Motion, tau: np.ndarray, bend: np.ndarray, i: int, sensed: bool) -> Fit:
     columns, block = [tau, np.ones_like(tau)], motion.block
+    if motion.moving[:, i].any():
+        columns.append(_travel(motion, columns, bend, i))
     if not sensed:  # friction of the link takes part of the torque, by direction
         rows = motion.moving[:, i]
         columns = [column[rows] for column in [*columns, np.sign(motion.v[:, i])]]
@@ -77,6 +83,13 @@ def _fit(motion: Motion, tau: np.ndarray, bend: np.ndarray, i: int, sensed: bool
     return fitted
 
 
+def _travel(motion: Motion, columns: list[np.ndarray], bend: np.ndarray, i: int) -> np.ndarray:
+    """How far the link goes during a delay, per second of it, to second order."""
+    v = motion.v[:, i]
+    first = fit(np.column_stack([*columns, v]), bend, motion.block)
+    return v + first.x[DELAY] / 2.0 * motion.a[:, i]
+
+
 def _value(joint: JointBelief, key: str, fitted: Fit) -> Value:
     stiffness = float(1.0 / fitted.x[0])
     path = ("joints", joint.name, "transmission", "spring", key)
@@ -85,6 +98,16 @@ def _value(joint: JointBelief, key: str, fitted: Fit) -> Value:
     unit = "N/m" if joint.prismatic else "N m/rad"
     unit += "²" if joint.two_motors else ""
     return Value(joint.name, key, unit, stiffness, std, believed, path, stiffness)
+
+
+def _delay(joint: JointBelief, fitted: Fit) -> list[Value]:
+    """Of the link's encoder against the motor's, if it stands out; of two motors it is not told."""
+    if joint.two_motors or len(fitted.x) <= DELAY:
+        return []
+    delay, std = float(fitted.x[DELAY]), float(fitted.std[DELAY])
+    if not abs(delay) > max(SURE * std, LEAST_DELAY_S):
+        return []
+    return [Value(joint.name, "link encoder later than motor's", "s", delay, std)]
 
 
 def _panel(

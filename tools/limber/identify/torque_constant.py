@@ -2,6 +2,7 @@
 
 From the balance of torques at the motor (`motor_side.py`) over slow motions up and down: kappa is
 the slope of load over believed torque, friction is separated from it by the direction of motion.
+Without a torque sensor the load is what the URDF's links weigh: kappa is no better known than they.
 """
 
 from collections import defaultdict
@@ -9,25 +10,38 @@ from collections import defaultdict
 import numpy as np
 
 from limber.identify.arm import Arm
+from limber.identify.doubt import MASS_SHARE, Loads
 from limber.identify.findings import AGAINST_URDF, Findings, Panel, Value
 from limber.identify.motion import Motion
-from limber.identify.motor_side import OFFSET, MotorSide, balance, loads
+from limber.identify.motor_side import (
+    COULOMB,
+    KAPPA_HIGH,
+    KAPPA_LOW,
+    OFFSET,
+    STRIBECK,
+    VISCOUS,
+    MotorSide,
+    balance,
+)
 from limber.identify.regression import PoorLogError
 
 WORST_STD = 0.05  # of kappa
 LEAST_NM = 0.3  # by which the load has to change
+CONTRADICTED = 0.8  # of what is unexplained, if other weights are allowed
 APART, APART_SHARE = 3.0, 0.02  # standard errors, and share, by which joints may differ
 KEY = "rotor_torque_constant_Nm_per_A"
 
 
-def identify(arm: Arm, motion: Motion) -> Findings:
+def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Findings:
+    """`weights_share`: how well the URDF's masses are known; None: as CAD usually is."""
     found = Findings("torque constant")
     sides: dict[int, MotorSide] = {}
-    all_loads = loads(arm, motion)
+    loads = Loads(arm, motion, MASS_SHARE if weights_share is None else weights_share)
     for i, joint in enumerate(arm.joints):
         try:
-            side = balance(arm, motion, all_loads, i)
-            _require_load(side)
+            side = balance(loads, i)
+            _require_load(loads, side, i)
+            _require_certainty(loads, side, i)
         except PoorLogError as reason:
             found.refused[joint.name] = str(reason)
             continue
@@ -45,13 +59,65 @@ def identify(arm: Arm, motion: Motion) -> Findings:
     return found
 
 
-def _require_load(side: MotorSide) -> None:
-    span = float(np.ptp(side.load))
+def _require_load(loads: Loads, side: MotorSide, i: int) -> None:
+    """Gravity or a sensor has to show it: inertias of a URDF are no scale."""
     cure = "move it where gravity pulls more, or hang a known weight on"
+    rows = loads.motion.moving[:, i]
+    if loads.motion.torque_sensor[i]:
+        span = float(np.ptp(side.load))
+        if not span > LEAST_NM:
+            raise PoorLogError(f"its load changes by only {span:.2g} N m; {cure}")
+        return
+    span = float(np.ptp(loads.gravity[rows, i]))
     if not span > LEAST_NM:
-        raise PoorLogError(f"its load changes by only {span:.2g} N m; {cure}")
-    if not side.kappa_std <= WORST_STD:
-        raise PoorLogError(f"the result would be uncertain by {side.kappa_std:.0%}; {cure}")
+        raise PoorLogError(
+            f"gravity changes its load by only {span:.2g} N m, and the rest is inertia, of which "
+            f"the URDF is no witness; {cure}"
+        )
+
+
+def _require_certainty(loads: Loads, side: MotorSide, i: int) -> None:
+    if (
+        not KAPPA_LOW < side.kappa < KAPPA_HIGH
+        or np.isclose(side.kappa, (KAPPA_LOW, KAPPA_HIGH), rtol=1e-6).any()
+    ):
+        raise PoorLogError(
+            f"its torque is not that of its load times {KAPPA_LOW:g} to {KAPPA_HIGH:g}: "
+            "check sign and gear ratio, and identify gravity first"
+        )
+    if not loads.motion.torque_sensor[i]:
+        _require_right_weights(loads, side, i)
+    if side.kappa_std <= WORST_STD:
+        return
+    if loads.motion.torque_sensor[i] or loads.weights_share < MASS_SHARE:
+        raise PoorLogError(
+            f"the result would be uncertain by {side.kappa_std:.0%}; move it where gravity pulls "
+            "more, or hang a known weight on"
+        )
+    raise PoorLogError(
+        f"it is measured against the URDF's weights; known to {loads.weights_share:.0%} they leave "
+        f"it uncertain by {side.kappa_std:.0%}: identify gravity first, or weigh the links and say "
+        "how well they are known with --weights-known"
+    )
+
+
+def _require_right_weights(loads: Loads, side: MotorSide, i: int) -> None:
+    """Torques that other weights explain much better contradict those that are said to be known."""
+    if loads.weights_share >= MASS_SHARE:
+        return
+    free = balance(loads.trusting(MASS_SHARE), i)
+    left, without = (_left(each) for each in (free, side))
+    if left < CONTRADICTED * without:
+        raise PoorLogError(
+            f"the URDF's weights leave {without:.3g} N m rms of held-out torques unexplained, "
+            f"other weights {left:.3g}: identify gravity first"
+        )
+
+
+def _left(side: MotorSide) -> float:
+    """rms of held-out torques, with what was found to be wrong with the model."""
+    errors = range(STRIBECK, STRIBECK + 1 + side.errors.shape[1])
+    return float(np.std(side.unseen(COULOMB, VISCOUS, *errors)))
 
 
 def _by_motor(arm: Arm, sides: dict[int, MotorSide]) -> dict[str, list[int]]:

@@ -1,124 +1,176 @@
-"""Masses and centres of mass that explain the torques of slow motion.
+"""Masses and centres of mass that explain the torques of a motion.
 
-Gravity's torque is linear in mass and mass times centre of each body, g(q) = Y(q) pi, but the
+Torque is linear in mass, mass times centre and inertia of each body, tau = Y(q, v, a) pi, but the
 joints see some combinations only (Gautier, Khalil, "Direct calculation of minimum set of inertial
 parameters of serial robots", 1990). Estimated is the change of pi that explains the torques and
 lies nearest to the URDF, which serves as the prior of a Bayesian least-squares estimate: what
-gravity does not show stays as it was. Friction and a constant offset of each joint are estimated
-along with it.
+the torques do not show stays as it was. Friction and a constant offset of each joint, and errors of
+inertias, are estimated along with it.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from limber.identify.arm import Arm
-from limber.identify.motion import Motion
+from limber.identify.doubt import ROTOR_SHARE, Loads, prior_std
+from limber.identify.regression import FLOOR, Fit, Unknowns, fit, folds, solve
 
-MASS_SHARE = 0.3  # standard deviation of a mass of the URDF,
-CENTRE_M = 0.05  # and of a centre of mass
-MEASURED = 0.3  # of that deviation: combinations known better than this count as measured
-GENTLE = 1.0  # rad/s² or m/s²: what is beyond shows inertias, which may be wrong as well
-FLOOR_NM = 1e-3  # no torque is known better
-ROUNDS = 4
+KAPPA_STD = 0.05  # of torque constants and of the scale of torque sensors, taken as believed
+MEASURED = 0.3  # of its prior deviation: combinations known better than this count as measured
+OFFSET_SHARE = 0.1  # of the greatest torque: a likely offset
+LIGHTEST, HEAVIEST = -0.8, 3.0  # change of a mass, in shares of it
+ROUNDS = 3
+OWN = 4  # columns of each joint: Coulomb, viscous, offset, rotor
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Change of [mass, moment] of every body, kg and kg m; `seen`: how many combinations of them.
+    """Change of the 10 parameters of every body; `seen`: how many combinations of them.
 
-    By joint: `own`, Coulomb and viscous friction with a constant offset of its torque, and what is
-    unexplained before and after, N m rms.
+    By joint: `own`, Coulomb and viscous friction, offset of its torque, error of the rotor's
+    inertia; what is unexplained before and after, N m rms.
     """
 
     change: np.ndarray
     covariance: np.ndarray
     seen: int
-    own: np.ndarray  # joints x 3
+    own: np.ndarray  # joints x OWN
     offset_std: np.ndarray
     before: np.ndarray
     after: np.ndarray
 
 
-def estimate(
-    arm: Arm, motion: Motion, Y: np.ndarray, excess: np.ndarray, used: list[int]
-) -> Weights:
-    """`Y`: gravity_regressor(); `excess`: torque at the joints beyond the model's, N x n."""
-    prior = prior_std(arm)
-    problems = [_problem(motion, Y, excess, used, k) for k in range(len(used))]
-    sigma = [max(float(np.std(problem.r)), FLOOR_NM) for problem in problems]
-    before = [problem.unexplained(len(prior)) for problem in problems]
-    for _ in range(ROUNDS):  # the weight of each joint follows from what stays unexplained in it
-        x, covariance = _solve(problems, sigma, prior)
-        sigma = [max(float(np.std(p.r - p.A @ x)), FLOOR_NM) for p in problems]
-    size = len(prior)
-    changes = covariance[:size, :size]
-    return Weights(
-        x[:size],
-        changes,
-        int(np.count_nonzero(np.linalg.eigvalsh(changes / np.outer(prior, prior)) < MEASURED**2)),
-        x[size:].reshape(-1, 3),
-        np.sqrt(np.diag(covariance))[size + 2 :: 3],
-        np.array(before),
-        np.array(sigma),
-    )
-
-
 @dataclass(frozen=True)
-class _Problem:
-    """A x = r of one joint; that many samples of it count as one."""
+class Problem:
+    """A x = r of one joint, and which half second each row is of. `scale`: r per unit of an error
+    of the torque's scale.
+    """
 
     A: np.ndarray
     r: np.ndarray
-    together: float
-
-    def unexplained(self, size: int) -> float:
-        """By friction and offset alone, the columns from `size` on, rms."""
-        own = self.A[:, size:]
-        return float(np.std(self.r - own @ np.linalg.lstsq(own, self.r, rcond=None)[0]))
+    scale: np.ndarray
+    block: np.ndarray
 
 
-def _problem(
-    motion: Motion, Y: np.ndarray, excess: np.ndarray, used: list[int], k: int
-) -> _Problem:
-    i, size = used[k], Y.shape[2]
-    rows = slow(motion, i)
-    A = np.zeros((np.count_nonzero(rows), size + 3 * len(used)))
-    A[:, :size] = Y[rows, i]
-    A[:, size + 3 * k : size + 3 * k + 3] = own_terms(motion, i)
-    return _Problem(A, excess[rows, i], len(A) / len(np.unique(motion.block[rows])))
+def problems(loads: Loads, excess: np.ndarray, used: list[int]) -> list[Problem]:
+    """`excess`: torque at the joints beyond the model's, N x n."""
+    found = []
+    size = loads.regressor.shape[2]
+    for k, i in enumerate(used):
+        rows = loads.motion.moving[:, i]
+        A = np.zeros((np.count_nonzero(rows), size + OWN * len(used)))
+        A[:, :size] = loads.regressor[rows, i]
+        A[:, size + OWN * k : size + OWN * (k + 1)] = own_terms(loads, i)
+        r = excess[rows, i]
+        found.append(Problem(A, r, r + loads.model[rows, i], loads.motion.block[rows]))
+    return found
 
 
-def _solve(
-    problems: list[_Problem], sigma: list[float], prior: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Friction and offsets have no prior."""
-    unknowns = problems[0].A.shape[1]
-    H, h = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
-    H[range(len(prior)), range(len(prior))] = prior**-2.0
-    for problem, std in zip(problems, sigma, strict=True):
-        variance = std**2 * problem.together
-        H += problem.A.T @ problem.A / variance
-        h += problem.A.T @ problem.r / variance
-    covariance = np.linalg.inv(H)
-    return covariance @ h, covariance
-
-
-def slow(motion: Motion, i: int) -> np.ndarray:
-    """Samples in which joint i moves and no joint speeds up much."""
-    return motion.moving[:, i] & (np.abs(motion.a).max(axis=1) < GENTLE)
-
-
-def own_terms(motion: Motion, i: int) -> np.ndarray:
-    """Coulomb and viscous friction and offset of joint i, per unit, in its slow samples."""
-    speed = motion.v[slow(motion, i), i]
-    return np.stack([np.sign(speed), speed, np.ones_like(speed)], axis=1)
-
-
-def prior_std(arm: Arm) -> np.ndarray:
-    return np.concatenate(
-        [
-            [body.mass * MASS_SHARE] + 3 * [body.mass * CENTRE_M]
-            for body in arm.robot.dynamics.bodies
-        ]
+def estimate(loads: Loads, parts: list[Problem], used: list[int]) -> Weights:
+    prior = prior_std(loads.arm, loads.weights_share)
+    unknowns = _unknowns(loads, parts, used, prior)
+    size = len(prior)
+    before = [_unexplained(part, size) for part in parts]
+    sigma, found = _fit(parts, unknowns)
+    covariance = found.covariance + _doubt_of_scale(parts, sigma, found)
+    changes = covariance[:size, :size]
+    live = prior > 0
+    relative = changes[np.ix_(live, live)] / np.outer(prior[live], prior[live])
+    return Weights(
+        found.x[:size],
+        changes,
+        int(np.count_nonzero(np.linalg.eigvalsh(relative) < MEASURED**2)),
+        found.x[size:].reshape(-1, OWN),
+        np.sqrt(np.diag(covariance))[size + 2 :: OWN],
+        np.array(before),
+        sigma,
     )
+
+
+def held_out(loads: Loads, parts: list[Problem], used: list[int], changed) -> np.ndarray:
+    """Per joint, rms of what URDF and friction leave of torques that the fit has not seen, before
+    and after; 2 x joints. `changed`: from a change of all parameters to the one that a URDF with
+    other masses and centres makes. Offsets count as unexplained.
+    """
+    prior = prior_std(loads.arm, loads.weights_share)
+    unknowns, size = _unknowns(loads, parts, used, prior), len(prior)
+    left = [[np.zeros(len(part.r)) for part in parts] for _ in range(2)]
+    blocks = np.unique(np.concatenate([part.block for part in parts]))
+    for seen in folds(blocks):
+        out = blocks[seen]
+        x = _balanced([_without(part, out) for part in parts], unknowns)[1]
+        proposed = changed(x[:size])
+        for k, part in enumerate(parts):
+            rows = np.isin(part.block, out)
+            own = slice(size + OWN * k, size + OWN * k + 2)
+            friction = part.A[rows, own] @ x[own]
+            left[0][k][rows] = part.r[rows] - friction
+            left[1][k][rows] = part.r[rows] - friction - part.A[rows, :size] @ proposed
+    return np.array([[np.sqrt(np.mean(r**2)) for r in each] for each in left])
+
+
+def own_terms(loads: Loads, i: int) -> np.ndarray:
+    """Coulomb and viscous friction, offset and rotor of joint i, per unit, while it moves."""
+    motion = loads.motion
+    rows = motion.moving[:, i]
+    speed = motion.v[rows, i]
+    rotor = motion.theta_ddot[rows, i] * (not motion.torque_sensor[i])
+    return np.stack([np.sign(speed), speed, np.ones_like(speed), rotor], axis=1)
+
+
+def _unknowns(loads: Loads, parts: list[Problem], used: list[int], prior: np.ndarray) -> Unknowns:
+    found = Unknowns.free(parts[0].A.shape[1])
+    size = len(prior)
+    found.prior[:size] = np.maximum(prior, 1e-12)
+    for k, i in enumerate(used):
+        own = size + OWN * k
+        found.low[own : own + 2] = 0.0
+        found.prior[own + 2] = OFFSET_SHARE * np.abs(parts[k].scale).max() + FLOOR
+        found.prior[own + 3] = ROTOR_SHARE * loads.arm.joints[i].rotor_inertia + 1e-12
+    for j, body in enumerate(loads.arm.robot.dynamics.bodies):
+        mass = body.inertial.mass
+        found.low[10 * j], found.high[10 * j] = LIGHTEST * mass, HEAVIEST * mass
+    return found
+
+
+def _without(part: Problem, out: np.ndarray) -> Problem:
+    rows = ~np.isin(part.block, out)
+    return Problem(part.A[rows], part.r[rows], part.scale[rows], part.block[rows])
+
+
+def _stacked(parts: list[Problem], sigma: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """All joints in units of what stays unexplained in each; how many samples count as one."""
+    A = np.concatenate([part.A / std for part, std in zip(parts, sigma, strict=True)])
+    r = np.concatenate([part.r / std for part, std in zip(parts, sigma, strict=True)])
+    return A, r, len(parts[0].A) / max(len(np.unique(parts[0].block)), 1)
+
+
+def _balanced(parts: list[Problem], unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray]:
+    """What stays unexplained in each joint, N m rms, and the estimate with weights to match."""
+    sigma = np.array([max(float(np.std(part.r)), FLOOR) for part in parts])
+    for _ in range(ROUNDS):
+        x, _, _ = solve(*_stacked(parts, sigma), unknowns)
+        sigma = np.array([max(float(np.std(p.r - p.A @ x)), FLOOR) for p in parts])
+    return sigma, x
+
+
+def _fit(parts: list[Problem], unknowns: Unknowns) -> tuple[np.ndarray, Fit]:
+    sigma, _ = _balanced(parts, unknowns)
+    A, r, together = _stacked(parts, sigma)
+    return sigma, fit(A, r, np.concatenate([part.block for part in parts]), unknowns, together)
+
+
+def _doubt_of_scale(parts: list[Problem], sigma: np.ndarray, found: Fit) -> np.ndarray:
+    """What errors of torque constants and sensors' scales add to the covariance."""
+    total = np.zeros_like(found.covariance)
+    for part, std in zip(parts, sigma, strict=True):
+        moved = found.response(part.A / std, KAPPA_STD * part.scale / std)
+        total += np.outer(moved, moved)
+    return total
+
+
+def _unexplained(part: Problem, size: int) -> float:
+    """By friction and offset alone, rms."""
+    own = part.A[:, size:]
+    own = own[:, np.any(own != 0.0, axis=0)]
+    return float(np.std(part.r - own @ np.linalg.lstsq(own, part.r, rcond=None)[0]))

@@ -6,6 +6,7 @@ by the recursive Newton-Euler algorithm (Luh, Walker, Paul, 1980) in base axes. 
 independent of the C++ chain on purpose. Rotors are not part of it.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,6 +18,8 @@ from limber.model.bodies import Body, bodies
 from limber.model.urdf import MOVING, Chain
 
 STEP_RAD = 1e-5
+PARAMETERS = 10  # of a rigid body
+UPPER = np.triu_indices(3)
 
 
 @dataclass(frozen=True)
@@ -58,23 +61,33 @@ class ArmDynamics:
 
     def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
-        frames, a, n = self.frames(q), self.gravity, self.size
-        Y = np.zeros((len(q), n, 4 * n))
-        for k in range(n):
+        zero = np.zeros_like(q)
+        Y = self.regressor(q, zero, zero).reshape(len(q), self.size, self.size, PARAMETERS)
+        return Y[..., :4].reshape(len(q), self.size, -1)
+
+    def regressor(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """N x n x 10n: torque(q, v, a) per `parameters()`, in which it is linear (Atkeson, An,
+        Hollerbach, "Estimation of inertial parameters of manipulator loads and links", 1986).
+        """
+        frames, n = self.frames(q), self.size
+        Y = np.zeros((len(q), n, n, PARAMETERS))
+        for k, moved in enumerate(self._moved(frames, v, a)):
+            F, N = _unit_wrenches(frames.R[k], *moved)
             for i in range(k + 1):
-                z, column = frames.z[i], 4 * k
-                if self._slides[i]:
-                    Y[:, i, column] = -z @ a
-                    continue
-                Y[:, i, column] = -np.cross(z, frames.p[k] - frames.p[i]) @ a
-                for axis in range(3):
-                    lever = np.cross(z, frames.R[k][:, :, axis])
-                    Y[:, i, column + 1 + axis] = -lever @ a
-        return Y
+                z = frames.z[i]
+                Y[:, i, k] = np.einsum("nx,npx->np", z, F)
+                if not self._slides[i]:
+                    arm = np.cross(z, frames.p[k] - frames.p[i])
+                    Y[:, i, k] = np.einsum("nx,npx->np", z, N) + np.einsum("nx,npx->np", arm, F)
+        return Y.reshape(len(q), n, -1)
 
     def parameters(self) -> np.ndarray:
-        """4n: what `gravity_regressor` multiplies, kg and kg m."""
-        return np.concatenate([[body.mass, *body.moment] for body in self.bodies])
+        """10n, by body: mass, kg; mass times centre, kg m; xx, xy, xz, yy, yz, zz of the inertia
+        about the origin of the joint's child link, in its axes, kg m².
+        """
+        return np.concatenate(
+            [[body.mass, *body.moment, *body.inertia[UPPER]] for body in self.bodies]
+        )
 
     def frames(self, q: np.ndarray) -> Frames:
         R = np.tile(np.eye(3), (len(q), 1, 1))
@@ -93,14 +106,15 @@ class ArmDynamics:
             found.append((R, p, z))
         return Frames(*(np.array(part) for part in zip(*found, strict=True)))
 
-    def _wrenches(
+    def _moved(
         self, frames: Frames, v: np.ndarray, a: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Force and moment about its origin that each body needs, outwards from the base."""
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Of each body, outwards from the base: acceleration of its origin less gravity, angular
+        velocity and angular acceleration.
+        """
         w, wd = np.zeros((2, len(v), 3))
         acceleration, before = np.tile(-self.gravity, (len(v), 1)), np.zeros((len(v), 3))
-        F, N = np.zeros((2, self.size, len(v), 3))
-        for i, body in enumerate(self.bodies):
+        for i in range(self.size):
             r, z = frames.p[i] - before, frames.z[i]
             zv, za = z * v[:, i : i + 1], z * a[:, i : i + 1]
             acceleration = acceleration + np.cross(wd, r) + np.cross(w, np.cross(w, r))
@@ -109,8 +123,16 @@ class ArmDynamics:
             else:
                 wd = wd + za + np.cross(w, zv)
                 w = w + zv
-            F[i], N[i] = _body_wrench(body, frames.R[i], acceleration, w, wd)
+            yield acceleration, w, wd
             before = frames.p[i]
+
+    def _wrenches(
+        self, frames: Frames, v: np.ndarray, a: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Force and moment about its origin that each body needs."""
+        F, N = np.zeros((2, self.size, len(v), 3))
+        for i, moved in enumerate(self._moved(frames, v, a)):
+            F[i], N[i] = _body_wrench(self.bodies[i], frames.R[i], *moved)
         return F, N
 
     def _project(self, frames: Frames, F: np.ndarray, N: np.ndarray) -> np.ndarray:
@@ -135,3 +157,22 @@ def _body_wrench(
     spin = np.einsum("nij,nj->ni", inertia, w)
     turn = np.einsum("nij,nj->ni", inertia, wd)
     return force, np.cross(moment, acceleration) + turn + np.cross(w, spin)
+
+
+def _unit_wrenches(
+    R: np.ndarray, acceleration: np.ndarray, w: np.ndarray, wd: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """N x 10 x 3: force and moment of a body per parameter."""
+    F, N = np.zeros((2, len(w), PARAMETERS, 3))
+    F[:, 0] = acceleration
+    for axis in range(3):
+        x = R[:, :, axis]
+        F[:, 1 + axis] = np.cross(wd, x) + np.cross(w, np.cross(w, x))
+        N[:, 1 + axis] = np.cross(x, acceleration)
+    in_body, turn = (np.einsum("nji,nj->ni", R, x) for x in (w, wd))
+    for k, (i, j) in enumerate(zip(*UPPER, strict=True)):
+        unit = np.zeros((3, 3))
+        unit[i, j] = unit[j, i] = 1.0
+        needed = turn @ unit + np.cross(in_body, in_body @ unit)
+        N[:, 4 + k] = np.einsum("nij,nj->ni", R, needed)
+    return F, N
