@@ -5,7 +5,6 @@ not from a recursion; friction, motors and sensors are written out here. Every j
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from limber.identify.recording import Recording
 RATE_HZ = 200.0
 GRAVITY = np.array([0.0, 0.0, -9.81])
 GEAR, CONSTANT, REACH = 50.0, 0.1, 0.35  # N m/A at the rotor; m from joint to joint
+FURTHEST = 1.2  # rad
 WEIGHED = 0.01  # share by which masses that were weighed are off
 
 
@@ -58,9 +58,9 @@ class HiddenArm:
     bodies: list[Body]
     joints: list[Joint]
 
-    @cached_property
-    def limits(self) -> float:
-        return 1.2
+    @property
+    def weighed(self) -> bool:
+        return self.seed % 3 == 1
 
     def torque(self, bodies, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Of the links alone."""
@@ -97,7 +97,7 @@ def turned(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def random_arm(seed: int) -> HiddenArm:
-    """Two to five joints. Every third arm has torque sensors; of every third the links were weighed."""
+    """Two to five joints. One arm of three has torque sensors, of one the links were weighed."""
     rng = np.random.default_rng(seed)
     share = WEIGHED if seed % 3 == 1 else 0.15
     n = int(rng.integers(2, 6))
@@ -142,7 +142,7 @@ def _joint(rng: np.random.Generator, i: int, sensor: bool) -> Joint:
 def motion(arm: HiddenArm, seed: int) -> np.ndarray:
     """Angles through random poses and back, slow, then fast, then a creep; N x n."""
     rng = np.random.default_rng([arm.seed, seed])
-    poses = rng.uniform(-arm.limits, arm.limits, (4, len(arm.joints)))
+    poses = rng.uniform(-FURTHEST, FURTHEST, (4, len(arm.joints)))
     tour = [*poses, *poses[-2::-1]]
     creep = [tour[-1], tour[-1] + 0.15, tour[-1] - 0.15, tour[-1]]
     return np.vstack([_moves(tour, 2.5, 0.3), _moves(tour, 1.0, 0.1), _moves(creep, 4.0, 0.1)])

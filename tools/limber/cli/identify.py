@@ -10,6 +10,25 @@ from limber.cli.options import console
 app = typer.Typer(help="Identify parameters of the arm from recorded runs.", no_args_is_help=True)
 
 Runs = Annotated[list[Path], typer.Argument(help="Logs, or folders of runs.")]
+RunsOrCsv = Annotated[
+    list[Path] | None, typer.Argument(help="Logs, or folders of runs; none with --csv.")
+]
+Csv = Annotated[
+    Path | None,
+    typer.Option("--csv", help="Any recording, one line a sample, with --columns and --robot."),
+]
+Columns = Annotated[
+    Path | None, typer.Option("--columns", help="YAML file that says what the CSV's columns are.")
+]
+WeightsKnown = Annotated[
+    float | None,
+    typer.Option(
+        "--weights-known",
+        min=0.001,
+        max=1.0,
+        help="Share to which the URDF's masses are known, 0.02 if weighed; default 0.3, as of CAD.",
+    ),
+]
 Robot = Annotated[
     str | None,
     typer.Option(help="The arm's name or folder; default: the copy beside the first log."),
@@ -37,14 +56,33 @@ def motion(
     commands.plan(robot, spread, poses, seed, out, console)
 
 
-def _from_motion(kind: str, what: str) -> None:
-    """The commands that need no options of their own."""
+def _from_motion(kind: str, what: str, on_weights: bool) -> None:
+    """The commands that read a motion."""
 
-    @app.command(kind, help=what, epilog=f"Example: limber identify {kind} out/tour")
-    def identify(runs: Runs, robot: Robot = None, out: Out = None) -> None:
+    def identify(
+        runs: RunsOrCsv = None,
+        robot: Robot = None,
+        csv: Csv = None,
+        columns: Columns = None,
+        weights_known: WeightsKnown = None,
+        out: Out = None,
+    ) -> None:
         from limber.identify import commands
 
-        commands.run(kind, runs, robot, out, console)
+        source = commands.Source(runs or [], robot, csv, columns)
+        commands.run(kind, source, weights_known, out, console)
+
+    def of_itself(
+        runs: RunsOrCsv = None,
+        robot: Robot = None,
+        csv: Csv = None,
+        columns: Columns = None,
+        out: Out = None,
+    ) -> None:
+        identify(runs, robot, csv, columns, None, out)
+
+    example = f"Example: limber identify {kind} out/tour"
+    app.command(kind, help=what, epilog=example)(identify if on_weights else of_itself)
 
 
 for kind, what in (
@@ -59,7 +97,7 @@ for kind, what in (
         "Identify masses and centres of the links as far as gravity shows them; propose a URDF.",
     ),
 ):
-    _from_motion(kind, what)
+    _from_motion(kind, what, kind in ("torque-constant", "friction"))
 
 
 @app.command("payload", epilog="Example: limber identify payload out/with_tool")

@@ -1,6 +1,7 @@
 """The commands of `limber identify`: read logs, identify, print a table, write files."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -9,24 +10,50 @@ from rich.table import Table
 from limber.errors import InputError
 from limber.identify import excitation, friction, gravity, proposal, stiffness, torque_constant
 from limber.identify.arm import Arm, load_arm
+from limber.identify.csv_recording import read_csv
 from limber.identify.findings import Findings
-from limber.identify.motion import Motion, read_motion
+from limber.identify.motion import Motion, motion_of
+from limber.identify.recording import Recording, read_logs
 from limber.log.reader import log_file
 from limber.paths import output_folder
 
-KINDS: dict[str, Callable[[Arm, Motion], Findings]] = {
+KINDS: dict[str, Callable[[Arm, Motion, float | None], Findings]] = {
     "torque-constant": torque_constant.identify,
     "friction": friction.identify,
-    "stiffness": stiffness.identify,
-    "gravity": gravity.identify,
+    "stiffness": lambda arm, motion, _: stiffness.identify(arm, motion),
+    "gravity": lambda arm, motion, _: gravity.identify(arm, motion),
 }
 
 
-def run(kind: str, runs: list[Path], robot: str | None, out: Path | None, console: Console) -> None:
-    arm = arm_of(runs, robot)
-    found = KINDS[kind](arm, read_motion(runs, arm))
+@dataclass(frozen=True)
+class Source:
+    """What to identify from: logs of runs, or a CSV file with the table of its columns."""
+
+    runs: list[Path]
+    robot: str | None = None
+    csv: Path | None = None
+    columns: Path | None = None
+
+    def read(self) -> tuple[Arm, list[Recording], Path]:
+        """The arm, its recordings, and the folder that results go to unless another is named."""
+        if self.csv is None:
+            if not self.runs:
+                raise InputError("name the log or folder of a run, or a recording with --csv")
+            arm = arm_of(self.runs, self.robot)
+            return arm, read_logs(self.runs, arm), folder_of(self.runs)
+        if self.runs or self.columns is None or self.robot is None:
+            raise InputError("--csv FILE goes with --columns FILE and --robot, and without runs")
+        arm = load_arm(self.robot)
+        return arm, read_csv(self.csv, self.columns, arm), self.csv.parent / "identify"
+
+
+def run(
+    kind: str, source: Source, weights_known: float | None, out: Path | None, console: Console
+) -> None:
+    arm, recordings, beside = source.read()
+    found = KINDS[kind](arm, motion_of(recordings), weights_known)
     _print(found, console)
-    folder = output_folder(out or folder_of(runs))
+    folder = output_folder(out or beside)
     files = proposal.write(found, arm, kind, folder)
     _write(found, kind, folder, files, console)
 
@@ -73,6 +100,7 @@ def _print(found: Findings, console: Console) -> None:
 def _write(found: Findings, name: str, folder: Path, files: list[Path], console: Console) -> None:
     from limber.identify import picture  # matplotlib takes a second to load
 
-    files.append(picture.save(found.panels, found.subject, folder / f"{name}.png"))
+    if found.panels:
+        files.append(picture.save(found.panels, found.subject, folder / f"{name}.png"))
     for path in files:
         console.print(f"wrote {path}", soft_wrap=True)

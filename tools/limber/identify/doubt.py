@@ -61,12 +61,6 @@ class Loads:
         motion = self.motion
         return self.arm.robot.dynamics.regressor(motion.q, motion.v, motion.a)
 
-    def trusting(self, weights_share: float) -> "Loads":
-        """The same, with weights that are known better or worse."""
-        other = Loads(self.arm, self.motion, weights_share)
-        other.__dict__ |= {k: v for k, v in self.__dict__.items() if k != "weights_share"}
-        return other
-
     def errors(self, rows: np.ndarray, i: int) -> np.ndarray:
         """Likely errors of the torque at joint i as independent columns, each with a standard
         deviation of one: of the rotor and, without a torque sensor, of the links.

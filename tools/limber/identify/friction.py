@@ -25,8 +25,8 @@ from limber.identify.motor_side import (
     balance,
 )
 from limber.identify.regression import PoorLogError, Unknowns, fit, ratio
+from limber.identify.torque_constant import certain
 
-KAPPA_STD = 0.02  # below it the torque constant is measured along with friction
 KAPPA_OFF = 0.03  # beyond it a note is added
 SURE = 4.0  # standard errors
 LEAST_LOAD = 0.1  # N m; less load does not determine the scale of the model
@@ -42,27 +42,17 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     found, own = Findings("friction"), []
     loads = Loads(arm, motion, *([] if weights_share is None else [weights_share]))
     for i, joint in enumerate(arm.joints):
+        if motion.torque_sensor[i]:
+            found.values += _link_side(joint, loads, i)
         try:
             side = _motor_side(loads, i)
             better = _beats_robot_yaml(joint, side)
         except PoorLogError as reason:
-            found.refused[joint.name] = str(reason)
+            side_of = "its motor's side: " if motion.torque_sensor[i] else ""
+            found.refused[joint.name] = f"{side_of}{reason}"
             continue
-        if abs(side.kappa - 1.0) > KAPPA_OFF:
-            found.notes.append(
-                f"{joint.name}: its true motor torque is {side.kappa:.3f} of the drive's value; "
-                "friction is given in true torque (identify torque-constant)."
-            )
-        found.notes += [f"{joint.name}: {warning}" for warning in _warnings(side)]
         own += [joint.name] if side.known else []
-        values = _values(joint, side, bool(motion.torque_sensor[i]))
-        if not better:
-            found.notes.append(f"{joint.name}: robot.yaml's friction does as well; it stays.")
-            values = [replace(value, path=None, proposed=None) for value in values]
-        found.values += values
-        found.panels.append(_panel(joint, side))
-        if motion.torque_sensor[i]:
-            found.values += _link_side(joint, loads, i)
+        _add_motor_side(found, joint, side, bool(motion.torque_sensor[i]), better)
     if own:
         found.notes.append(
             f"{', '.join(own)}: torque constants do not show in this log; friction is given in the "
@@ -71,15 +61,29 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     return found
 
 
+def _add_motor_side(
+    found: Findings, joint: JointBelief, side: MotorSide, sensor: bool, better: bool
+) -> None:
+    if abs(side.kappa - 1.0) > KAPPA_OFF:
+        found.notes.append(
+            f"{joint.name}: its true motor torque is {side.kappa:.3f} of the drive's value; "
+            "friction is given in true torque (identify torque-constant)."
+        )
+    found.notes += [f"{joint.name}: {warning}" for warning in _warnings(side)]
+    values = _values(joint, side, sensor)
+    if not better:
+        found.notes.append(f"{joint.name}: robot.yaml's friction does as well; it stays.")
+        values = [replace(value, path=None, proposed=None) for value in values]
+    found.values += values
+    found.panels.append(_panel(joint, side))
+
+
 def _motor_side(loads: Loads, i: int) -> MotorSide:
     """With the torque constant from the same log if it is certain, else that of robot.yaml."""
     try:
-        side = balance(loads, i)
-        if side.kappa_std <= KAPPA_STD:
-            return side
+        return certain(loads, i)
     except PoorLogError:
-        pass
-    return balance(loads, i, known=True)
+        return balance(loads, i, known=True)
 
 
 def _beats_robot_yaml(joint: JointBelief, side: MotorSide) -> bool:

@@ -16,6 +16,8 @@ from limber.model.dynamics import PARAMETERS, UPPER
 
 LEAST_NM = 0.1  # by which gravity's torque has to be able to change
 LEAST_BLOCKS = 10
+OFFSET_SHARES = (0.1, 0.01)  # of the greatest torque of a joint: likely offsets
+WORSE = 1.01  # of what was unexplained before
 ENOUGH = 0.99  # of held-out squares: what else is proposed has to leave less
 
 
@@ -32,20 +34,19 @@ def identify(arm: Arm, motion: Motion) -> Findings:
     if not used:
         return found
     excess = _excess(loads)
-    parts = problems(loads, excess, used)
     try:
-        weights = estimate(loads, parts, used)
-        before, after = held_out(loads, parts, used, lambda change: _of_urdf(arm, change))
+        weights, before, after = _best(loads, excess, used)
     except PoorLogError as reason:
         found.refused |= {arm.joints[i].name: str(reason) for i in used}
         return found
     found.values = _values(arm, weights) + _offsets(arm, weights, used)
     found.notes = _notes(arm, weights, used, before, after)
-    if np.sum((after / before) ** 2) < ENOUGH * len(used):
+    reason = _no_better(arm, used, before, after)
+    if reason:
+        found.notes.append(reason)
+    else:
         links = [changed_link(arm, weights.change, i) for i in range(arm.robot.dynamics.size)]
         found.inertials = {link: (mass, com) for link, mass, com in links}
-    else:
-        found.notes.append("The URDF explains them as well: no other is proposed.")
     change = loads.regressor @ weights.change
     for k, i in enumerate(used):
         rows = motion.moving[:, i]
@@ -53,6 +54,35 @@ def identify(arm: Arm, motion: Motion) -> Findings:
         model = loads.model[rows, i]
         found.panels.append(_panel(arm.joints[i].name, measured, model, model + change[rows, i]))
     return found
+
+
+def _best(
+    loads: Loads, excess: np.ndarray, used: list[int]
+) -> tuple[Weights, np.ndarray, np.ndarray]:
+    """An estimate, and what URDF and proposal leave of held-out torques; if offsets of the torques
+    would take what weights have to explain, without offsets.
+    """
+    arm = loads.arm
+    for share in OFFSET_SHARES:
+        parts = problems(loads, excess, used, share)
+        weights = estimate(loads, parts, used)
+        before, after = held_out(loads, parts, used, lambda change: _of_urdf(arm, change))
+        if not _no_better(arm, used, before, after):
+            break
+    return weights, before, after
+
+
+def _no_better(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> str:
+    """Why other weights than the URDF's are not proposed; empty if they are."""
+    if not np.sum((after / before) ** 2) < ENOUGH * len(used):
+        return "The URDF explains held-out torques as well: no other is proposed."
+    worse = [arm.joints[i].name for k, i in enumerate(used) if after[k] > WORSE * before[k]]
+    if worse:
+        return (
+            f"No other URDF is proposed: held-out torques of {', '.join(worse)} would be explained "
+            "worse. Something other than weights is in them, or the tour is too small."
+        )
+    return ""
 
 
 def _notes(

@@ -19,6 +19,7 @@ SAMPLES_HZ = 50.0
 EDGE_S = 0.3  # at both ends: there the filter has no past or no future
 BLOCK_S = 0.5
 SLOWEST = 0.02  # rad/s or m/s: below it friction is on its way from stick to slip
+OF_JOINTS = ("torque_sensor", "link_encoder", "motor_known")
 SETTLE_S = 0.1  # from rest until the filter has forgotten it
 
 
@@ -39,6 +40,7 @@ class Motion:
     block: np.ndarray  # one number a sample: which stretch of BLOCK_S
     torque_sensor: np.ndarray  # bool, one a joint
     link_encoder: np.ndarray
+    motor_known: np.ndarray
 
 
 def read_motion(paths: list[Path], arm: Arm) -> Motion:
@@ -54,7 +56,7 @@ def motion_of(recordings: list[Recording]) -> Motion:
     joined = {}
     for field in fields(Motion):
         parts = [getattr(stretch, field.name) for stretch in stretches]
-        of_joints = field.name in ("torque_sensor", "link_encoder")
+        of_joints = field.name in OF_JOINTS
         joined[field.name] = np.all(parts, axis=0) if of_joints else np.concatenate(parts)
     return Motion(**joined)
 
@@ -91,6 +93,7 @@ def _smooth(recording: Recording, first_block: int) -> Motion:
         block=first_block + (time_s // BLOCK_S).astype(int),
         torque_sensor=recording.torque_sensor,
         link_encoder=recording.link_encoder,
+        motor_known=np.full(len(recording.torque_sensor), recording.motor_known),
     )
 
 

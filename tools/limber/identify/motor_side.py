@@ -76,6 +76,8 @@ def balance(loads: Loads, i: int, known: bool = False) -> MotorSide:
     rows = motion.moving[:, i]
     if joint.two_motors:
         raise PoorLogError("two motors pull at this joint: only one motor's balance is read")
+    if not motion.motor_known[i]:
+        raise PoorLogError("the recording does not hold its motor's torque")
     if not rows.any():
         raise PoorLogError("it does not move")
     load = (loads.torque[:, i] + joint.rotor_inertia * motion.theta_ddot[:, i])[rows]

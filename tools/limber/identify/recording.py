@@ -33,6 +33,7 @@ class Recording:
     torque_sensor: np.ndarray  # bool, one a joint
     link_encoder: np.ndarray
     settled_s: float = 0.0
+    motor_known: bool = True  # else `motor` is zero
 
 
 def read_logs(paths: list[Path], arm: Arm) -> list[Recording]:

@@ -37,12 +37,6 @@ class Fit:
     x: np.ndarray
     covariance: np.ndarray
     residual: np.ndarray
-    weight: float = 0.0
-    hessian: np.ndarray | None = None
-
-    def response(self, A: np.ndarray, dy: np.ndarray) -> np.ndarray:
-        """How x moves if these rows of the right side move."""
-        return np.linalg.solve(self.hessian, self.weight * A.T @ dy)
 
     @property
     def std(self) -> np.ndarray:
@@ -85,7 +79,7 @@ def fit(
     x, weight, H = solve(A, y, together or len(y) / blocks, unknowns)
     residual = y - A @ x
     covariance = _covariance(A, residual, block, weight, H, unknowns.prior)
-    return Fit(x, covariance, residual, weight, H)
+    return Fit(x, covariance, residual)
 
 
 def unexplained(A: np.ndarray, y: np.ndarray, block: np.ndarray, unknowns: Unknowns) -> float:

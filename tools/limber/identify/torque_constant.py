@@ -6,6 +6,7 @@ Without a torque sensor the load is what the URDF's links weigh: kappa is no bet
 """
 
 from collections import defaultdict
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,16 +40,18 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     loads = Loads(arm, motion, MASS_SHARE if weights_share is None else weights_share)
     for i, joint in enumerate(arm.joints):
         try:
-            side = balance(loads, i)
-            _require_load(loads, side, i)
-            _require_certainty(loads, side, i)
+            sides[i] = certain(loads, i)
         except PoorLogError as reason:
             found.refused[joint.name] = str(reason)
             continue
-        sides[i] = side
-        found.panels.append(_panel(joint.name, side))
+        found.panels.append(_panel(joint.name, sides[i]))
     for motor, indices in _by_motor(arm, sides).items():
-        found.values += _values(arm, motor, {i: sides[i] for i in indices}, found)
+        group = {i: sides[i] for i in indices}
+        values = _values(arm, motor, group, found)
+        if not _better(loads, group):
+            found.notes.append(f"{motor}: robot.yaml's constant does as well; it stays.")
+            values = [replace(value, path=None, proposed=None) for value in values]
+        found.values += values
     if sides:
         found.notes.append(
             "A drive that keeps a torque constant of its own turns N m into current by that one: "
@@ -57,6 +60,20 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     if not all(motion.torque_sensor[i] for i in sides):
         found.notes.append(AGAINST_URDF)
     return found
+
+
+def certain(loads: Loads, i: int) -> MotorSide:
+    """The balance of joint i, if its torque constant shows in it. Raises PoorLogError."""
+    side = balance(loads, i)
+    _require_load(loads, side, i)
+    _require_certainty(loads, side, i)
+    return side
+
+
+def _better(loads: Loads, sides: dict[int, MotorSide]) -> bool:
+    """Whether other constants than robot.yaml's leave less of held-out torques."""
+    ratios = [_left(side) / _left(balance(loads, i, known=True)) for i, side in sides.items()]
+    return float(np.mean(np.square(ratios))) < 1.0
 
 
 def _require_load(loads: Loads, side: MotorSide, i: int) -> None:
@@ -105,7 +122,7 @@ def _require_right_weights(loads: Loads, side: MotorSide, i: int) -> None:
     """Torques that other weights explain much better contradict those that are said to be known."""
     if loads.weights_share >= MASS_SHARE:
         return
-    free = balance(loads.trusting(MASS_SHARE), i)
+    free = balance(Loads(loads.arm, loads.motion, MASS_SHARE), i)
     left, without = (_left(each) for each in (free, side))
     if left < CONTRADICTED * without:
         raise PoorLogError(

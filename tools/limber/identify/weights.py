@@ -4,31 +4,30 @@ Torque is linear in mass, mass times centre and inertia of each body, tau = Y(q,
 joints see some combinations only (Gautier, Khalil, "Direct calculation of minimum set of inertial
 parameters of serial robots", 1990). Estimated is the change of pi that explains the torques and
 lies nearest to the URDF, which serves as the prior of a Bayesian least-squares estimate: what
-the torques do not show stays as it was. Friction and a constant offset of each joint, and errors of
-inertias, are estimated along with it.
+the torques do not show stays as it was. Friction, offset and scale of the torque of each joint, and
+errors of inertias, are estimated along with it.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from limber.identify.doubt import ROTOR_SHARE, Loads, prior_std
-from limber.identify.regression import FLOOR, Fit, Unknowns, fit, folds, solve
+from limber.identify.regression import FLOOR, FOLDS, Fit, Unknowns, fit, solve
 
-KAPPA_STD = 0.05  # of torque constants and of the scale of torque sensors, taken as believed
+MOTOR_SCALE, SENSOR_SCALE = 0.05, 0.02  # standard deviation of torque constants, torque sensors
 MEASURED = 0.3  # of its prior deviation: combinations known better than this count as measured
-OFFSET_SHARE = 0.1  # of the greatest torque: a likely offset
 LIGHTEST, HEAVIEST = -0.8, 3.0  # change of a mass, in shares of it
 ROUNDS = 3
-OWN = 4  # columns of each joint: Coulomb, viscous, offset, rotor
+OWN = 5  # columns of each joint: Coulomb, viscous, offset, rotor, scale of its torque
 
 
 @dataclass(frozen=True)
 class Weights:
     """Change of the 10 parameters of every body; `seen`: how many combinations of them.
 
-    By joint: `own`, Coulomb and viscous friction, offset of its torque, error of the rotor's
-    inertia; what is unexplained before and after, N m rms.
+    By joint: `own`, in the order of OWN; what is unexplained before and after, N m rms.
     """
 
     change: np.ndarray
@@ -42,17 +41,17 @@ class Weights:
 
 @dataclass(frozen=True)
 class Problem:
-    """A x = r of one joint, and which half second each row is of. `scale`: r per unit of an error
-    of the torque's scale.
-    """
+    """A x = r of one joint, and which half second each row is of. `offset`: a likely one."""
 
     A: np.ndarray
     r: np.ndarray
-    scale: np.ndarray
     block: np.ndarray
+    offset: float
 
 
-def problems(loads: Loads, excess: np.ndarray, used: list[int]) -> list[Problem]:
+def problems(
+    loads: Loads, excess: np.ndarray, used: list[int], offset_share: float
+) -> list[Problem]:
     """`excess`: torque at the joints beyond the model's, N x n."""
     found = []
     size = loads.regressor.shape[2]
@@ -62,7 +61,8 @@ def problems(loads: Loads, excess: np.ndarray, used: list[int]) -> list[Problem]
         A[:, :size] = loads.regressor[rows, i]
         A[:, size + OWN * k : size + OWN * (k + 1)] = own_terms(loads, i)
         r = excess[rows, i]
-        found.append(Problem(A, r, r + loads.model[rows, i], loads.motion.block[rows]))
+        likely = offset_share * float(np.abs(r + loads.model[rows, i]).max()) + FLOOR
+        found.append(Problem(A, r, loads.motion.block[rows], likely))
     return found
 
 
@@ -72,7 +72,7 @@ def estimate(loads: Loads, parts: list[Problem], used: list[int]) -> Weights:
     size = len(prior)
     before = [_unexplained(part, size) for part in parts]
     sigma, found = _fit(parts, unknowns)
-    covariance = found.covariance + _doubt_of_scale(parts, sigma, found)
+    covariance = found.covariance
     changes = covariance[:size, :size]
     live = prior > 0
     relative = changes[np.ix_(live, live)] / np.outer(prior[live], prior[live])
@@ -88,16 +88,14 @@ def estimate(loads: Loads, parts: list[Problem], used: list[int]) -> Weights:
 
 
 def held_out(loads: Loads, parts: list[Problem], used: list[int], changed) -> np.ndarray:
-    """Per joint, rms of what URDF and friction leave of torques that the fit has not seen, before
-    and after; 2 x joints. `changed`: from a change of all parameters to the one that a URDF with
+    """Per joint, rms of what URDF and friction leave of torques at places that the fit has not seen,
+    before and after; 2 x joints. `changed`: from a change of all parameters to the one that a URDF with
     other masses and centres makes. Offsets count as unexplained.
     """
     prior = prior_std(loads.arm, loads.weights_share)
     unknowns, size = _unknowns(loads, parts, used, prior), len(prior)
     left = [[np.zeros(len(part.r)) for part in parts] for _ in range(2)]
-    blocks = np.unique(np.concatenate([part.block for part in parts]))
-    for seen in folds(blocks):
-        out = blocks[seen]
+    for out in places(loads):
         x = _balanced([_without(part, out) for part in parts], unknowns)[1]
         proposed = changed(x[:size])
         for k, part in enumerate(parts):
@@ -109,13 +107,26 @@ def held_out(loads: Loads, parts: list[Problem], used: list[int], changed) -> np
     return np.array([[np.sqrt(np.mean(r**2)) for r in each] for each in left])
 
 
+def places(loads: Loads) -> Iterator[np.ndarray]:
+    """Half seconds in FOLDS parts of the space of poses, along its longest direction: the same
+    poses passed once more would not show what a fit makes of others.
+    """
+    motion = loads.motion
+    blocks = np.unique(motion.block)
+    poses = np.array([motion.q[motion.block == block].mean(axis=0) for block in blocks])
+    poses -= poses.mean(axis=0)
+    longest = np.linalg.svd(poses, full_matrices=False)[2][0]
+    yield from np.array_split(blocks[np.argsort(poses @ longest)], FOLDS)
+
+
 def own_terms(loads: Loads, i: int) -> np.ndarray:
-    """Coulomb and viscous friction, offset and rotor of joint i, per unit, while it moves."""
+    """Of joint i per unit while it moves, in the order of OWN."""
     motion = loads.motion
     rows = motion.moving[:, i]
     speed = motion.v[rows, i]
     rotor = motion.theta_ddot[rows, i] * (not motion.torque_sensor[i])
-    return np.stack([np.sign(speed), speed, np.ones_like(speed), rotor], axis=1)
+    model = loads.model[rows, i]
+    return np.stack([np.sign(speed), speed, np.ones_like(speed), rotor, model], axis=1)
 
 
 def _unknowns(loads: Loads, parts: list[Problem], used: list[int], prior: np.ndarray) -> Unknowns:
@@ -125,8 +136,10 @@ def _unknowns(loads: Loads, parts: list[Problem], used: list[int], prior: np.nda
     for k, i in enumerate(used):
         own = size + OWN * k
         found.low[own : own + 2] = 0.0
-        found.prior[own + 2] = OFFSET_SHARE * np.abs(parts[k].scale).max() + FLOOR
+        found.prior[own + 2] = parts[k].offset
         found.prior[own + 3] = ROTOR_SHARE * loads.arm.joints[i].rotor_inertia + 1e-12
+        sensor = loads.motion.torque_sensor[i]
+        found.prior[own + 4] = SENSOR_SCALE if sensor else MOTOR_SCALE
     for j, body in enumerate(loads.arm.robot.dynamics.bodies):
         mass = body.inertial.mass
         found.low[10 * j], found.high[10 * j] = LIGHTEST * mass, HEAVIEST * mass
@@ -135,7 +148,7 @@ def _unknowns(loads: Loads, parts: list[Problem], used: list[int], prior: np.nda
 
 def _without(part: Problem, out: np.ndarray) -> Problem:
     rows = ~np.isin(part.block, out)
-    return Problem(part.A[rows], part.r[rows], part.scale[rows], part.block[rows])
+    return Problem(part.A[rows], part.r[rows], part.block[rows], part.offset)
 
 
 def _stacked(parts: list[Problem], sigma: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -158,15 +171,6 @@ def _fit(parts: list[Problem], unknowns: Unknowns) -> tuple[np.ndarray, Fit]:
     sigma, _ = _balanced(parts, unknowns)
     A, r, together = _stacked(parts, sigma)
     return sigma, fit(A, r, np.concatenate([part.block for part in parts]), unknowns, together)
-
-
-def _doubt_of_scale(parts: list[Problem], sigma: np.ndarray, found: Fit) -> np.ndarray:
-    """What errors of torque constants and sensors' scales add to the covariance."""
-    total = np.zeros_like(found.covariance)
-    for part, std in zip(parts, sigma, strict=True):
-        moved = found.response(part.A / std, KAPPA_STD * part.scale / std)
-        total += np.outer(moved, moved)
-    return total
 
 
 def _unexplained(part: Problem, size: int) -> float:
