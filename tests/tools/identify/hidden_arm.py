@@ -16,7 +16,7 @@ from limber.identify.recording import Recording
 RATE_HZ = 200.0
 GRAVITY = np.array([0.0, 0.0, -9.81])
 GEAR, CONSTANT, REACH = 50.0, 0.1, 0.35  # N m/A at the rotor; m from joint to joint
-FURTHEST = 1.2  # rad
+POSES, FURTHEST = 5, 1.2  # of a tour; rad
 WEIGHED = 0.01  # share by which masses that were weighed are off
 
 
@@ -142,7 +142,8 @@ def _joint(rng: np.random.Generator, i: int, sensor: bool) -> Joint:
 def motion(arm: HiddenArm, seed: int) -> np.ndarray:
     """Angles through random poses and back, slow, then fast, then a creep; N x n."""
     rng = np.random.default_rng([arm.seed, seed])
-    poses = rng.uniform(-FURTHEST, FURTHEST, (4, len(arm.joints)))
+    share = [rng.permutation(POSES) / (POSES - 1) for _ in arm.joints]
+    poses = FURTHEST * (2.0 * np.array(share).T - 1.0)
     tour = [*poses, *poses[-2::-1]]
     creep = [tour[-1], tour[-1] + 0.15, tour[-1] - 0.15, tour[-1]]
     return np.vstack([_moves(tour, 2.5, 0.3), _moves(tour, 1.0, 0.1), _moves(creep, 4.0, 0.1)])

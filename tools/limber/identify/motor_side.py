@@ -61,13 +61,15 @@ class MotorSide:
             believed += x[STRIBECK] * sign * np.exp(-((speed / self.stribeck_speed) ** 2))
         return self.kappa * believed
 
-    def unseen(self, *laws: int) -> np.ndarray:
+    def unseen(self, *laws: int, errors: bool = False) -> np.ndarray:
         """What load, offset and these terms leave of the motor's torque, each sample by a fit to
-        other parts of the recording; without what was found to be wrong with the model.
+        other parts of the recording. `errors`: with what was found to be wrong with the model.
         """
         A, y, unknowns = _problem(self, self.stribeck_speed)
+        first = STRIBECK + (self.stribeck_speed is not None)
         terms = np.arange(A.shape[1]) + self.known
-        return held_out(A, y, self.block, unknowns, np.isin(terms, [LOAD, OFFSET, *laws]))
+        shown = np.isin(terms, [LOAD, OFFSET, *laws]) & (terms < first)
+        return held_out(A, y, self.block, unknowns, shown | (errors & (terms >= first)))
 
 
 def balance(loads: Loads, i: int, known: bool = False) -> MotorSide:
@@ -181,6 +183,6 @@ def _with_doubt(side: MotorSide) -> MotorSide:
 
 def _smaller(found: MotorSide, side: MotorSide) -> bool:
     """Whether the Stribeck term makes held-out residuals smaller."""
-    everything = [COULOMB, VISCOUS, *range(STRIBECK, STRIBECK + 1 + side.errors.shape[1])]
-    with_it, without = found.unseen(*everything), side.unseen(*everything)
+    laws = (COULOMB, VISCOUS, STRIBECK)
+    with_it, without = found.unseen(*laws, errors=True), side.unseen(*laws, errors=True)
     return float(np.std(with_it)) < LESS * float(np.std(without))

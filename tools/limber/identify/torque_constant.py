@@ -27,6 +27,7 @@ from limber.identify.motor_side import (
 from limber.identify.regression import PoorLogError
 
 WORST_STD = 0.05  # of kappa
+SURE = 2.0  # standard errors; what is closer to robot.yaml's is the same
 LEAST_NM = 0.3  # by which the load has to change
 CONTRADICTED = 0.8  # of what is unexplained, if other weights are allowed
 APART, APART_SHARE = 3.0, 0.02  # standard errors, and share, by which joints may differ
@@ -71,9 +72,18 @@ def certain(loads: Loads, i: int) -> MotorSide:
 
 
 def _better(loads: Loads, sides: dict[int, MotorSide]) -> bool:
-    """Whether other constants than robot.yaml's leave less of held-out torques."""
-    ratios = [_left(side) / _left(balance(loads, i, known=True)) for i, side in sides.items()]
-    return float(np.mean(np.square(ratios))) < 1.0
+    """Whether the joints with a motor show another constant than robot.yaml's, and leave less of
+    held-out torques with it, the URDF as it is.
+    """
+    if not any(abs(side.kappa - 1.0) > SURE * side.kappa_std for side in sides.values()):
+        return False
+    pairs = [(_left(side), _left(balance(loads, i, known=True))) for i, side in sides.items()]
+    return all(left < believed for left, believed in pairs)
+
+
+def _left(side: MotorSide, errors: bool = False) -> float:
+    """rms of held-out torques; `errors`: with what was found to be wrong with the model."""
+    return float(np.std(side.unseen(COULOMB, VISCOUS, STRIBECK, errors=errors)))
 
 
 def _require_load(loads: Loads, side: MotorSide, i: int) -> None:
@@ -123,18 +133,12 @@ def _require_right_weights(loads: Loads, side: MotorSide, i: int) -> None:
     if loads.weights_share >= MASS_SHARE:
         return
     free = balance(Loads(loads.arm, loads.motion, MASS_SHARE), i)
-    left, without = (_left(each) for each in (free, side))
+    left, without = (_left(each, errors=True) for each in (free, side))
     if left < CONTRADICTED * without:
         raise PoorLogError(
             f"the URDF's weights leave {without:.3g} N m rms of held-out torques unexplained, "
             f"other weights {left:.3g}: identify gravity first"
         )
-
-
-def _left(side: MotorSide) -> float:
-    """rms of held-out torques, with what was found to be wrong with the model."""
-    errors = range(STRIBECK, STRIBECK + 1 + side.errors.shape[1])
-    return float(np.std(side.unseen(COULOMB, VISCOUS, *errors)))
 
 
 def _by_motor(arm: Arm, sides: dict[int, MotorSide]) -> dict[str, list[int]]:

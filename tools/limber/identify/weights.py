@@ -8,7 +8,7 @@ the torques do not show stays as it was. Friction, offset and scale of the torqu
 errors of inertias, are estimated along with it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,10 +87,15 @@ def estimate(loads: Loads, parts: list[Problem], used: list[int]) -> Weights:
     )
 
 
-def held_out(loads: Loads, parts: list[Problem], used: list[int], changed) -> np.ndarray:
-    """Per joint, rms of what URDF and friction leave of torques at places that the fit has not seen,
-    before and after; 2 x joints. `changed`: from a change of all parameters to the one that a URDF with
-    other masses and centres makes. Offsets count as unexplained.
+def held_out(
+    loads: Loads,
+    parts: list[Problem],
+    used: list[int],
+    changed: Callable[[np.ndarray], np.ndarray],
+) -> np.ndarray:
+    """Per joint, rms of what URDF and friction leave of torques at places that the fit has not
+    seen, before and after; 2 x joints. `changed`: from a change of all parameters to the one that a
+    URDF with other masses and centres makes. Offsets count as unexplained.
     """
     prior = prior_std(loads.arm, loads.weights_share)
     unknowns, size = _unknowns(loads, parts, used, prior), len(prior)
