@@ -100,6 +100,22 @@ for kind, what in (
     _from_motion(kind, what, kind in ("torque-constant", "friction"))
 
 
+@app.command("arm", epilog="Example: limber identify arm tour.yaml --out out/identified")
+def whole_arm(
+    runs: RunsOrCsv = None,
+    robot: Robot = None,
+    csv: Csv = None,
+    columns: Columns = None,
+    weights_known: WeightsKnown = None,
+    out: Out = None,
+) -> None:
+    """Identify weights, constants, friction and springs in one go; a scenario is run in the lab."""
+    from limber.identify import commands
+
+    source = commands.Source(runs or [], robot, csv, columns)
+    commands.run_all(source, weights_known, out, console)
+
+
 @app.command("payload", epilog="Example: limber identify payload out/with_tool")
 def payload(
     runs: Runs,

@@ -13,6 +13,7 @@ from limber.cli import (
     can,
     dev,
     experiment,
+    export,
     faults,
     identify,
     incident,
@@ -37,6 +38,7 @@ for group in (run, live, monitor, log, referee, dev):
     app.add_typer(group.app)
 app.add_typer(can.app, name="can")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(export.app, name="export")
 app.add_typer(faults.app, name="faults")
 app.add_typer(identify.app, name="identify")
 app.add_typer(incident.app, name="incident")

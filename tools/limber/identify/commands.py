@@ -1,20 +1,29 @@
 """The commands of `limber identify`: read logs, identify, print a table, write files."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from limber.errors import InputError
-from limber.identify import excitation, friction, gravity, proposal, stiffness, torque_constant
+from limber.identify import (
+    excitation,
+    friction,
+    gravity,
+    proposal,
+    stiffness,
+    torque_constant,
+    whole_arm,
+)
 from limber.identify.arm import Arm, load_arm
 from limber.identify.csv_recording import read_csv
 from limber.identify.findings import Findings
 from limber.identify.motion import Motion, motion_of
 from limber.identify.recording import Recording, read_logs
 from limber.log.reader import log_file
+from limber.model.validation import checker_arguments, load_checked, run_checker
 from limber.paths import output_folder
 
 KINDS: dict[str, Callable[[Arm, Motion, float | None], Findings]] = {
@@ -39,11 +48,11 @@ class Source:
         if self.csv is None:
             if not self.runs:
                 raise InputError("name the log or folder of a run, or a recording with --csv")
-            arm = arm_of(self.runs, self.robot)
+            arm = checked(arm_of(self.runs, self.robot))
             return arm, read_logs(self.runs, arm), folder_of(self.runs)
         if self.runs or self.columns is None or self.robot is None:
             raise InputError("--csv FILE goes with --columns FILE and --robot, and without runs")
-        arm = load_arm(self.robot)
+        arm = checked(load_arm(self.robot))
         return arm, read_csv(self.csv, self.columns, arm), self.csv.parent / "identify"
 
 
@@ -56,6 +65,53 @@ def run(
     folder = output_folder(out or beside)
     files = proposal.write(found, arm, kind, folder)
     _write(found, kind, folder, files, console)
+
+
+def run_all(
+    source: Source, weights_known: float | None, out: Path | None, console: Console
+) -> None:
+    """Of a scenario, first its tour in the lab. Writes a whole robot folder."""
+    scenario = next((path for path in source.runs if path.suffix in (".yaml", ".yml")), None)
+    if scenario is not None:
+        source, out = _recorded(source, scenario, out)
+    arm, recordings, beside = source.read()
+    folder = output_folder(out or beside)
+    if (folder / "robot").exists():
+        raise InputError(f"{folder / 'robot'} exists: give another --out, or remove it")
+    with console.status("identifying"):
+        proposed = whole_arm.propose(arm, motion_of(recordings), weights_known, folder / "robot")
+    for found in proposed.found:
+        console.print(f"\n[bold]{found.subject}[/bold]")
+        if found.values:
+            _print(found, console)
+        else:
+            for joint, reason in found.refused.items():
+                console.print(f"{joint}: not identified: {reason}")
+        name = found.subject.replace(" ", "_")
+        _write(found, name, folder, [], console)
+    if source.csv is None:
+        again = _again(scenario, arm, proposed, folder, console)
+        console.print(whole_arm.sags(arm, proposed, source.runs, again))
+    console.print(f"wrote {proposed.folder}: the robot as it is proposed", soft_wrap=True)
+
+
+def _recorded(source: Source, scenario: Path, out: Path | None) -> tuple[Source, Path]:
+    if len(source.runs) > 1 or source.csv is not None:
+        raise InputError("a scenario is run by itself: name no other runs and no CSV file")
+    folder = output_folder(out or Path("out") / f"identify_{scenario.stem}")
+    loaded = load_checked(scenario)
+    log = whole_arm.record(scenario, folder / "before.lcmlog")
+    return replace(source, runs=[log], robot=str(loaded.robot.folder)), folder
+
+
+def _again(
+    scenario: Path | None, arm: Arm, proposed: whole_arm.Proposal, folder: Path, console: Console
+) -> Path | None:
+    if scenario is None:
+        return None
+    with console.status("running the tour with the proposal"):
+        path = whole_arm.scenario_with(scenario, arm, proposed, folder / "again.yaml")
+        return whole_arm.record(path, folder / "after.lcmlog")
 
 
 def plan(robot: str, spread: float, count: int, seed: int, out: Path, console: Console) -> None:
@@ -75,6 +131,16 @@ def arm_of(runs: list[Path], robot: str | None) -> Arm:
     if not (folder / "robot.yaml").is_file():
         raise InputError(f"no robot.yaml lies beside {runs[0]}: name the arm with --robot")
     return load_arm(str(folder.resolve()))
+
+
+def checked(arm: Arm) -> Arm:
+    """Raises InputError if the URDF is one that limber's programs refuse."""
+    robot = arm.robot
+    done = run_checker(checker_arguments(str(robot.urdf), robot.base, robot.tip))
+    if done.returncode != 0:
+        lines = [line for line in done.stderr.splitlines() if line.strip()]
+        raise InputError(lines[-1].removeprefix("limber-check: ") if lines else str(robot.urdf))
+    return arm
 
 
 def folder_of(runs: list[Path]) -> Path:

@@ -17,7 +17,7 @@ MASS_SHARE = 0.3  # standard deviation of a mass of the URDF, unless weighed,
 CENTRE_M = 0.05  # of a centre of mass, in proportion,
 INERTIA_SHARE = 0.3  # of an inertia, also if weighed,
 ROTOR_SHARE = 0.3  # and of a rotor's inertia
-LEAST_NM = 1e-3  # rms of what counts
+LEAST_NM = 1e-5  # rms of what counts
 
 
 def prior_std(arm: Arm, share: float = MASS_SHARE) -> np.ndarray:

@@ -20,31 +20,33 @@ APART = 0.05  # rad or m: closer poses are one
 class StaticPoses:
     """One row a pose: mean position, and mean torque less the gravity torque of the model.
 
-    The torque is what the joint's torque sensor reads or, without one, what was applied.
+    The torque is what the joint's torque sensor reads or, without one, what was applied. `off_m`:
+    how far the tip is from its goal.
     """
 
     q: np.ndarray
     tau: np.ndarray
+    off_m: np.ndarray
 
 
 def static_poses(paths: list[Path], dynamics: ArmDynamics) -> StaticPoses:
     windows = [window for path in paths for window in _windows(path, dynamics.size)]
     if not windows:
         raise InputError(f"nowhere does the arm stand still for {WINDOW_S} s while it is held")
-    groups: list[list[tuple[np.ndarray, np.ndarray]]] = []
-    for q, tau in windows:
-        near = next((g for g in groups if np.abs(g[0][0] - q).max() < APART), None)
+    groups: list[list[tuple[np.ndarray, np.ndarray, float]]] = []
+    for window in windows:
+        near = next((g for g in groups if np.abs(g[0][0] - window[0]).max() < APART), None)
         if near is None:
-            groups.append([(q, tau)])
+            groups.append([window])
         else:
-            near.append((q, tau))
+            near.append(window)
     means = [[np.mean(values, axis=0) for values in zip(*g, strict=True)] for g in groups]
-    q, tau = (np.array([mean[i] for mean in means]) for i in range(2))
-    return StaticPoses(q, tau - dynamics.gravity_torque(q))
+    q, tau, off_m = (np.array([mean[i] for mean in means]) for i in range(3))
+    return StaticPoses(q, tau - dynamics.gravity_torque(q), off_m)
 
 
-def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(q, tau) of every window in which the arm is held and still, and was held for a while: at
+def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray, float]]:
+    """(q, tau, off_m) of every window in which the arm is held and still, and was for a while: at
     first it may lie in a stand.
     """
     log = Log(path)
@@ -57,10 +59,11 @@ def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray]]:
     held &= time_ns > time_ns[np.argmax(held)] + STAND_S * 1e9
     sensor = state["joint_flags"][:, :n] & flags.JOINT_TORQUE_SENSOR != 0
     q, tau = state["q"][:, :n], np.where(sensor, state["tau"][:, :n], state["tau_applied"][:, :n])
+    off_m = np.linalg.norm(status["p_BT"] - status["p_BD"], axis=1)
     slots = time_ns // int(WINDOW_S * 1e9)
     found = []
     for slot in np.unique(slots):
         inside = slots == slot
         if held[inside].all() and np.ptp(q[inside], axis=0).max() < STILL:
-            found.append((q[inside].mean(axis=0), tau[inside].mean(axis=0)))
+            found.append((*(x[inside].mean(axis=0) for x in (q, tau)), off_m[inside].mean()))
     return found
