@@ -124,9 +124,15 @@ def judge_motors(
         if law:
             before, after = motor - need - sliding(GUESS, speed), kappa * motor - need - slides
             judge(tally, f"friction of {hidden.seed} {name}", before, after)
-        if name in kappas and law:
-            before, after = motor - need - slides, kappas[name] * motor - need - slides
+        if name in kappas:
+            before, after = (unslid(motor - need / kappa, speed) for kappa in (1.0, kappas[name]))
             judge(tally, f"constant of {hidden.seed} {name}", before, after)
+
+
+def unslid(torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """What no Coulomb and viscous friction and offset explains."""
+    A = np.column_stack([np.sign(speed), speed, np.ones_like(speed)])
+    return torque - A @ np.linalg.lstsq(A, torque, rcond=None)[0]
 
 
 def sliding(law: dict[str, float], speed: np.ndarray) -> np.ndarray:

@@ -1,9 +1,10 @@
 """A robot folder as a model for MuJoCo (MJCF): bodies, rotors, friction, limits, motors.
 
-One body a moving joint, as limber lumps them, in the frame of the joint's child link; MuJoCo's world
-is the arm's base. Of robot.yaml: armature = n² B, damping = viscous and frictionloss = Coulomb friction on both sides of the
-transmission, range and forcerange = the tightest limits. What MuJoCo's joints do not have is left
-out and said in a comment: breakaway, Stribeck speeds, springs between motor and link, geometry.
+One body a moving joint, as limber lumps them, in the frame of the joint's child link; MuJoCo's
+world is the arm's base. Of robot.yaml: armature = n² B, damping = viscous and frictionloss =
+Coulomb friction on both sides of the transmission, range and forcerange = the tightest limits. What
+MuJoCo's joints do not have is left out and said in a comment: breakaway, Stribeck speeds, springs
+between motor and link, geometry.
 Element and attribute names: MuJoCo's XML reference.
 """
 
