@@ -159,8 +159,7 @@ def judge_weights(tally: Tally, arm: Arm, hidden: HiddenArm, other: Motion, foun
         (measured - model.torque(other.q, other.v, other.a))[rows]
         for model in (arm.robot.dynamics, changed)
     )
-    scale = np.sqrt(np.mean(before**2, axis=0))
-    judge(tally, f"weights of {hidden.seed}", before / scale, after / scale)
+    judge(tally, f"weights of {hidden.seed}", before, after)
 
 
 def test_the_truth_lies_within_three_standard_errors(tally):

@@ -6,13 +6,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+import yaml
 from two_mass_joint import BELIEVED, CONSTANT, LEVER, MASS, Friction, Truth, run, tour
 
 from limber.errors import InputError
 from limber.identify import commands, friction, gravity, stiffness, torque_constant
 from limber.identify.arm import load_arm
-from limber.identify.findings import Findings
-from limber.identify.motion import read_motion
+from limber.identify.motion import motion_of, read_motion
+from limber.identify.recording import read_logs
 from limber.identify.regression import PoorLogError, fit, ratio
 
 HIDDEN = Truth(
@@ -35,11 +36,12 @@ def rigid(tmp_path_factory):
     return run(tmp_path_factory.mktemp("rigid"), truth, BELIEVED)
 
 
-def found_in(folder, module) -> dict[str, tuple[float, float]]:
+WEIGHED = 0.001  # share to which the pendulum's mass is known, where it is
+
+
+def found_in(folder, module, *weights: float) -> dict[str, tuple[float, float]]:
     arm = load_arm(str(folder))
-    findings = module.identify(arm, read_motion([folder], arm))
-    if not isinstance(findings, Findings):
-        findings = findings[0]
+    findings = module.identify(arm, read_motion([folder], arm), *weights)
     findings.require_something()
     return {value.name: (value.value, value.std) for value in findings.values}
 
@@ -52,14 +54,14 @@ def agrees(found: tuple[float, float], truth: float, share: float) -> bool:
 
 @pytest.mark.parametrize("kind", ["flexible", "rigid"])
 def test_torque_constant(kind, request):
-    found = found_in(request.getfixturevalue(kind), torque_constant)
+    found = found_in(request.getfixturevalue(kind), torque_constant, WEIGHED)
     assert agrees(found["rotor_torque_constant_Nm_per_A"], 0.85 * CONSTANT, 0.005)
 
 
 @pytest.mark.parametrize("kind", ["flexible", "rigid"])
 def test_friction_of_the_motor(kind, request):
     """In true torque although the drive believes in another torque constant."""
-    found = found_in(request.getfixturevalue(kind), friction)
+    found = found_in(request.getfixturevalue(kind), friction, WEIGHED)
     assert agrees(found["friction: coulomb_Nm"], 5.0, 0.01)
     assert agrees(found["friction: viscous_Nms_per_rad"], 8.0, 0.01)
     assert agrees(found["friction: static_Nm"], 7.5, 0.02)
@@ -134,7 +136,7 @@ def nearly_still() -> np.ndarray:
         (stiffness, still, "bends the spring too little"),
         (torque_constant, one_way, "one direction only"),
         (friction, one_way, "one direction only"),
-        (torque_constant, nearly_still, "changes by only|too uniform"),
+        (torque_constant, nearly_still, "gravity changes its load by only"),
         (gravity, nearly_still, "change its torque by only"),
     ],
 )
@@ -189,12 +191,71 @@ def test_command_proposes_and_leaves_the_robot_alone(flexible, limber, tmp_path)
     assert len(changed) == 2 and number in changed[1]
 
 
-def test_gravity_command_proposes_a_urdf(flexible, limber, tmp_path):
-    done = limber("identify", "gravity", str(flexible), "--out", str(tmp_path))
+@pytest.fixture(scope="module")
+def heavier(tmp_path_factory):
+    """The pendulum weighs 15 % more than its URDF says."""
+    return run(
+        tmp_path_factory.mktemp("heavier"), replace(HIDDEN, kappa=1.0, weight=1.15), BELIEVED
+    )
+
+
+def test_gravity_command_proposes_a_urdf(heavier, limber, tmp_path):
+    done = limber("identify", "gravity", str(heavier), "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr
     assert '<link name="flange"' in (tmp_path / "gravity.robot.urdf").read_text()
     assert (tmp_path / "gravity.diff").read_text().startswith("--- ")
     assert (tmp_path / "gravity.png").is_file()
+
+
+def test_a_urdf_that_is_right_stays(flexible, limber, tmp_path):
+    done = limber("identify", "gravity", str(flexible), "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert "no other is proposed" in done.stdout
+    assert not (tmp_path / "gravity.robot.urdf").exists()
+
+
+def test_a_constant_rests_on_weights(rigid, tmp_path):
+    """Without a torque sensor: refused as long as the weights are a guess, and if they are claimed
+    to be known and are not.
+    """
+    with pytest.raises(InputError, match=r"known to 30%.*identify gravity first"):
+        found_in(rigid, torque_constant)
+    own = found_in(rigid, friction)
+    assert agrees(own["friction: coulomb_Nm"], 5.0 / 0.85, 0.01), "in the drive's own N m"
+
+
+def test_all_in_one_go(heavier, limber, tmp_path):
+    """Weights, constant, friction and spring of one log, as a robot folder."""
+    done = limber("identify", "arm", str(heavier), "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    robot = yaml.safe_load((tmp_path / "out" / "robot" / "robot.yaml").read_text())
+    joint = robot["joints"]["j1"]
+    assert joint["transmission"]["spring"]["stiffness_Nm_per_rad"] == pytest.approx(3000, rel=2e-3)
+    assert joint["friction"]["coulomb_Nm"] == pytest.approx(5.0, rel=0.02)
+    body = load_arm(str(tmp_path / "out" / "robot")).robot.dynamics.bodies[0]
+    assert body.moment[1] == pytest.approx(-1.15 * MASS * LEVER, rel=3e-3)
+    again = limber("identify", "arm", str(heavier), "--out", str(tmp_path / "out"))
+    assert again.returncode == 2 and "exists" in again.stderr
+
+
+def test_encoders_that_answer_late(flexible):
+    """A link encoder 2 ms behind the motor's: it is told, and the stiffness stays right."""
+    arm = load_arm(str(flexible))
+    recording = read_logs([flexible], arm)[0]
+    late = np.vstack([recording.q[:1]] * 2 + [recording.q[:-2]])
+    found = stiffness.identify(arm, motion_of([replace(recording, q=late)])).values
+    assert found[0].value == pytest.approx(3000.0, rel=2e-3)
+    assert found[1].value == pytest.approx(2e-3, rel=0.02)
+
+
+def test_what_a_motion_lacks_is_said(tmp_path):
+    """Fast all the time, and never slow."""
+    path = tour([0.0] + [1.2, -1.2] * 12 + [0.0], 0.6, 0.0)
+    folder = run(tmp_path, replace(HIDDEN, kappa=1.0), BELIEVED, path)
+    arm = load_arm(str(folder))
+    motion = read_motion([folder], arm)
+    fast = replace(motion, moving=motion.moving & (np.abs(motion.theta_dot) > 0.5))
+    assert any("slower than 0.1 rad/s" in note for note in friction.identify(arm, fast).notes)
 
 
 def test_commands_refuse_in_one_line(tmp_path, limber, poor_run):

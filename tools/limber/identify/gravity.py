@@ -99,8 +99,7 @@ def _refusals(loads: Loads) -> dict[str, str]:
     joints = loads.arm.joints
     found = {joint.name: _refusal(loads, i) for i, joint in enumerate(joints)}
     found = {name: reason for name, reason in found.items() if reason}
-    light = {joint.name: _swing(loads, i) for i, joint in enumerate(joints)}
-    light = {name: swing for name, swing in light.items() if name not in found}
+    light = {j.name: _swing(loads, i) for i, j in enumerate(joints) if j.name not in found}
     if light and max(light.values()) < LEAST_NM:
         for name, swing in light.items():
             found[name] = f"likely errors of the URDF change its torque by only {swing:.2g} N m"

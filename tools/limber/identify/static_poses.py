@@ -53,6 +53,8 @@ def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray, float]]:
     status, state = log.read("CONTROLLER_STATUS"), log.read("JOINT_STATE")
     _, of_status, of_state = np.intersect1d(status["state_seq"], state["seq"], return_indices=True)
     status, state = status[of_status], state[of_state]
+    if not len(status):
+        return []
     modes, flags = map(messages.message_class, ("controller_status_t", "joint_state_t"))
     held = np.isin(status["mode"], (modes.MODE_HOLD, modes.MODE_ACTIVE))
     time_ns = state["time_ns"]

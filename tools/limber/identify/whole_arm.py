@@ -77,6 +77,13 @@ def measured_sag(poses: StaticPoses) -> float:
 
 
 def sags(arm: Arm, proposal: Proposal, logs: list[Path], again: Path | None) -> str:
+    try:
+        return _sags(arm, proposal, logs, again)
+    except InputError as reason:
+        return f"No sag is told: {reason}"
+
+
+def _sags(arm: Arm, proposal: Proposal, logs: list[Path], again: Path | None) -> str:
     before = static_poses(logs, arm.robot.dynamics)
     if again is not None:
         after = static_poses([again], arm.robot.dynamics)

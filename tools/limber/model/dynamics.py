@@ -63,7 +63,7 @@ class ArmDynamics:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
         zero = np.zeros_like(q)
         Y = self.regressor(q, zero, zero).reshape(len(q), self.size, self.size, PARAMETERS)
-        return Y[..., :4].reshape(len(q), self.size, -1)
+        return Y[..., :4].reshape(len(q), self.size, 4 * self.size)
 
     def regressor(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """N x n x 10n: torque(q, v, a) per `parameters()`, in which it is linear (Atkeson, An,
@@ -79,7 +79,7 @@ class ArmDynamics:
                 if not self._slides[i]:
                     arm = np.cross(z, frames.p[k] - frames.p[i])
                     Y[:, i, k] = np.einsum("nx,npx->np", z, N) + np.einsum("nx,npx->np", arm, F)
-        return Y.reshape(len(q), n, -1)
+        return Y.reshape(len(q), n, n * PARAMETERS)
 
     def parameters(self) -> np.ndarray:
         """10n, by body: mass, kg; mass times centre, kg m; xx, xy, xz, yy, yz, zz of the inertia
