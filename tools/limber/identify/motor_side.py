@@ -22,7 +22,7 @@ KAPPA_LOW, KAPPA_HIGH = 0.4, 2.5  # a drive that is further off is another drive
 SURE = 4.0  # standard errors
 HIGHEST_STRIBECK = 0.3  # rad/s or m/s
 EDGE = 0.02  # of the range of Stribeck speeds, logarithmic: there nothing was found
-LEAST_SLOW = 50  # samples below half the Stribeck speed: without them it is extrapolated
+LEAST_SLOW = 50  # samples below the Stribeck speed: without them it is extrapolated
 LESS = 0.98  # of what is unexplained without it
 RISE_SHARE, RISE_SPEED = (
     0.3,
@@ -144,7 +144,7 @@ def _with_stribeck(side: MotorSide) -> MotorSide:
     for control of systems with friction", 1995). v_s by search: the other unknowns are linear.
     """
     slow = np.sort(np.abs(side.speed))
-    lowest = 2.0 * slow[min(LEAST_SLOW, len(slow) - 1)]
+    lowest = slow[min(LEAST_SLOW, len(slow) - 1)]
     if not lowest < HIGHEST_STRIBECK:
         return _with_doubt(side)
 

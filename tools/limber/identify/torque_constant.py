@@ -67,7 +67,9 @@ def certain(loads: Loads, i: int) -> MotorSide:
     """The balance of joint i, if its torque constant shows in it. Raises PoorLogError."""
     side = balance(loads, i)
     _require_load(loads, side, i)
-    _require_certainty(loads, side, i)
+    if not loads.motion.torque_sensor[i]:
+        _require_right_weights(loads, side, i)
+    _require_certainty(side)
     return side
 
 
@@ -103,41 +105,35 @@ def _require_load(loads: Loads, side: MotorSide, i: int) -> None:
         )
 
 
-def _require_certainty(loads: Loads, side: MotorSide, i: int) -> None:
-    if (
-        not KAPPA_LOW < side.kappa < KAPPA_HIGH
-        or np.isclose(side.kappa, (KAPPA_LOW, KAPPA_HIGH), rtol=1e-6).any()
-    ):
-        raise PoorLogError(
-            f"its torque is not that of its load times {KAPPA_LOW:g} to {KAPPA_HIGH:g}: "
-            "check sign and gear ratio, and identify gravity first"
-        )
-    if not loads.motion.torque_sensor[i]:
-        _require_right_weights(loads, side, i)
-    if side.kappa_std <= WORST_STD:
-        return
-    if loads.motion.torque_sensor[i] or loads.weights_share < MASS_SHARE:
-        raise PoorLogError(
-            f"the result would be uncertain by {side.kappa_std:.0%}; move it where gravity pulls "
-            "more, or hang a known weight on"
-        )
-    raise PoorLogError(
-        f"it is measured against the URDF's weights; known to {loads.weights_share:.0%} they leave "
-        f"it uncertain by {side.kappa_std:.0%}: identify gravity first, or weigh the links and say "
-        "how well they are known with --weights-known"
-    )
-
-
 def _require_right_weights(loads: Loads, side: MotorSide, i: int) -> None:
-    """Torques that other weights explain much better contradict those that are said to be known."""
+    """Without a torque sensor, scale of the weights and constant are one: somebody has to vouch for
+    the weights, and torques that other weights explain much better contradict him.
+    """
     if loads.weights_share >= MASS_SHARE:
-        return
+        raise PoorLogError(
+            f"it has no torque sensor, and the URDF's weights are known to {MASS_SHARE:.0%} as of "
+            "CAD: identify gravity first, or weigh the links and say how well they are known with "
+            "--weights-known"
+        )
     free = balance(Loads(loads.arm, loads.motion, MASS_SHARE), i)
     left, without = (_left(each, errors=True) for each in (free, side))
     if left < CONTRADICTED * without:
         raise PoorLogError(
             f"the URDF's weights leave {without:.3g} N m rms of held-out torques unexplained, "
             f"other weights {left:.3g}: identify gravity first"
+        )
+
+
+def _require_certainty(side: MotorSide) -> None:
+    if np.isclose(side.kappa, (KAPPA_LOW, KAPPA_HIGH), rtol=1e-6).any():
+        raise PoorLogError(
+            f"its torque is not that of its load times {KAPPA_LOW:g} to {KAPPA_HIGH:g}: "
+            "check sign and gear ratio, and identify gravity first"
+        )
+    if not side.kappa_std <= WORST_STD * min(side.kappa, 1.0):
+        raise PoorLogError(
+            f"the result would be uncertain by {side.kappa_std / side.kappa:.0%}; move it where "
+            "gravity pulls more, or hang a known weight on"
         )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from limber.identify.doubt import ROTOR_SHARE, Loads, prior_std
 from limber.identify.regression import FLOOR, FOLDS, Fit, Unknowns, fit, solve
 
-MOTOR_SCALE, SENSOR_SCALE = 0.05, 0.02  # standard deviation of torque constants, torque sensors
+SCALE = 0.02  # standard deviation of torque constants and of the scale of torque sensors
 MEASURED = 0.3  # of its prior deviation: combinations known better than this count as measured
 LIGHTEST, HEAVIEST = -0.8, 3.0  # change of a mass, in shares of it
 ROUNDS = 3
@@ -143,8 +143,7 @@ def _unknowns(loads: Loads, parts: list[Problem], used: list[int], prior: np.nda
         found.low[own : own + 2] = 0.0
         found.prior[own + 2] = parts[k].offset
         found.prior[own + 3] = ROTOR_SHARE * loads.arm.joints[i].rotor_inertia + 1e-12
-        sensor = loads.motion.torque_sensor[i]
-        found.prior[own + 4] = SENSOR_SCALE if sensor else MOTOR_SCALE
+        found.prior[own + 4] = SCALE
     for j, body in enumerate(loads.arm.robot.dynamics.bodies):
         mass = body.inertial.mass
         found.low[10 * j], found.high[10 * j] = LIGHTEST * mass, HEAVIEST * mass
