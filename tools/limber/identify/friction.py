@@ -24,16 +24,17 @@ from limber.identify.motor_side import (
     MotorSide,
     balance,
 )
-from limber.identify.regression import PoorLogError, Unknowns, fit, ratio
+from limber.identify.regression import PoorLogError, Unknowns, fit, held_out, ratio
 from limber.identify.torque_constant import certain
 
 KAPPA_OFF = 0.03  # beyond it a note is added
 SURE = 4.0  # standard errors
-LEAST_LOAD = 0.1  # N m; less load does not determine the scale of the model
+SENSOR_SCALE = 0.02  # standard deviation of the scale of a torque sensor
 SLOW, LEAST_SLOW = 0.1, 50  # rad/s or m/s, and samples below it that show Coulomb friction
 LEAST_REVERSALS = 4
 SECTION, LINK_SECTION = "friction", "link_friction"
 COULOMB_KEY, VISCOUS_KEY = "coulomb_Nm", "viscous_Nms_per_rad"
+KEYS, UNITS = (COULOMB_KEY, VISCOUS_KEY), ("N m", "N m s/rad")
 STATIC_KEY, STRIBECK_KEY = "static_Nm", "stribeck_rad_per_s"
 
 
@@ -43,10 +44,10 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     loads = Loads(arm, motion, *([] if weights_share is None else [weights_share]))
     for i, joint in enumerate(arm.joints):
         if motion.torque_sensor[i]:
-            found.values += _link_side(joint, loads, i)
+            _link_side(found, joint, loads, i)
         try:
             side = _motor_side(loads, i)
-            better = _beats_robot_yaml(joint, side)
+            better = _beats_robot_yaml(joint, side, bool(motion.torque_sensor[i]))
         except PoorLogError as reason:
             side_of = "its motor's side: " if motion.torque_sensor[i] else ""
             found.refused[joint.name] = f"{side_of}{reason}"
@@ -86,7 +87,7 @@ def _motor_side(loads: Loads, i: int) -> MotorSide:
         return balance(loads, i, known=True)
 
 
-def _beats_robot_yaml(joint: JointBelief, side: MotorSide) -> bool:
+def _beats_robot_yaml(joint: JointBelief, side: MotorSide, sensor: bool) -> bool:
     """In parts of the recording that the fit has not seen. Raises PoorLogError if no friction would
     do as well.
     """
@@ -97,25 +98,24 @@ def _beats_robot_yaml(joint: JointBelief, side: MotorSide) -> bool:
             f"no friction leaves {_rms(none):.3g} N m rms of held-out torques unexplained, the "
             f"best law {found:.3g}: something else is at work; identify gravity first"
         )
-    return found < _rms(none - _believed(joint, side.speed) / side.kappa)
+    sections = (SECTION,) if sensor else (SECTION, LINK_SECTION)
+    believed = sum(_sliding(joint, section, side.speed) for section in sections)
+    return found < _rms(none - believed / side.kappa)
 
 
 def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _believed(joint: JointBelief, speed: np.ndarray) -> np.ndarray:
-    """Friction of robot.yaml on both sides of the transmission in steady sliding, N m."""
-    total = np.zeros_like(speed)
-    for section in (SECTION, LINK_SECTION):
-        coulomb, viscous, static, stribeck = (
-            joint.believed(section, joint.key(key)) or 0.0
-            for key in (COULOMB_KEY, VISCOUS_KEY, STATIC_KEY, STRIBECK_KEY)
-        )
-        total += np.sign(speed) * coulomb + viscous * speed
-        if static > coulomb and stribeck > 0.0:
-            bell = np.exp(-((speed / stribeck) ** 2))
-            total += (static - coulomb) * np.sign(speed) * bell
+def _sliding(joint: JointBelief, section: str, speed: np.ndarray) -> np.ndarray:
+    """Friction of robot.yaml on one side of the transmission, N m."""
+    coulomb, viscous, static, stribeck = (
+        joint.believed(section, joint.key(key)) or 0.0
+        for key in (COULOMB_KEY, VISCOUS_KEY, STATIC_KEY, STRIBECK_KEY)
+    )
+    total = np.sign(speed) * coulomb + viscous * speed
+    if static > coulomb and stribeck > 0.0:
+        total += (static - coulomb) * np.sign(speed) * np.exp(-((speed / stribeck) ** 2))
     return total
 
 
@@ -175,31 +175,35 @@ def _value(
     return Value(joint.name, f"{section}: {key}", unit, value, std, believed, path, proposed)
 
 
-def _link_side(joint: JointBelief, loads: Loads, i: int) -> list[Value]:
-    """From tau = s model + F_c sign(v) + d v + o with the model's likely errors; nothing if it does
+def _link_side(found: Findings, joint: JointBelief, loads: Loads, i: int) -> None:
+    """From tau = model + F_c sign(v) + d v + o with the model's likely errors; nothing if it does
     not stand out.
     """
     motion = loads.motion
-    rows = motion.moving[:, i]
+    rows, block = motion.moving[:, i], motion.block[motion.moving[:, i]]
     speed, model = motion.v[rows, i], loads.model[rows, i]
-    columns = [np.sign(speed), speed, np.ones_like(speed)]
-    if np.ptp(model) > LEAST_LOAD:
-        columns.append(model)
+    law = [np.sign(speed), speed, np.ones_like(speed)]
     errors = loads.errors_of_links(rows, i)
-    A = np.column_stack([*columns, errors])
+    A = np.column_stack([*law, SENSOR_SCALE * model, errors])
+    y = loads.torque[rows, i] - model
     unknowns = Unknowns.free(A.shape[1])
-    unknowns.low[:2], unknowns.prior[len(columns) :] = 0.0, 1.0
+    unknowns.low[:2], unknowns.prior[len(law) :] = 0.0, 1.0
     try:
-        found = fit(A, loads.torque[rows, i], motion.block[rows], unknowns)
+        fitted = fit(A, y, block, unknowns)
     except PoorLogError:
-        return []
-    if not np.any(found.x[:2] > SURE * found.std[:2]):
-        return []
-    keys = ((COULOMB_KEY, "N m"), (VISCOUS_KEY, "N m s/rad"))
-    return [
-        _value(joint, LINK_SECTION, joint.key(key), unit, float(x), float(std), float(x))
-        for (key, unit), x, std in zip(keys, found.x, found.std, strict=False)
-    ]
+        return
+    if not np.any(fitted.x[:2] > SURE * fitted.std[:2]):
+        return
+    none, left = (
+        held_out(A, y, block, unknowns, np.isin(np.arange(A.shape[1]), shown))
+        for shown in ([2], [0, 1, 2])
+    )
+    better = _rms(left) < min(_rms(none), _rms(none - _sliding(joint, LINK_SECTION, speed)))
+    if not better:
+        found.notes.append(f"{joint.name}: robot.yaml's link_friction does as well; it stays.")
+    for key, unit, x, std in zip(KEYS, UNITS, fitted.x, fitted.std, strict=False):
+        value = _value(joint, LINK_SECTION, joint.key(key), unit, float(x), float(std), float(x))
+        found.values.append(value if better else replace(value, path=None, proposed=None))
 
 
 def _panel(joint: JointBelief, side: MotorSide) -> Panel:
