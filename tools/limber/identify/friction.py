@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from limber.identify.arm import Arm, JointBelief
-from limber.identify.doubt import Loads
+from limber.identify.doubt import MASS_SHARE, Loads
 from limber.identify.findings import Findings, Panel, Value
 from limber.identify.motion import Motion
 from limber.identify.motor_side import (
@@ -41,7 +41,7 @@ STATIC_KEY, STRIBECK_KEY = "static_Nm", "stribeck_rad_per_s"
 def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Findings:
     """`weights_share`: how well the URDF's masses are known; None: as CAD usually is."""
     found, own = Findings("friction"), []
-    loads = Loads(arm, motion, *([] if weights_share is None else [weights_share]))
+    loads = Loads(arm, motion, weights_share or MASS_SHARE)
     for i, joint in enumerate(arm.joints):
         if motion.torque_sensor[i]:
             _link_side(found, joint, loads, i)

@@ -38,7 +38,7 @@ def identify(arm: Arm, motion: Motion, weights_share: float | None = None) -> Fi
     """`weights_share`: how well the URDF's masses are known; None: as CAD usually is."""
     found = Findings("torque constant")
     sides: dict[int, MotorSide] = {}
-    loads = Loads(arm, motion, MASS_SHARE if weights_share is None else weights_share)
+    loads = Loads(arm, motion, weights_share or MASS_SHARE)
     for i, joint in enumerate(arm.joints):
         try:
             sides[i] = certain(loads, i)
