@@ -1,9 +1,10 @@
 #include "controller/model/singularity.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "controller/model/spd_solve.h"
 
 namespace limber::controller {
 
@@ -14,17 +15,16 @@ Vector6 row_scale() noexcept {
 
 // |G^-1| is at least 1 over the least eigenvalue, whatever norm.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept {
-  const Eigen::LLT<Matrix6> cholesky(G);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
-  Matrix6 inverse = Matrix6::Identity();
-  cholesky.solveInPlace(inverse);
+  MatrixJ6 inverse = Matrix6::Identity();
+  solve_spd(G, &inverse);  // not finite where G is not positive definite
   if (!(least * inverse.norm() <= 1.0)) return std::nullopt;
-  return inverse;
+  return Matrix6(inverse);
 }
 
 Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
   const Vector6 S = row_scale();
-  const Matrix6 G = S.asDiagonal() * J.lazyProduct(Minv_JT) * S.asDiagonal();
+  Matrix6 G = J.lazyProduct(Minv_JT);
+  G = (S.asDiagonal() * G * S.asDiagonal()).eval();
   return 0.5 * (G + G.transpose());
 }
 

@@ -29,7 +29,7 @@ struct TipMobility {
   }
 };
 
-/// G^-1 by a Cholesky decomposition, if it proves that no eigenvalue of G is below `least`; an
+/// G^-1 by solve_spd(), if that proves that no eigenvalue of G is below `least`; an
 /// order of magnitude cheaper than the eigenvalues themselves. G: symmetric. May be called in the
 /// cycle.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept;

@@ -5,7 +5,7 @@
 //
 // Source: R. Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 7; written with base axes
 // throughout and each body's own joint origin as reference point. Deliberately shares nothing with
-// the controller's terms (KDL), so that the one checks the other.
+// the controller's terms (controller/model/arm_kernel.h), so that the one checks the other.
 #pragma once
 
 #include <Eigen/Core>
