@@ -22,6 +22,7 @@ KAPPA_LOW, KAPPA_HIGH = 0.4, 2.5  # a drive that is further off is another drive
 SURE = 4.0  # standard errors
 HIGHEST_STRIBECK = 0.3  # rad/s or m/s
 EDGE = 0.02  # of the range of Stribeck speeds, logarithmic: there nothing was found
+STEP = 2e-3  # of that range: how fine the search is
 LEAST_SLOW = 50  # samples below the Stribeck speed: without them it is extrapolated
 LESS = 0.98  # of what is unexplained without it
 RISE_SHARE, RISE_SPEED = (
@@ -156,7 +157,9 @@ def _with_stribeck(side: MotorSide) -> MotorSide:
             return np.inf
 
     low, high = np.log(lowest), np.log(HIGHEST_STRIBECK)
-    log_speed = float(minimize_scalar(left, bounds=(low, high), method="bounded").x)
+    options = {"xatol": STEP * (high - low)}
+    search = minimize_scalar(left, bounds=(low, high), method="bounded", options=options)
+    log_speed = float(search.x)
     if not EDGE < (log_speed - low) / (high - low) < 1.0 - EDGE:
         return _with_doubt(side)
     speed = float(np.exp(log_speed))
