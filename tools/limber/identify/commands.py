@@ -47,9 +47,7 @@ class Source:
         """The arm, its recordings, and the folder that results go to unless another is named."""
         if self.csv is None:
             if not self.runs:
-                raise InputError(
-                    "missing 'runs': logs or folders of runs; or a --csv recording"
-                )
+                raise InputError("missing 'runs': logs or folders of runs; or a --csv recording")
             arm = checked(arm_of(self.runs, self.robot))
             return arm, read_logs(self.runs, arm), folder_of(self.runs)
         if self.runs or self.columns is None or self.robot is None:

@@ -25,10 +25,8 @@ EDGE = 0.02  # of the range of Stribeck speeds, logarithmic: there nothing was f
 STEP = 2e-3  # of that range: how fine the search is
 LEAST_SLOW = 50  # samples below the Stribeck speed: without them it is extrapolated
 LESS = 0.98  # of what is unexplained without it
-RISE_SHARE, RISE_SPEED = (
-    0.3,
-    0.1,
-)  # breakaway over Coulomb, and at which rad/s, where it is not seen
+RISE_SHARE = 0.3  # of Coulomb's: a likely rise towards breakaway where none is seen,
+RISE_SPEED = 0.1  # and below how many rad/s or m/s
 
 
 @dataclass(frozen=True)
