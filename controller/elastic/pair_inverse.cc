@@ -9,7 +9,6 @@ namespace {
 constexpr double kFarthest_rad = 10.0;
 constexpr int kMostSteps = 150;
 constexpr double kNarrowest_rad = 1e-14;
-constexpr double kValueRounding = 1e-15;  // of the range of values
 
 // Where a rising function reaches `wanted` within [low, high], or the end that is nearer to it.
 // False position, the value at an end that stays twice being halved (Illinois; Dowell, Jarratt
@@ -20,13 +19,12 @@ double reach(double low, double high, double wanted, Function f) noexcept {
   double above = f(high) - wanted;
   if (!(below < 0.0)) return low;
   if (!(above > 0.0)) return high;
-  const double rounding = kValueRounding * (above - below);
   int side = 0;
   for (int i = 1; i <= kMostSteps && high - low > kNarrowest_rad; ++i) {
     const double share = i % 3 == 0 ? 0.5 : below / (below - above);
     const double x = low + share * (high - low);
     const double value = f(x) - wanted;
-    if (std::abs(value) <= rounding) return x;
+    if (value == 0.0) return x;
     const int now = value < 0.0 ? -1 : 1;
     (now < 0 ? low : high) = x;
     (now < 0 ? below : above) = value;

@@ -23,7 +23,11 @@ GainRow M_q = {
 class JointImpedance : public Law {
  public:
   explicit JointImpedance(int joints)
-      : M_start_(MatrixJ::Identity(joints, joints)), D_(M_start_), kept_(joints) {}
+      : M_start_(MatrixJ::Identity(joints, joints)),
+        M_d_(M_start_),
+        cholesky_(M_d_),
+        D_(M_start_),
+        kept_(joints) {}
 
   const char* check(const Gains& gains) const noexcept override {
     const MatrixJ& M = gains.parameters.matrix(M_q);
@@ -40,9 +44,9 @@ class JointImpedance : public Law {
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.damping_due) design(in);
-    const VectorJ M_d = wanted(in.gains).diagonal();  // all there is: one number a joint
+    if (wanted(in.gains) != M_d_) decompose(wanted(in.gains));
     const auto torque = [&](const VectorJ& effort) -> VectorJ {
-      return in.terms.M_total * effort.cwiseQuotient(M_d);
+      return in.terms.M_total * cholesky_.solve(effort);
     };
     out->tau_stiffness = torque(-in.gains.K_q * (in.point.q - in.goal.q_d));
     out->tau_damping = torque(-D_ * (in.point.v - in.goal.v_d));
@@ -56,11 +60,18 @@ class JointImpedance : public Law {
     return M.isZero(0.0) ? M_start_ : M;
   }
 
+  void decompose(const MatrixJ& M_d) noexcept {
+    M_d_ = M_d;
+    cholesky_.compute(M_d_);
+  }
+
   void design(const LawInputs& in) noexcept {
     D_ = kept_.of(in.gains, wanted(in.gains), in.gains.K_q);
   }
 
   MatrixJ M_start_;
+  MatrixJ M_d_;
+  Eigen::LLT<MatrixJ> cholesky_;  // of M_d_
   MatrixJ D_;
   KeptJointDamping kept_;
 };
