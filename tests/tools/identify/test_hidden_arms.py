@@ -1,9 +1,10 @@
-"""A hundred arms whose truth the identification does not see.
+"""Arms whose truth the identification does not see: 16, or as many as LIMBER_HIDDEN_ARMS tells.
 
 Of what is proposed for them, the truth lies within three standard errors in 95 of 100 cases, and
 no proposal explains another motion of the same arm worse than what was believed before.
 """
 
+import os
 from collections import defaultdict
 from dataclasses import dataclass, field
 
@@ -18,7 +19,7 @@ from limber.identify.motion import Motion, motion_of
 from limber.identify.urdf_edit import with_inertials
 from limber.model.dynamics import ArmDynamics
 
-ARMS = 100
+ARMS = int(os.environ.get("LIMBER_HIDDEN_ARMS", "16"))
 WITHIN = 3.0  # standard errors
 OFTEN = 0.95
 NOISE = 1.01  # residuals of another motion are no better known than that
@@ -168,24 +169,24 @@ def test_the_truth_lies_within_three_standard_errors(tally):
 
 
 @pytest.mark.parametrize(
-    ("kind", "least"),
+    ("kind", "an_arm"),
     [
-        ("friction: coulomb_Nm", 200),
-        ("friction: static_Nm", 50),
-        ("rotor_torque_constant_Nm_per_A", 100),
-        ("stiffness_Nm_per_rad", 100),
-        ("mass", 200),
+        ("friction: coulomb_Nm", 2.0),
+        ("friction: static_Nm", 0.5),
+        ("rotor_torque_constant_Nm_per_A", 1.0),
+        ("stiffness_Nm_per_rad", 1.0),
+        ("mass", 2.0),
     ],
 )
-def test_standard_errors_are_no_excuse(tally, kind, least):
+def test_standard_errors_are_no_excuse(tally, kind, an_arm):
     """There are proposals, and their errors are not far smaller than said, except for what the
     torques do not show: a mass, of which the URDF's figure and its doubt remain.
     """
     off = tally.off[kind]
-    assert len(off) >= least
+    assert len(off) >= an_arm * ARMS
     assert np.sqrt(np.mean(np.square(off))) > 0.4
 
 
 def test_no_proposal_explains_another_motion_worse(tally):
-    assert tally.proposals > 300
+    assert tally.proposals > 3 * ARMS
     assert not tally.worse
