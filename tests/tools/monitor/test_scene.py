@@ -5,7 +5,10 @@ from scipy.spatial.transform import Rotation
 
 from limber.model.robot import load_robot
 from limber.monitor import ghost
+from limber.monitor.arm_view import ArmView
 from limber.monitor.marks import ELLIPSOID_M, ForceArrow, StiffnessEllipsoid, WallView, ellipsoid
+from limber.monitor.shapes import figure
+from limber.monitor.springs import LARGER, Springs, arc
 from limber.monitor.walls import wall_at, wall_changes
 
 
@@ -78,3 +81,27 @@ def test_the_wall_of_a_scenario_at_a_time(tmp_path, served):
     assert np.allclose(facing, normal)
     view.set(np.full(3, np.nan), normal)
     assert np.isfinite(plate.position).all()
+
+
+def test_the_arc_of_a_spring_is_the_deflection_larger(served):
+    robot = load_robot("antagonist2r")
+    joint = figure(robot).joints[0]
+    path = arc(joint, -0.02, 0.1)
+    assert np.allclose(path @ joint.axis, 0.0)
+    assert np.allclose(np.linalg.norm(path, axis=1), 0.1)
+    turned = np.arctan2(np.cross(path[0], path[-1]) @ joint.axis, path[0] @ path[-1])
+    assert np.isclose(turned, -0.02 * LARGER)
+
+
+def test_springs_are_seen_where_they_are_bent(served):
+    robot = load_robot("antagonist2r")
+    arm = ArmView(served.scene, "/arm", figure(robot))
+    springs = Springs(served.scene, arm)
+    names = [f"{arm.frames[joint.child].name}/spring" for joint in arm.figure.joints]
+    lines = [served.scene.get_handle_by_name(name) for name in names]
+    springs.set(np.array([0.02, np.nan]), np.array([0.3, 0.0]))
+    assert [line.visible for line in lines] == [True, False]
+    label = served.scene.get_handle_by_name(f"{names[0]}_label")
+    assert label.text == "spring 20.0 mrad, preload 300 mrad"
+    springs.hide()
+    assert not any(line.visible for line in lines)

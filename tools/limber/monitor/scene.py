@@ -21,6 +21,7 @@ from limber.monitor.marks import (
     WallView,
 )
 from limber.monitor.shapes import Figure, figure
+from limber.monitor.springs import Springs
 from limber.monitor.walls import WallChange, wall_at
 
 BACKGROUND = (236, 240, 245)
@@ -79,9 +80,10 @@ class Scene:
         self._contact = ForceArrow(scene, "contact", "wall", WALL_FORCE)
         self._believed = ForceArrow(scene, "believed", "contact (controller)", BELIEVED)
         self._stiffness = StiffnessEllipsoid(scene)
+        self._springs = Springs(scene, self.arm)
         self._wall = WallView(scene)
         self._law_uses_K_x: Callable[[int], bool] = uses_K_x
-        self.seen = {"goal": True, "forces": True, "stiffness": True}
+        self.seen = {"goal": True, "forces": True, "stiffness": True, "springs": True}
         self._ghost_s = -np.inf
 
     def _place_camera(self, server: viser.ViserServer) -> None:
@@ -100,6 +102,7 @@ class Scene:
         self.arm.set_grey(old)
         if state is not None:
             self.arm.set(state["q"][: int(state["num_joints"])])
+            self._draw_springs(state)
         if status is not None and state is not None:
             self._draw_goal(state, status)
             self._draw_stiffness(status)
@@ -123,6 +126,13 @@ class Scene:
     def _draw_stiffness(self, status: np.void) -> None:
         seen = self.seen["stiffness"] and self._law_uses_K_x(int(status["law"]))
         self._stiffness.set(status["K_x"] if seen else None, status["p_BD"])
+
+    def _draw_springs(self, state: np.void) -> None:
+        n = int(state["num_joints"])
+        if self.seen["springs"]:
+            self._springs.set((state["theta"] - state["q"])[:n], state["preload"][:n])
+        else:
+            self._springs.hide()
 
     def _draw_forces(self, status: np.void | None, truth: np.void | None) -> None:
         nothing = np.zeros(3)

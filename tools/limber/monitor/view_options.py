@@ -8,6 +8,7 @@ WORDS = {
     "goal": "goal, where the arm is away from it",
     "forces": "forces",
     "stiffness": "stiffness",
+    "springs": "springs of elastic joints, 20 times as bent",
 }
 
 
