@@ -157,9 +157,10 @@ TEST(Check, ListsTheArmsOfAUrdf) {
       "two.urdf", testing::apply(testing::read_text(kUrdf), {"", "</robot>", sister, ""}).text);
   const Outcome outcome = check("urdf " + file);
   EXPECT_EQ(outcome.status, 2);
-  for (const std::string& part : {"3  turn, slide, roll\n          --base world --tip hand",
-                                  "1  neck\n          --base world --tip eye",
-                                  file + ": which arm? give --base LINK and --tip LINK"}) {
+  for (const std::string& part :
+       {std::string("3  turn, slide, roll\n          --base world --tip hand"),
+        std::string("1  neck\n          --base world --tip eye"),
+        file + ": which arm? give --base LINK and --tip LINK"}) {
     EXPECT_TRUE(contains(outcome.output, part)) << outcome.output;
   }
   const Outcome listed = check("urdf " + file + " --json", false);
