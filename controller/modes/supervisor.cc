@@ -1,7 +1,6 @@
 #include "controller/modes/supervisor.h"
 
 #include <limber/joint_command_t.hpp>
-#include <optional>
 
 namespace limber::controller {
 namespace {
@@ -41,7 +40,7 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   if (drive_state_ != joint_state_t::DRIVE_FAULT) acknowledged_ = false;
   count_steady(judgement);
   watch_drives();
-  if (time_ns_ >= goal_ends_ns_) raise(Event::kClientSilent);         // of ACTIVE alone
+  if (goal_ends_ns_ && time_ns_ >= *goal_ends_ns_) raise(Event::kClientSilent);
   if (time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);  // of SOFT_STOP alone
   return judgement;
 }
@@ -134,7 +133,7 @@ bool Supervisor::raise(Event event, int joint) noexcept {
 void Supervisor::enter(Mode mode) noexcept {
   mode_ = mode;
   entered_ns_ = time_ns_;
-  goal_ends_ns_ = kNever_ns;
+  goal_ends_ns_.reset();
   idle_requested_ = false;
   if (!powered_mode()) engaged_ = false;
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
-#include <limits>
+#include <optional>
 
 #include "controller/modes/mode_table.h"
 #include "controller/modes/state_judge.h"
@@ -43,7 +43,8 @@ class Supervisor {
   /// A goal was accepted. If it is valid for a time, s, and no other is accepted within it, the arm
   /// comes to rest; 0: it lasts.
   void take_goal(double valid_for_s) noexcept {
-    goal_ends_ns_ = valid_for_s > 0.0 ? time_ns_ + std::llround(1e9 * valid_for_s) : kNever_ns;
+    goal_ends_ns_.reset();
+    if (valid_for_s > 0.0) goal_ends_ns_ = time_ns_ + std::llround(1e9 * valid_for_s);
   }
   /// Something the cycle noticed, at a joint or (-1) at none. False if the table has no row for it.
   bool raise(Event event, int joint = -1) noexcept;
@@ -69,8 +70,6 @@ class Supervisor {
   const StateJudge& states() const noexcept { return judge_; }
 
  private:
-  static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
-
   void count_steady(const StateJudgement& judgement) noexcept;
   void watch_drives() noexcept;
   void enter(Mode mode) noexcept;
@@ -82,9 +81,9 @@ class Supervisor {
   int reason_joint_ = -1;
   std::int64_t lease_ = 0;
   std::int64_t lease_renewed_ns_ = 0;
-  std::int64_t goal_ends_ns_ = kNever_ns;
-  std::int64_t steady_ = 0;    ///< good states in a row
-  bool acknowledged_ = false;  ///< a fault that the drives are still in
+  std::optional<std::int64_t> goal_ends_ns_;  ///< of a goal that is valid for a time
+  std::int64_t steady_ = 0;                   ///< good states in a row
+  bool acknowledged_ = false;                 ///< a fault that the drives are still in
   bool engaged_ = false;
   bool idle_requested_ = false;
   std::int8_t drive_state_ = joint_state_t::DRIVE_CONFIGURING;
