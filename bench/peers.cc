@@ -168,7 +168,7 @@ class Pinocchio {
  public:
   explicit Pinocchio(const Problem& problem)
       : problem_(problem),
-        peer_(controller::body_chain(problem.chain), Eigen::Vector3d(kGravity)),
+        peer_(dynamics::body_chain(problem.chain, problem.n), Eigen::Vector3d(kGravity)),
         tail_(problem.n) {}
 
   void terms(int i) {

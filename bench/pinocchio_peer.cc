@@ -17,16 +17,17 @@ struct PinocchioPeer::Data {
 
 namespace {
 
-pinocchio::Model make_model(const controller::BodyChain& chain, const Eigen::Vector3d& gravity) {
+pinocchio::Model make_model(const dynamics::BodyChain& chain, const Eigen::Vector3d& gravity) {
   pinocchio::Model model;
   model.gravity.linear() = gravity;
   pinocchio::JointIndex last = 0;
-  for (const controller::Body& body : chain.bodies) {
+  for (const dynamics::Body& body : chain.bodies) {
     const pinocchio::SE3 placement(body.R, body.p);
     const std::string name = "j" + std::to_string(last);
     last = body.prismatic ? model.addJoint(last, pinocchio::JointModelPZ(), placement, name)
                           : model.addJoint(last, pinocchio::JointModelRZ(), placement, name);
-    model.appendBodyToJoint(last, pinocchio::Inertia(body.mass, body.com, body.inertia),
+    model.appendBodyToJoint(last,
+                            pinocchio::Inertia(body.mass.mass, body.mass.com, body.mass.inertia),
                             pinocchio::SE3::Identity());
   }
   return model;
@@ -34,7 +35,7 @@ pinocchio::Model make_model(const controller::BodyChain& chain, const Eigen::Vec
 
 }  // namespace
 
-PinocchioPeer::PinocchioPeer(const controller::BodyChain& chain, const Eigen::Vector3d& gravity)
+PinocchioPeer::PinocchioPeer(const dynamics::BodyChain& chain, const Eigen::Vector3d& gravity)
     : J(6, static_cast<Eigen::Index>(chain.bodies.size())),
       data_(std::make_unique<Data>(make_model(chain, gravity))),
       R_tip_(chain.R_tip),

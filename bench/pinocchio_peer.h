@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/types.h"
-#include "controller/model/body_chain.h"
+#include "dynamics/body_chain.h"
 
 namespace limber::bench {
 
@@ -14,7 +14,7 @@ namespace limber::bench {
 /// accelerations give Jdot v. Joints about or along z, which are its fastest.
 class PinocchioPeer {
  public:
-  PinocchioPeer(const controller::BodyChain& chain, const Eigen::Vector3d& gravity);
+  PinocchioPeer(const dynamics::BodyChain& chain, const Eigen::Vector3d& gravity);
   ~PinocchioPeer();
 
   void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v);

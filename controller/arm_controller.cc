@@ -156,12 +156,12 @@ Standby ArmController::standby() const noexcept {
   const bool latched = mode == Mode::kFault || mode == Mode::kEstop;
   const bool on = supervisor_.drives_on();
   if (supervisor_.powered_mode()) {
-    // The drives are still being enabled, without torque; or they hold by themselves, and so do
-    // the springs between two motors. No wind-up.
-    return {Torque::kAsSent, false,
-            supervisor_.drives_hold() ? PreloadAtRest::kWound : PreloadAtRest::kReleased};
+    // The drives are still being enabled, without torque, or they hold by themselves. No wind-up.
+    return {Torque::kAsSent, false, PreloadAtRest::kAsApplied};
   }
-  if (latched || supervisor_.drives_carry()) return {Torque::kGravity, on, PreloadAtRest::kWound};
+  if (latched || supervisor_.drives_carry()) {
+    return {Torque::kGravity, on, PreloadAtRest::kAsApplied};
+  }
   return {Torque::kZero, on, PreloadAtRest::kReleased};
 }
 

@@ -85,7 +85,7 @@ void TorqueCycle::stand_by(const Standby& how) noexcept {
   VectorJ target = zero_;
   if (how.torque == Standby::Torque::kGravity) target = gravity_;
   if (how.torque == Standby::Torque::kAsSent) target = state_.tau_applied;
-  output_.stand_by(target, how, state_, arm_.deflection(), &trace_.limits);
+  output_.stand_by(target, how, state_, &trace_.limits);
   trace_result();
 }
 
@@ -101,8 +101,8 @@ void TorqueCycle::enter(Activity activity) noexcept {
   if (activity == last || activity == Activity::kStandby) return;
   const GoalType from = laws_.running().goal_type;
   if (last == Activity::kStandby) {
-    output_.stand_by(state_.tau_applied, {.preload = PreloadAtRest::kAsSent}, state_,
-                     arm_.deflection(), &trace_.limits);
+    output_.stand_by(state_.tau_applied, {.preload = PreloadAtRest::kAsApplied}, state_,
+                     &trace_.limits);
   }
   if (activity == Activity::kHold) laws_.run_hold();
   if (activity == Activity::kLaw) laws_.run_selected();

@@ -136,6 +136,7 @@ void ArmJoint::write_state(std::size_t i, joint_state_t* state) const noexcept {
   state->preload_dot[i] = static_cast<float>(preload_dot());
   state->tau[i] = tau();
   state->tau_applied[i] = applied().tau;
+  state->tau_preload_applied[i] = static_cast<float>(applied().preload);
   state->current_A[i] = static_cast<float>(std::abs(one_A) >= std::abs(other_A) ? one_A : other_A);
   state->temperature_degC[i] =
       static_cast<float>(std::max(first().temperature_degC(), second().temperature_degC()));

@@ -56,7 +56,6 @@ void DriveSupervisor::check_enabling(ArmDrives* drives) const noexcept {
 }
 
 void DriveSupervisor::check_replies(ArmDrives* drives) const noexcept {
-  if (drives->in(DriveState::kConfiguring)) return;
   const std::vector<ArmJoint>& joints = drives->joints();
   const std::int64_t silence =
       std::ranges::min_element(joints, {}, &ArmJoint::silent_cycles)->silent_cycles();

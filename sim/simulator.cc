@@ -59,7 +59,7 @@ bool Simulator::poll() noexcept {
       } else if (buses_[bus].has_wire()) {
         buses_[bus].accept(*frame, clock_.now_ns());
       } else {
-        nodes_.receive(bus, *frame, arm_, clock_.now_ns(), &buses_[bus]);
+        nodes_.receive(bus, *frame, clock_.now_ns(), &buses_[bus]);
       }
       if (--left == 0) return false;
     }
@@ -73,7 +73,7 @@ void Simulator::flush(int bus) noexcept {
   CanFrame frame;
   side.set_direct(true);
   while (side.has_wire() && side.take_waiting(&frame))
-    nodes_.receive(bus, frame, arm_, clock_.now_ns(), &side);
+    nodes_.receive(bus, frame, clock_.now_ns(), &side);
   side.set_direct(false);
 }
 
@@ -125,7 +125,7 @@ void Simulator::carry_frames() noexcept {
   std::int64_t at_ns = 0;
   for (int bus = 0; bus < static_cast<int>(buses_.size()); ++bus) {
     while (buses_[bus].carry(clock_.next_ns(), offset_ns, &frame, &at_ns))
-      nodes_.receive(bus, frame, arm_, at_ns, &buses_[bus]);
+      nodes_.receive(bus, frame, at_ns, &buses_[bus]);
   }
 }
 
@@ -177,7 +177,7 @@ bool Simulator::event(const scenario_event_t& message) noexcept {
               message, {arm_.body().size(), nodes_.has_tip_sensor(), nodes_.has_emergency_stop()},
               &fault))
         return false;
-      nodes_.inject(fault, arm_, clock_.now_ns());
+      nodes_.inject(fault, clock_.now_ns());
       return true;
     default:
       return false;

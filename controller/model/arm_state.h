@@ -29,7 +29,8 @@ struct ArmState {
         preload(VectorJ::Zero(joints)),
         preload_dot(VectorJ::Zero(joints)),
         tau_measured(VectorJ::Zero(joints)),
-        tau_applied(VectorJ::Zero(joints)) {}
+        tau_applied(VectorJ::Zero(joints)),
+        tau_preload_applied(VectorJ::Zero(joints)) {}
 
   VectorJ q;             ///< link side; the motor's where the joint has no link encoder
   VectorJ v;             ///< likewise
@@ -39,6 +40,7 @@ struct ArmState {
   VectorJ preload_dot;   ///< likewise
   VectorJ tau_measured;  ///< torque on the link by a torque sensor, else the drive's estimate
   VectorJ tau_applied;   ///< what the drive was sent in this cycle
+  VectorJ tau_preload_applied;  ///< the same for the preload of two motors, tau_1 + tau_2
   TipReading tip;
   std::int64_t time_ns = 0;
   double period_s = 0.0;
@@ -72,6 +74,8 @@ inline void read_arm_state(const joint_state_t& message, ArmState* state) noexce
   state->preload_dot = Eigen::Map<const Eigen::VectorXf>(message.preload_dot, n).cast<double>();
   state->tau_measured = Eigen::Map<const Eigen::VectorXd>(message.tau, n);
   state->tau_applied = Eigen::Map<const Eigen::VectorXd>(message.tau_applied, n);
+  state->tau_preload_applied =
+      Eigen::Map<const Eigen::VectorXf>(message.tau_preload_applied, n).cast<double>();
   state->tip = read_tip(message);
   state->time_ns = message.time_ns;
   state->period_s = static_cast<double>(message.period_ns) * 1e-9;

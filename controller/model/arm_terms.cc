@@ -1,9 +1,6 @@
 #include "controller/model/arm_terms.h"
 
-#include <string>
-
-#include "common/config_error.h"
-#include "controller/model/spd_solve.h"
+#include "dynamics/spd_solve.h"
 
 namespace limber::controller {
 namespace {
@@ -19,23 +16,9 @@ std::vector<double> rotor_inertias(const Robot& robot) {
   return inertias;
 }
 
-using Kernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
-
-Kernel make_kernel(const BodyChain& chain, const double gravity[3]) {
-  const Eigen::Map<const Eigen::Vector3d> acceleration(gravity);
-  if (chain.bodies.size() <= 8) return ArmKernel<8>(chain, acceleration);
-  return ArmKernel<16>(chain, acceleration);
-}
-
-BodyChain checked_chain(const KDL::Chain& kdl_chain, std::size_t expected) {
-  BodyChain chain = body_chain(kdl_chain);
-  const std::size_t joints = chain.bodies.size();
-  if (joints < 1 || joints > static_cast<std::size_t>(kMaxJoints) || joints != expected) {
-    throw ConfigError("the chain from base to tip has " + std::to_string(joints) +
-                      " moving joints; the robot names " + std::to_string(expected) +
-                      ", and 1 to " + std::to_string(kMaxJoints) + " are allowed");
-  }
-  return chain;
+template <typename Kernel>
+Pose tip_of(const Kernel& kernel) {
+  return {kernel.tip_position(), Eigen::Quaterniond(kernel.tip_rotation())};
 }
 
 }  // namespace
@@ -58,7 +41,7 @@ ArmModel::ArmModel(const KDL::Chain& chain, const double gravity[3],
           rotor_inertia.data(), static_cast<Eigen::Index>(rotor_inertia.size()))),
       zero_(VectorJ::Zero(rotor_inertia_.size())),
       size_(static_cast<int>(rotor_inertia_.size())),
-      kernel_(make_kernel(checked_chain(chain, rotor_inertia.size()), gravity)) {}
+      kernel_(dynamics::arm_kernel(dynamics::body_chain(chain, size_), Eigen::Vector3d(gravity))) {}
 
 ArmModel::ArmModel(const LoadedRobot& robot)
     : ArmModel(robot.chain, robot.robot.gravity, rotor_inertias(robot.robot)) {}
@@ -77,7 +60,7 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
   }
   if (due.inertia || due.jacobian) {
     terms->Minv_JT = terms->J.transpose();
-    solve_spd(terms->M_total, &terms->Minv_JT);
+    dynamics::solve_spd(terms->M_total, &terms->Minv_JT);
   }
 }
 
@@ -86,7 +69,7 @@ void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
                              const TermsDue& due, ArmTerms* terms) noexcept {
   kernel->place(q);
   kernel->gravity(&terms->g);
-  terms->X_BT = kernel->tip();
+  terms->X_BT = tip_of(*kernel);
   if (due.jacobian) kernel->jacobian(&terms->J);
   terms->V_BT.noalias() = terms->J * v;
   if (due.jacobian || due.coriolis) kernel->move(v, zero_);
@@ -105,7 +88,7 @@ ArmModel::Tip ArmModel::tip(const VectorJ& q) noexcept {
   std::visit(
       [&](auto& kernel) {
         kernel.place(q);
-        tip.X_BT = kernel.tip();
+        tip.X_BT = tip_of(kernel);
         kernel.jacobian(&tip.J);
       },
       kernel_);
@@ -177,7 +160,7 @@ void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
   std::visit(
       [&](auto& kernel) {
         kernel.place(q);
-        terms->X_BT = kernel.tip();
+        terms->X_BT = tip_of(kernel);
         kernel.jacobian(&terms->J);
         kernel.gravity(&terms->g);
       },

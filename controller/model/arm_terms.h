@@ -1,12 +1,12 @@
 // Kinematics and dynamics of the arm at one state: everything the laws need, computed once a cycle.
-// The equations are in arm_kernel.h.
+// The equations are in dynamics/arm_kernel.h.
 #pragma once
 
 #include <variant>
 
 #include "common/types.h"
-#include "controller/model/arm_kernel.h"
 #include "controller/model/pose.h"
+#include "dynamics/arm_kernel.h"
 #include "robots/loader/load_robot.h"
 
 namespace limber::controller {
@@ -44,9 +44,8 @@ struct TermsDue {
 /// constructor may be called in the cycle.
 class ArmModel {
  public:
-  /// Gravity is the acceleration in axes of the chain's base, m/s^2. Throws ConfigError if the
-  /// chain has no joints, more than kMaxJoints, another number than `rotor_inertia`, or a joint
-  /// that body_chain() refuses.
+  /// Gravity is the acceleration in axes of the chain's base, m/s^2. Throws ConfigError as
+  /// body_chain() does; the chain has as many joints as `rotor_inertia`.
   ArmModel(const KDL::Chain& chain, const double gravity[3],
            const std::vector<double>& rotor_inertia);
   explicit ArmModel(const LoadedRobot& robot);
@@ -89,7 +88,7 @@ class ArmModel {
   VectorJ rotor_inertia_;
   VectorJ zero_;
   int size_;
-  std::variant<ArmKernel<8>, ArmKernel<16>> kernel_;
+  dynamics::AnyArmKernel kernel_;
 };
 
 }  // namespace limber::controller

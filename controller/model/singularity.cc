@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controller/model/spd_solve.h"
+#include "dynamics/spd_solve.h"
 
 namespace limber::controller {
 
@@ -16,7 +16,7 @@ Vector6 row_scale() noexcept {
 // |G^-1| is at least 1 over the least eigenvalue, whatever norm.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept {
   MatrixJ6 inverse = Matrix6::Identity();
-  solve_spd(G, &inverse);  // not finite where G is not positive definite
+  dynamics::solve_spd(G, &inverse);  // not finite where G is not positive definite
   if (!(least * inverse.norm() <= 1.0)) return std::nullopt;
   return Matrix6(inverse);
 }

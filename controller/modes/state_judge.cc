@@ -26,7 +26,9 @@ bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noe
     }
   }
   for (int i = 0; i < joints; ++i) {
-    if (!(std::isfinite(state.preload[i]) && std::isfinite(state.preload_dot[i]))) return false;
+    if (!(std::isfinite(state.preload[i]) && std::isfinite(state.preload_dot[i]) &&
+          std::isfinite(state.tau_preload_applied[i])))
+      return false;
     if ((state.joint_flags[i] & kEquipment) != flags[static_cast<std::size_t>(i)]) return false;
   }
   return true;

@@ -7,7 +7,7 @@
 
 namespace limber::controller {
 PreloadServo::PreloadServo(const Robot& robot)
-    : at_rest_(VectorJ::Zero(robot.size())), c_d_(at_rest_), tau_(at_rest_) {
+    : at_rest_(VectorJ::Zero(robot.size())), c_d_(at_rest_), blend_(robot.size()), tau_(at_rest_) {
   for (int i = 0; i < robot.size(); ++i) {
     const JointConfig& joint = robot.joints[static_cast<std::size_t>(i)];
     if (!joint.has_antagonist) continue;
@@ -21,15 +21,13 @@ PreloadServo::PreloadServo(const Robot& robot)
   }
 }
 
-void PreloadServo::rest(const ArmState& state, const VectorJ& x, PreloadAtRest where,
-                        bool in_steps) noexcept {
+void PreloadServo::rest(const ArmState& state, PreloadAtRest where, bool in_steps) noexcept {
+  resting_ = true;
   for (const Motors& pair : pairs_) {
     const Eigen::Index i = pair.joint;
     c_d_[i] = state.preload[i];
-    if (where == PreloadAtRest::kAsSent) continue;
-    const bool wound = where == PreloadAtRest::kWound;
-    const double force = wound ? pair.springs.preload_torque(c_d_[i], x[i]) : 0.0;
-    const double target = std::clamp(force, 0.0, pair.torque_Nm);
+    const double applied = where == PreloadAtRest::kAsApplied ? state.tau_preload_applied[i] : 0.0;
+    const double target = std::clamp(applied, -2.0 * pair.torque_Nm, 2.0 * pair.torque_Nm);
     const double step = pair.rate_Nm_per_s * state.period_s;
     tau_[i] = in_steps ? std::clamp(target, tau_[i] - step, tau_[i] + step) : target;
   }
@@ -50,11 +48,20 @@ double PreloadServo::servo(const Motors& pair, const ArmState& state, double wan
 
 std::int32_t PreloadServo::control(const ArmState& state, const VectorJ& wanted, const VectorJ& x,
                                    const VectorJ& tau, double dt_s) noexcept {
+  VectorJ all = tau_;
+  for (const Motors& pair : pairs_) {
+    const double torque = servo(pair, state, wanted[pair.joint], x[pair.joint], dt_s);
+    if (std::isfinite(torque)) all[pair.joint] = torque;
+  }
+  blend_.advance(dt_s, state.preload_dot);
+  if (resting_) blend_.start(tau_, all);
+  resting_ = false;
+  blend_.add_to(&all);
+
   std::int32_t acted = 0;
   for (const Motors& pair : pairs_) {
     const Eigen::Index i = pair.joint;
-    const double asked = servo(pair, state, wanted[i], x[i], dt_s);
-    if (!std::isfinite(asked)) continue;
+    const double asked = all[i];
     const double room = std::max(2.0 * pair.torque_Nm - std::abs(tau[i]), 0.0);
     const double limited = std::clamp(asked, -room, room);
     const double step = pair.rate_Nm_per_s * state.period_s;

@@ -7,15 +7,15 @@
 #include "common/types.h"
 #include "controller/elastic/spring_law.h"
 #include "controller/model/arm_state.h"
+#include "controller/output/torque_blend.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {
 
 /// Where the torque goes while no law runs.
 enum class PreloadAtRest {
-  kReleased,  ///< to zero
-  kWound,     ///< to what keeps the preload there is
-  kAsSent,    ///< nowhere
+  kReleased,   ///< to zero
+  kAsApplied,  ///< what the drives apply, as JOINT_STATE tells
 };
 
 /// For c = (theta_1 + theta_2) / 2, on which tau_1 + tau_2 acts with the inertia B = B_1 + B_2:
@@ -23,10 +23,12 @@ enum class PreloadAtRest {
 ///   K_c = B w^2,  D_c = 2 B w
 /// x: deflection of the equilibrium from the link. The springs' force is fed forward where c shall
 /// be, so that their own stiffness helps the servo; damping is against standstill, which keeps the
-/// torque continuous where a ramp begins. c_d starts where the preload is and moves at a
-/// steady rate to what is wanted. The joint's torque comes first: |tau| + |tau_preload| stays
-/// within twice what the weaker motor can give; and the gate's step is kept. Zero for joints with
-/// one motor. After construction all members may be called in the cycle.
+/// torque continuous where a ramp begins. c_d starts where the preload is and moves at a steady
+/// rate to what is wanted. The torque starts from what the drives apply, and the difference fades
+/// (TorqueBlend): springs that are not those of robot.yaml make no step. The joint's torque comes
+/// first: |tau| + |tau_preload| stays within twice what the weaker motor can give; and the gate's
+/// step is kept. Zero for joints with one motor. After construction all members may be called in
+/// the cycle.
 class PreloadServo {
  public:
   static constexpr double kBandwidth_rad_per_s = 30.0;
@@ -34,8 +36,8 @@ class PreloadServo {
 
   explicit PreloadServo(const Robot& robot);
 
-  /// At once, or in steps the gate lets pass if `in_steps`. x: n, rad.
-  void rest(const ArmState& state, const VectorJ& x, PreloadAtRest where, bool in_steps) noexcept;
+  /// At once, or in steps the gate lets pass if `in_steps`.
+  void rest(const ArmState& state, PreloadAtRest where, bool in_steps) noexcept;
   /// `wanted`: n, rad, kept within 0 and robot.yaml's greatest. x: n, rad; tau: joint torque of
   /// this cycle, n, N m. Returns LIMIT_* bits.
   std::int32_t control(const ArmState& state, const VectorJ& wanted, const VectorJ& x,
@@ -61,6 +63,8 @@ class PreloadServo {
   std::vector<Motors> pairs_;
   VectorJ at_rest_;
   VectorJ c_d_;
+  TorqueBlend blend_;
+  bool resting_ = true;
   VectorJ tau_;
 };
 

@@ -21,8 +21,8 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
 }
 
 void TorqueOutput::stand_by(VectorJ target, const Standby& how, const ArmState& state,
-                            const VectorJ& deflection, std::int32_t* limits) noexcept {
-  preload_.rest(state, deflection, how.preload, how.in_steps);
+                            std::int32_t* limits) noexcept {
+  preload_.rest(state, how.preload, how.in_steps);
   if (how.in_steps) {
     *limits |= limits_.clamp(state.period_s, &target);
   } else {

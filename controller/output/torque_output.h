@@ -40,7 +40,7 @@ class TorqueOutput {
              const VectorJ& deflection, double dt_s, std::int32_t* limits) noexcept;
   /// One cycle without a law, towards `target`. Adds LIMIT_* bits.
   void stand_by(VectorJ target, const Standby& how, const ArmState& state,
-                const VectorJ& deflection, std::int32_t* limits) noexcept;
+                std::int32_t* limits) noexcept;
 
   const VectorJ& torque() const noexcept { return limits_.previous(); }
   /// Of two motors the sum of their torques, n; zero for joints with one.

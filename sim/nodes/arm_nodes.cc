@@ -5,14 +5,13 @@
 namespace limber::sim {
 
 ArmNodes::ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm)
-    : motors_(robot, reality) {
+    : motors_(robot, reality, arm.forces(), arm.state()) {
   if (reality.has_tip_sensor) tip_sensor_.emplace(reality.tip_sensor, arm.body());
   if (reality.emergency_stop) emergency_stop_.emplace(*reality.emergency_stop);
 }
 
-void ArmNodes::receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
-                       BusSide* out) noexcept {
-  motors_.receive(bus, frame, arm.forces(), arm.state(), now_ns, out);
+void ArmNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept {
+  motors_.receive(bus, frame, now_ns, out);
   if (!tip_sensor_ || tip_sensor_->bus != bus) return;
   for (const CanFrame& answer : tip_sensor_->node.receive(frame)) {
     out->send(motors_.size(), answer, now_ns);
@@ -39,8 +38,7 @@ void ArmNodes::set_payload(const SimulatedArm& arm, double mass,
   if (tip_sensor_) tip_sensor_->load.set_payload(arm.body(), mass, p_TL);
 }
 
-void ArmNodes::inject(const NodeFault& fault, const SimulatedArm& arm,
-                      std::int64_t now_ns) noexcept {
+void ArmNodes::inject(const NodeFault& fault, std::int64_t now_ns) noexcept {
   constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
   const std::int64_t until_ns =
       fault.duration_ns > kForEver - now_ns ? kForEver : now_ns + fault.duration_ns;
@@ -49,7 +47,7 @@ void ArmNodes::inject(const NodeFault& fault, const SimulatedArm& arm,
   } else if (fault.joint == scenario_event_t::NODE_EMERGENCY_STOP) {
     emergency_stop_->inject(fault.fault, until_ns);
   } else {
-    motors_.inject(fault.joint, fault.fault, arm.forces(), arm.state(), until_ns);
+    motors_.inject(fault.joint, fault.fault, until_ns);
   }
 }
 

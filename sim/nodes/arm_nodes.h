@@ -27,8 +27,7 @@ class ArmNodes {
   /// Senders beside the driver: the motors, the tip sensor, the emergency stop.
   int size() const noexcept { return motors_.size() + 2; }
   /// Hands a frame from a bus to its nodes and sends their answers there.
-  void receive(int bus, const CanFrame& frame, const SimulatedArm& arm, std::int64_t now_ns,
-               BusSide* out) noexcept;
+  void receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept;
   /// After an integration step of h seconds: sensors, loops, watchdogs, unsolicited frames.
   void update(const SimulatedArm& arm, double h, std::int64_t now_ns,
               std::vector<BusSide>* buses) noexcept;
@@ -42,7 +41,7 @@ class ArmNodes {
 
   /// The tip sensor's mechanics carry the payload, too.
   void set_payload(const SimulatedArm& arm, double mass, const Eigen::Vector3d& p_TL) noexcept;
-  void inject(const NodeFault& fault, const SimulatedArm& arm, std::int64_t now_ns) noexcept;
+  void inject(const NodeFault& fault, std::int64_t now_ns) noexcept;
   void clear_faults() noexcept;
 
  private:

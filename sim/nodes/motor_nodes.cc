@@ -22,7 +22,8 @@ bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(rat
 
 }  // namespace
 
-MotorNodes::MotorNodes(const Robot& robot, const Robot& reality) {
+MotorNodes::MotorNodes(const Robot& robot, const Robot& reality, const ForceModel& forces,
+                       const ArmState& x) {
   for (int i = 0; i < robot.size(); ++i) {
     add(robot.joints[i], i, robot);
     if (robot.joints[i].has_antagonist) add(antagonist_of(robot.joints[i]), i, robot);
@@ -34,12 +35,13 @@ MotorNodes::MotorNodes(const Robot& robot, const Robot& reality) {
     link_encoders_.emplace_back(real.link_encoder.errors, seed);
     torque_sensors_.emplace_back(real.torque_sensor, seed);
   }
+  for (int k = 0; k < size(); ++k) read(k, forces, x);
 }
 
 void MotorNodes::add(const JointConfig& joint, int index, const Robot& robot) {
   const int bus = joint.drive.bus;
   nodes_.push_back(
-      {make_motor_node(joint, robot.buses[bus].fd), bus, index, joint.torque_sensor.present});
+      {make_motor_node(joint, robot.buses[bus].fd), bus, index, joint.torque_sensor.present, {}});
 }
 
 std::int64_t MotorNodes::steps_per_period(double rate_hz, double step_s) const {
@@ -61,12 +63,11 @@ std::int64_t MotorNodes::steps_per_period(double rate_hz, double step_s) const {
       rate_hz));
 }
 
-JointReading MotorNodes::reading(int motor, const ForceModel& forces,
-                                 const ArmState& x) const noexcept {
+void MotorNodes::read(int motor, const ForceModel& forces, const ArmState& x) noexcept {
   const MotorPoint at = forces.point(x, motor);
   const Motor& stage = forces.motor(motor);
-  const Node& node = nodes_[motor];
-  JointReading out;
+  Node& node = nodes_[motor];
+  JointReading& out = node.reading;
   const AngleReading motor_side = motor_encoders_[motor].reading({at.theta, at.theta_dot});
   const AngleReading link_side = link_encoders_[node.joint].reading({at.q, at.v});
   out.theta = motor_side.angle;
@@ -77,15 +78,14 @@ JointReading MotorNodes::reading(int motor, const ForceModel& forces,
   if (node.senses_torque) out.joint_torque = torque_sensors_[node.joint].reading();
   out.current_A = stage.current_A(at);
   out.winding_degC = stage.winding_degC();
-  return out;
 }
 
-void MotorNodes::receive(int bus, const CanFrame& frame, const ForceModel& forces,
-                         const ArmState& x, std::int64_t now_ns, BusSide* out) noexcept {
+void MotorNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns,
+                         BusSide* out) noexcept {
   CanFrame reply;
   for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) {
     if (nodes_[k].bus != bus) continue;
-    if (nodes_[k].motor->receive(frame, reading(k, forces, x), now_ns, &reply)) {
+    if (nodes_[k].motor->receive(frame, nodes_[k].reading, now_ns, &reply)) {
       out->send(k, reply, now_ns);
     }
     send_pending(k, now_ns, out);
@@ -105,7 +105,8 @@ void MotorNodes::update(const ForceModel& forces, const ArmState& x, double h, s
   }
   for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) {
     motor_encoders_[k].update({x.theta[k], x.theta_dot[k]}, h);
-    nodes_[k].motor->update(reading(k, forces, x), now_ns);
+    read(k, forces, x);
+    nodes_[k].motor->update(nodes_[k].reading, now_ns);
     send_pending(k, now_ns, &(*buses)[nodes_[k].bus]);
   }
 }
@@ -119,11 +120,10 @@ bool MotorNodes::all_enabled() const noexcept {
                      [](const Node& node) { return node.motor->enabled(); });
 }
 
-void MotorNodes::inject(int joint, int fault, const ForceModel& forces, const ArmState& x,
-                        std::int64_t until_ns) noexcept {
+void MotorNodes::inject(int joint, int fault, std::int64_t until_ns) noexcept {
   for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) {
     if (nodes_[k].joint != joint) continue;
-    nodes_[k].motor->inject(fault, reading(k, forces, x), until_ns);
+    nodes_[k].motor->inject(fault, nodes_[k].reading, until_ns);
   }
 }
 

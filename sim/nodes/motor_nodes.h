@@ -15,12 +15,12 @@
 
 namespace limber::sim {
 
-/// After construction every member but steps_per_period() is allowed in the cycle. The force model
-/// gives the motor torques at a state of the arm.
+/// After construction every member but steps_per_period() is allowed in the cycle.
 class MotorNodes {
  public:
-  /// `robot` is how the drives are configured, `reality` the arm with its sensors.
-  MotorNodes(const Robot& robot, const Robot& reality);
+  /// `robot` is how the drives are configured, `reality` the arm with its sensors, which is at x;
+  /// the force model gives the motor torques there.
+  MotorNodes(const Robot& robot, const Robot& reality, const ForceModel& forces, const ArmState& x);
 
   /// The fewest integration steps no longer than step_s of which a whole number makes a control
   /// period, and another the period of every sampled loop in the drives. Throws ConfigError if
@@ -29,8 +29,7 @@ class MotorNodes {
 
   int size() const noexcept { return static_cast<int>(nodes_.size()); }
   /// Hands a frame from a bus to its nodes and sends their answers there.
-  void receive(int bus, const CanFrame& frame, const ForceModel& forces, const ArmState& x,
-               std::int64_t now_ns, BusSide* out) noexcept;
+  void receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept;
   /// After an integration step of h seconds: sensors, loops, watchdogs, then unsolicited
   /// frames.
   void update(const ForceModel& forces, const ArmState& x, double h, std::int64_t now_ns,
@@ -40,8 +39,7 @@ class MotorNodes {
 
   bool all_enabled() const noexcept;
   /// On all motors of a joint.
-  void inject(int joint, int fault, const ForceModel& forces, const ArmState& x,
-              std::int64_t until_ns) noexcept;
+  void inject(int joint, int fault, std::int64_t until_ns) noexcept;
   void clear_faults() noexcept;
 
  private:
@@ -50,9 +48,10 @@ class MotorNodes {
     int bus;
     int joint;
     bool senses_torque;
+    JointReading reading;  ///< since the last update()
   };
   void add(const JointConfig& joint, int index, const Robot& robot);
-  JointReading reading(int motor, const ForceModel& forces, const ArmState& x) const noexcept;
+  void read(int motor, const ForceModel& forces, const ArmState& x) noexcept;
   void send_pending(int motor, std::int64_t now_ns, BusSide* out) noexcept;
 
   std::vector<Node> nodes_;                   // in the order of the motors

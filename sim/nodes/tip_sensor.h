@@ -7,11 +7,11 @@
 namespace limber::sim {
 
 struct TipSensor {
-  TipSensor(const TipSensorConfig& config, const ArticulatedBody& arm)
+  TipSensor(const TipSensorConfig& config, const LinkDynamics& arm)
       : bus(config.bus), load(config, arm), node(config) {}
 
   /// After an integration step of h seconds that ended at simulated time t. Allowed in the cycle.
-  void update(const ArticulatedBody& arm, const Environment& environment, double h,
+  void update(const LinkDynamics& arm, const Environment& environment, double h,
               std::int64_t t_ns) noexcept {
     load.step(arm, environment, h, t_ns);
     node.update(load.F(), h, t_ns);

@@ -17,9 +17,8 @@ constexpr double kMinInertia = 1e-9;
 void require_inertia(const ArmModel& model) {
   // Inertia of everything beyond a joint about its axis is smallest when the joints behind it are
   // free; a joint whose own body and rotor have some is fit whatever is behind it.
-  for (int i = model.size() - 1; i >= 0; --i) {
-    const BodyModel& body = model.bodies[i];
-    if (own_inertia(body) + body.rotor_inertia > kMinInertia) continue;
+  for (int i = model.chain.size() - 1; i >= 0; --i) {
+    if (model.chain.bodies[i].own_inertia() + model.rotor_inertia[i] > kMinInertia) continue;
     throw ConfigError(
         fmt::format("joint {} moves a link without inertia and has no rotor_inertia_kgm2: its "
                     "acceleration is undefined",
@@ -37,7 +36,7 @@ void require_inertia(const ArmModel& model) {
 }  // namespace
 
 ArmPlant::ArmPlant(const ArmModel& model) : arm_(model) {
-  x_.q = x_.v = VectorJ::Zero(model.size());
+  x_.q = x_.v = VectorJ::Zero(model.chain.size());
   x_.theta = x_.theta_dot = VectorM::Zero(static_cast<int>(model.motors.size()));
 }
 
@@ -93,29 +92,16 @@ double ArmPlant::kinetic_energy() const noexcept {
   return energy;
 }
 
-VectorJ ArmPlant::gravity_torque() noexcept {
-  VectorJ weight;
-  arm_.clear_wrenches();
-  for (int i = 0; i < arm_.size(); ++i) {
-    const MassProperties& mass = arm_.model().bodies[i].mass;
-    arm_.add_wrench(i, arm_.body_position(i) + arm_.body_rotation(i) * mass.com,
-                    mass.mass * arm_.model().gravity, Eigen::Vector3d::Zero());
-  }
-  arm_.wrench_torque(&weight);
-  return -weight;
-}
-
 void ArmPlant::set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept {
   arm_.set_tip_load(mass, p_TL);
   arm_.set_state(x_.q, x_.v);
   payload_was_set();
 }
 
-VectorJ ArmPlant::external_torque(const Environment& environment, std::int64_t t_ns) noexcept {
-  VectorJ tau;
+const VectorJ& ArmPlant::external_torque(const Environment& environment,
+                                         std::int64_t t_ns) noexcept {
   environment.apply(&arm_, t_ns);
-  arm_.wrench_torque(&tau);
-  return tau;
+  return arm_.wrench_torque();
 }
 
 std::unique_ptr<ArmPlant> make_arm_plant(Integrator integrator, const ArmModel& model) {

@@ -1,6 +1,6 @@
 // The arm as something that moves: one interface, two integrators.
 //
-// - reference: reduced coordinates, articulated-body algorithm, Runge-Kutta 4; exact enough to
+// - reference: reduced coordinates, Runge-Kutta 4; exact enough to
 //   compare formulas with.
 // - ode: maximal coordinates, one ODE body a link, dWorldStep; first order, as the physics engines
 //   users know.
@@ -15,8 +15,8 @@
 
 #include "scenarios/loader/scenario.h"
 #include "sim/plant/arm_state.h"
-#include "sim/plant/articulated_body.h"
 #include "sim/plant/force_model.h"
+#include "sim/plant/link_dynamics.h"
 
 namespace limber::sim {
 
@@ -39,17 +39,15 @@ class ArmPlant {
   void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
 
   /// Joint torque of wall and pushes at the present state and simulated time t.
-  VectorJ external_torque(const Environment& environment, std::int64_t t_ns) noexcept;
+  const VectorJ& external_torque(const Environment& environment, std::int64_t t_ns) noexcept;
 
   const ArmState& state() const noexcept { return x_; }
   const VectorJ& q() const noexcept { return x_.q; }
   const VectorJ& v() const noexcept { return x_.v; }
   /// Kinematics and energies of the links (with rotors that are part of them).
-  const ArticulatedBody& arm() const noexcept { return arm_; }
+  const LinkDynamics& arm() const noexcept { return arm_; }
   /// Of links and all rotors, J.
   double kinetic_energy() const noexcept;
-  /// Torque that holds the links against gravity.
-  VectorJ gravity_torque() noexcept;
   /// Since construction.
   const Work& work() const noexcept { return work_; }
   std::int64_t diverged() const noexcept { return diverged_; }
@@ -71,7 +69,7 @@ class ArmPlant {
   void carry_rotors() noexcept;
   const std::vector<MotorModel>& motors() const noexcept { return arm_.model().motors; }
 
-  ArticulatedBody arm_;
+  LinkDynamics arm_;
   ArmState x_;
   Work work_;
 

@@ -41,7 +41,7 @@ AffineForce ForceModel::passive_force(int joint, double q, double v, double v_gu
   return {friction.offset + stop.offset + stand.offset, friction.slope + stop.slope + stand.slope};
 }
 
-void ForceModel::soften_wall(ArticulatedBody* arm, double h) noexcept {
+void ForceModel::soften_wall(LinkDynamics* arm, double h) noexcept {
   constexpr double kNear_m = 0.01;
   Wall& wall = environment.wall;
   if (!(wall.stiffness > 0.0) || wall.depth(arm->link_position(arm->tip())) < -kNear_m) return;
@@ -65,7 +65,7 @@ bool ForceModel::couple_passive(const ArmState& x, double h) noexcept {
   return passive;
 }
 
-void ForceModel::begin_step(ArticulatedBody* arm, const ArmState& x, double h,
+void ForceModel::begin_step(LinkDynamics* arm, const ArmState& x, double h,
                             std::int64_t t_ns) noexcept {
   constexpr int kIterations = 3;
   t_ns_ = t_ns;
@@ -97,7 +97,7 @@ void ForceModel::finish_step(const ArmState& x, double h) noexcept {
   }
 }
 
-void ForceModel::evaluate(ArticulatedBody* arm, const ArmState& x, ArmTorque* tau,
+void ForceModel::evaluate(LinkDynamics* arm, const ArmState& x, ArmTorque* tau,
                           Work* power) const noexcept {
   *power = {};
   power->external = apply_environment(arm) + stop_torque_.dot(x.v);

@@ -49,11 +49,10 @@ class ForceModel {
   ///   (M + B + h S) (v_end - v) / h = tau(q, v) - offset - S v - C v - g
   /// with the passive forces offset + S v_end, re-linearised up to three times, and motors behind
   /// springs as in sim/joints/coupling.h.
-  void begin_step(ArticulatedBody* arm, const ArmState& x, double h, std::int64_t t_ns) noexcept;
+  void begin_step(LinkDynamics* arm, const ArmState& x, double h, std::int64_t t_ns) noexcept;
 
   /// Sets the wrenches of `arm`, which is at x, and gives torque and power of all.
-  void evaluate(ArticulatedBody* arm, const ArmState& x, ArmTorque* tau,
-                Work* power) const noexcept;
+  void evaluate(LinkDynamics* arm, const ArmState& x, ArmTorque* tau, Work* power) const noexcept;
 
   /// The step in progress as one implicit step from x on: what the links feel, of which
   /// `inertia` times acceleration is to be taken, with the motors behind springs eliminated.
@@ -65,7 +64,7 @@ class ForceModel {
   Work step_power(const ArmState& x, const VectorM& theta_ddot) const noexcept;
 
   /// Sets the wrenches of `arm` as they are in the step in progress; returns their power.
-  double apply_environment(ArticulatedBody* arm) const noexcept {
+  double apply_environment(LinkDynamics* arm) const noexcept {
     return environment.apply(arm, t_ns_);
   }
 
@@ -100,7 +99,7 @@ class ForceModel {
   }
 
  private:
-  void soften_wall(ArticulatedBody* arm, double h) noexcept;
+  void soften_wall(LinkDynamics* arm, double h) noexcept;
   AffineForce passive_force(int joint, double q, double v, double v_guess, double h) const noexcept;
   bool couple_passive(const ArmState& x, double h) noexcept;
   void finish_step(const ArmState& x, double h) noexcept;

@@ -20,8 +20,8 @@ void start_ode_once() {
 
 /// The same refusal ODE would make by aborting, in words.
 void require_mass(const ArmModel& model) {
-  for (int i = 0; i < model.size(); ++i) {
-    const MassProperties& mass = model.bodies[i].mass;
+  for (int i = 0; i < model.chain.size(); ++i) {
+    const dynamics::MassProperties& mass = model.chain.bodies[i].mass;
     const Eigen::Vector3d moments = mass.inertia.selfadjointView<Eigen::Lower>().eigenvalues();
     if (mass.mass > 0.0 && moments.minCoeff() > 0.0) continue;
     throw ConfigError(
@@ -40,7 +40,7 @@ void to_ode(const Eigen::Matrix3d& R, dMatrix3 out) {
   }
 }
 
-void set_mass(dBodyID body, const MassProperties& mass) {
+void set_mass(dBodyID body, const dynamics::MassProperties& mass) {
   const Eigen::Matrix3d& I = mass.inertia;
   dMass out;
   dMassSetParameters(&out, mass.mass, 0.0, 0.0, 0.0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2),
@@ -68,9 +68,9 @@ double slider_rate(dBodyID body, dBodyID parent, dJointID slider) {
 
 OdePlant::OdePlant(const ArmModel& model)
     : ArmPlant(model),
-      tau_(VectorJ::Zero(model.size())),
-      qdd_(VectorJ::Zero(model.size())),
-      extra_inertia_(VectorJ::Zero(model.size())),
+      tau_(VectorJ::Zero(model.chain.size())),
+      qdd_(VectorJ::Zero(model.chain.size())),
+      extra_inertia_(VectorJ::Zero(model.chain.size())),
       theta_ddot_(VectorM::Zero(x_.theta.size())) {
   require_mass(model);
   start_ode_once();
@@ -79,7 +79,7 @@ OdePlant::OdePlant(const ArmModel& model)
   dWorldSetCFM(world_,
                0.0);  // a serial chain has no redundant constraints that would need softening
   dWorldSetGravity(world_, model.gravity.x(), model.gravity.y(), model.gravity.z());
-  for (int i = 0; i < model.size(); ++i) create(i);
+  for (int i = 0; i < model.chain.size(); ++i) create(i);
   assemble();
   dWorldStep(world_, 1e-6);  // allocates ODE's working memory; the next step finds it
   state_was_set();
@@ -93,8 +93,8 @@ OdePlant::~OdePlant() {
 void OdePlant::create(int i) {
   body_[i] = dBodyCreate(world_);
   const dBodyID parent = i > 0 ? body_[i - 1] : nullptr;
-  joint_[i] = arm_.model().bodies[i].prismatic ? dJointCreateSlider(world_, joints_)
-                                               : dJointCreateHinge(world_, joints_);
+  joint_[i] =
+      arm_.prismatic(i) ? dJointCreateSlider(world_, joints_) : dJointCreateHinge(world_, joints_);
   dJointAttach(joint_[i], body_[i], parent);
 }
 
@@ -103,10 +103,10 @@ void OdePlant::assemble() noexcept {
   arm_.set_state(VectorJ::Zero(arm_.size()), VectorJ::Zero(arm_.size()));
   place_bodies(arm_);
   for (int i = 0; i < arm_.size(); ++i) {
-    set_mass(body_[i], arm_.model().bodies[i].mass);
+    set_mass(body_[i], arm_.mass(i));
     const Eigen::Vector3d p = arm_.body_position(i);
     const Eigen::Vector3d z = arm_.joint_axis(i);
-    if (arm_.model().bodies[i].prismatic) {
+    if (arm_.prismatic(i)) {
       dJointSetSliderAxis(joint_[i], z.x(), z.y(), z.z());
     } else {
       dJointSetHingeAnchor(joint_[i], p.x(), p.y(), p.z());
@@ -117,15 +117,14 @@ void OdePlant::assemble() noexcept {
   place_bodies(arm_);
 }
 
-void OdePlant::place_bodies(const ArticulatedBody& arm) noexcept {
+void OdePlant::place_bodies(const LinkDynamics& arm) noexcept {
   for (int i = 0; i < arm.size(); ++i) {
     // ODE's body frame must sit at the centre of mass.
-    const Eigen::Matrix3d R = arm.body_rotation(i);
-    const Eigen::Vector3d p = arm.body_position(i) + R * arm.model().bodies[i].mass.com;
+    const Eigen::Vector3d p = arm.centre_of_mass(i);
     const Eigen::Vector3d v = arm.point_velocity(i, p);
     const Eigen::Vector3d w = arm.angular_velocity(i);
     dMatrix3 rotation;
-    to_ode(R, rotation);
+    to_ode(arm.body_rotation(i), rotation);
     dBodySetPosition(body_[i], p.x(), p.y(), p.z());
     dBodySetRotation(body_[i], rotation);
     dBodySetLinearVel(body_[i], v.x(), v.y(), v.z());
@@ -164,25 +163,22 @@ void OdePlant::integrate(ForceModel* forces, double h) noexcept {
 
 void OdePlant::apply(const VectorJ& tau) noexcept {
   for (int i = 0; i < arm_.size(); ++i) {
-    const BodyModel& body = arm_.model().bodies[i];
-    const double torque = tau[i] - (body.rotor_inertia + extra_inertia_[i]) * qdd_[i];
-    if (body.prismatic) {
+    const double torque = tau[i] - (arm_.model().rotor_inertia[i] + extra_inertia_[i]) * qdd_[i];
+    if (arm_.prismatic(i)) {
       dJointAddSliderForce(joint_[i], torque);
     } else {
       dJointAddHingeTorque(joint_[i], torque);
     }
-    const Eigen::Vector3d p = arm_.body_position(i);
-    const Eigen::Vector3d f = arm_.external_force(i);
-    const Eigen::Vector3d n = arm_.external_moment(i);
-    dBodyAddForceAtPos(body_[i], f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
-    dBodyAddTorque(body_[i], n.x(), n.y(), n.z());
+    const Vector6& F = arm_.external_wrench(i);
+    dBodyAddForceAtPos(body_[i], F[0], F[1], F[2], 0.0, 0.0, 0.0);
+    dBodyAddTorque(body_[i], F[3], F[4], F[5]);
   }
 }
 
 void OdePlant::read_joints() noexcept {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (int i = 0; i < arm_.size(); ++i) {
-    if (arm_.model().bodies[i].prismatic) {
+    if (arm_.prismatic(i)) {
       x_.q[i] = dJointGetSliderPosition(joint_[i]);
       x_.v[i] = slider_rate(body_[i], i > 0 ? body_[i - 1] : nullptr, joint_[i]);
     } else {

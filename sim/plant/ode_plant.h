@@ -10,7 +10,7 @@
 namespace limber::sim {
 
 /// First order in the step. Rotor inertia has no place in ODE's bodies; each joint gets tau - B qdd
-/// instead of tau, with qdd from the articulated-body algorithm under the very same forces, so that
+/// instead of tau, with qdd from link_dynamics.h under the very same forces, so that
 /// the links feel M + B. Motors behind springs move beside ODE, one implicit step each
 /// (sim/joints/coupling.h), and come in the same way: tau - B' qdd, B' what the link feels of them.
 class OdePlant final : public ArmPlant {
@@ -28,7 +28,7 @@ class OdePlant final : public ArmPlant {
   void create(int i);
   /// Bodies to the zero posture, masses and joint anchors of the model, then back to x_.
   void assemble() noexcept;
-  void place_bodies(const ArticulatedBody& arm) noexcept;
+  void place_bodies(const LinkDynamics& arm) noexcept;
   void apply(const VectorJ& tau) noexcept;
   void read_joints() noexcept;
 

@@ -6,8 +6,8 @@
 namespace limber::sim {
 
 ReferencePlant::ReferencePlant(const ArmModel& model)
-    : ArmPlant(model), no_extra_inertia_(VectorJ::Zero(model.size())) {
-  tau_.link = VectorJ::Zero(model.size());
+    : ArmPlant(model), no_extra_inertia_(VectorJ::Zero(model.chain.size())) {
+  tau_.link = VectorJ::Zero(model.chain.size());
   tau_.motor = VectorM::Zero(x_.theta.size());
   for (std::size_t k = 0; k < motors().size(); ++k) {
     // Two springs at one link make it stiffer; each gets half of it.
@@ -15,7 +15,8 @@ ReferencePlant::ReferencePlant(const ArmModel& model)
       return motor.joint == motors()[k].joint;
     };
     const auto springs = std::count_if(motors().begin(), motors().end(), pulls_here);
-    link_inertia_[k] = own_inertia(model.bodies[motors()[k].joint]) / static_cast<double>(springs);
+    link_inertia_[k] =
+        model.chain.bodies[motors()[k].joint].own_inertia() / static_cast<double>(springs);
   }
 }
 
@@ -32,7 +33,6 @@ int ReferencePlant::parts(const ForceModel& forces, double h) const noexcept {
 }
 
 void ReferencePlant::slope_at(const ArmState& x, ForceModel* forces, Slope* slope) noexcept {
-  arm_.set_state(x.q, x.v);
   forces->evaluate(&arm_, x, &tau_, &slope->power);
   slope->v = x.v;
   slope->theta_dot = x.theta_dot;
@@ -48,9 +48,11 @@ void ReferencePlant::slope_at(const ArmState& x, ForceModel* forces, Slope* slop
   }
 }
 
-ArmState ReferencePlant::moved(const Slope& slope, double h) const noexcept {
-  return {x_.q + h * slope.v, x_.v + h * slope.qdd, x_.theta + h * slope.theta_dot,
-          x_.theta_dot + h * slope.theta_ddot};
+ArmState ReferencePlant::moved(const Slope& slope, double h) noexcept {
+  const ArmState x{x_.q + h * slope.v, x_.v + h * slope.qdd, x_.theta + h * slope.theta_dot,
+                   x_.theta_dot + h * slope.theta_ddot};
+  arm_.set_state(x.q, x.v);
+  return x;
 }
 
 void ReferencePlant::integrate(ForceModel* forces, double h) noexcept {

@@ -1,4 +1,4 @@
-// Reduced coordinates: articulated-body algorithm and the classical Runge-Kutta method of order 4
+// Reduced coordinates: the links of link_dynamics.h and the classical Runge-Kutta method of order 4
 // over links and motors together.
 #pragma once
 
@@ -23,8 +23,10 @@ class ReferencePlant final : public ArmPlant {
   };
   void integrate(ForceModel* forces, double h) noexcept override;
   int parts(const ForceModel& forces, double h) const noexcept override;
+  /// arm_ is at x.
   void slope_at(const ArmState& x, ForceModel* forces, Slope* slope) noexcept;
-  ArmState moved(const Slope& slope, double h) const noexcept;
+  /// h from x_ along the slope; arm_ goes there.
+  ArmState moved(const Slope& slope, double h) noexcept;
 
   ArmTorque tau_;
   VectorJ no_extra_inertia_;

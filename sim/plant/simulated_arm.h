@@ -34,7 +34,7 @@ class SimulatedArm {
     fill_truth(forces_, now_ns, plant_.get(), truth);
   }
 
-  const ArticulatedBody& body() const noexcept { return plant_->arm(); }
+  const LinkDynamics& body() const noexcept { return plant_->arm(); }
   const ArmState& state() const noexcept { return plant_->state(); }
   ForceModel& forces() noexcept { return forces_; }
   const ForceModel& forces() const noexcept { return forces_; }

@@ -4,7 +4,7 @@ namespace limber::sim {
 
 void start_at(const Robot& robot, const VectorJ& q, bool stand, ArmPlant* plant) {
   plant->set_state(q, VectorJ::Zero(q.size()));
-  const VectorJ g = plant->gravity_torque();
+  const VectorJ g = plant->arm().gravity_torque();
   ArmState x = plant->state();
   int motor = 0;
   for (int i = 0; i < robot.size(); motor += robot.joints[i].motors(), ++i) {

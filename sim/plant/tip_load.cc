@@ -5,7 +5,7 @@
 namespace limber::sim {
 namespace {
 
-Vector6 contact_wrench(const ArticulatedBody& arm, const Environment& environment,
+Vector6 contact_wrench(const LinkDynamics& arm, const Environment& environment,
                        std::int64_t t_ns) noexcept {
   Vector6 F = environment.wall_wrench(arm);
   for (int i = 0; i < environment.pushes.count(); ++i) {
@@ -16,7 +16,7 @@ Vector6 contact_wrench(const ArticulatedBody& arm, const Environment& environmen
 
 }  // namespace
 
-TipLoad::TipLoad(const TipSensorConfig& sensor, const ArticulatedBody& arm)
+TipLoad::TipLoad(const TipSensorConfig& sensor, const LinkDynamics& arm)
     : p_TS_(sensor.p_TS),
       R_TS_(Eigen::Quaterniond(sensor.quat_TS[0], sensor.quat_TS[1], sensor.quat_TS[2],
                                sensor.quat_TS[3])
@@ -26,22 +26,22 @@ TipLoad::TipLoad(const TipSensorConfig& sensor, const ArticulatedBody& arm)
   masses_[0].v = velocity(arm, masses_[0]);
 }
 
-void TipLoad::set_payload(const ArticulatedBody& arm, double mass,
+void TipLoad::set_payload(const LinkDynamics& arm, double mass,
                           const Eigen::Vector3d& p_T) noexcept {
   masses_[1].mass = mass;
   masses_[1].p_T = p_T;
   masses_[1].v = velocity(arm, masses_[1]);
 }
 
-Eigen::Vector3d TipLoad::position(const ArticulatedBody& arm, const PointMass& mass) noexcept {
+Eigen::Vector3d TipLoad::position(const LinkDynamics& arm, const PointMass& mass) noexcept {
   return arm.link_position(arm.tip()) + arm.link_rotation(arm.tip()) * mass.p_T;
 }
 
-Eigen::Vector3d TipLoad::velocity(const ArticulatedBody& arm, const PointMass& mass) noexcept {
-  return arm.point_velocity(arm.model().links[arm.tip()].body, position(arm, mass));
+Eigen::Vector3d TipLoad::velocity(const LinkDynamics& arm, const PointMass& mass) noexcept {
+  return arm.point_velocity(arm.body_of(arm.tip()), position(arm, mass));
 }
 
-void TipLoad::step(const ArticulatedBody& arm, const Environment& environment, double h,
+void TipLoad::step(const LinkDynamics& arm, const Environment& environment, double h,
                    std::int64_t t_ns) noexcept {
   const Eigen::Matrix3d R_BT = arm.link_rotation(arm.tip());
   const Eigen::Vector3d p_S = arm.link_position(arm.tip()) + R_BT * p_TS_;

@@ -20,14 +20,14 @@ namespace limber::sim {
 class TipLoad {
  public:
   /// `arm` is at its start.
-  TipLoad(const TipSensorConfig& sensor, const ArticulatedBody& arm);
+  TipLoad(const TipSensorConfig& sensor, const LinkDynamics& arm);
 
   /// The payload changed; `arm` is where it happens. kg, tip axes.
-  void set_payload(const ArticulatedBody& arm, double mass, const Eigen::Vector3d& p_T) noexcept;
+  void set_payload(const LinkDynamics& arm, double mass, const Eigen::Vector3d& p_T) noexcept;
 
   /// After an integration step of h seconds that ended at simulated time t, with `arm` at its end.
   /// Accelerations are means over the step: (v_end - v_begin) / h.
-  void step(const ArticulatedBody& arm, const Environment& environment, double h,
+  void step(const LinkDynamics& arm, const Environment& environment, double h,
             std::int64_t t_ns) noexcept;
 
   const Vector6& F() const noexcept { return F_; }
@@ -38,8 +38,8 @@ class TipLoad {
     Eigen::Vector3d p_T = Eigen::Vector3d::Zero();
     Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< at the last step's end, base axes
   };
-  static Eigen::Vector3d position(const ArticulatedBody& arm, const PointMass& mass) noexcept;
-  static Eigen::Vector3d velocity(const ArticulatedBody& arm, const PointMass& mass) noexcept;
+  static Eigen::Vector3d position(const LinkDynamics& arm, const PointMass& mass) noexcept;
+  static Eigen::Vector3d velocity(const LinkDynamics& arm, const PointMass& mass) noexcept;
 
   Eigen::Vector3d p_TS_;
   Eigen::Matrix3d R_TS_;

@@ -47,7 +47,7 @@ void fill_joints(const ArmPlant& plant, const ForceModel& forces, const VectorJ&
   }
 }
 
-void fill_tip(const ArticulatedBody& arm, sim_truth_t* truth) {
+void fill_tip(const LinkDynamics& arm, sim_truth_t* truth) {
   const int tip = arm.tip();
   const Eigen::Vector3d p = arm.link_position(tip);
   const Eigen::Quaterniond Q(arm.link_rotation(tip));
@@ -68,7 +68,7 @@ void fill_truth(const ForceModel& forces, std::int64_t t_ns, ArmPlant* at,
   const ArmPlant& plant = *at;
   const Environment& environment = forces.environment;
   const Vector6 contact = environment.wall_wrench(plant.arm());
-  const VectorJ external = at->external_torque(environment, t_ns);
+  const VectorJ& external = at->external_torque(environment, t_ns);
   truth->num_joints = static_cast<std::int8_t>(plant.arm().size());
   truth->contact = contact.isZero(0.0) ? 0 : 1;
   fill_joints(plant, forces, external, truth);

@@ -36,8 +36,7 @@ std::int64_t Wire::End::ready_ns() const noexcept {
 }
 
 void Wire::End::pop() noexcept {
-  first = (first + 1) % queue.size();
-  --size;
+  first = --size == 0 ? 0 : (first + 1) % queue.size();  // an empty one begins where memory is near
 }
 
 Wire::Wire(const BusConfig& bus, const WireOptions& options, int ends, std::uint64_t stream)

@@ -4,32 +4,34 @@
 
 namespace limber::sim {
 
-double Environment::apply(ArticulatedBody* arm, std::int64_t t_ns) const noexcept {
+double Environment::apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept {
   arm->clear_wrenches();
-  const int tip = arm->tip();
-  const Eigen::Vector3d p_tip = arm->link_position(tip);
-  const Eigen::Vector3d v_tip = arm->link_velocity(tip);
-  const Eigen::Vector3d contact = wall.force(p_tip, v_tip);
-  arm->add_wrench(arm->model().links[tip].body, p_tip, contact, Eigen::Vector3d::Zero());
-  double power = contact.dot(v_tip);
+  double power = 0.0;
+  if (wall.stiffness > 0.0) {
+    const int tip = arm->tip();
+    const Eigen::Vector3d p_tip = arm->link_position(tip);
+    const Eigen::Vector3d v_tip = arm->link_velocity(tip);
+    const Eigen::Vector3d contact = wall.force(p_tip, v_tip);
+    arm->add_wrench(arm->body_of(tip), p_tip, contact, Eigen::Vector3d::Zero());
+    power += contact.dot(v_tip);
+  }
   for (int i = 0; i < pushes.count(); ++i) {
     const int link = pushes[i].link;
     const Vector6 F = pushes[i].at(t_ns);
-    arm->add_wrench(arm->model().links[link].body, arm->link_position(link), F.head<3>(),
-                    F.tail<3>());
+    arm->add_wrench(arm->body_of(link), arm->link_position(link), F.head<3>(), F.tail<3>());
     power += F.head<3>().dot(arm->link_velocity(link)) +
              F.tail<3>().dot(arm->link_angular_velocity(link));
   }
   return power;
 }
 
-Vector6 Environment::wall_wrench(const ArticulatedBody& arm) const noexcept {
+Vector6 Environment::wall_wrench(const LinkDynamics& arm) const noexcept {
   Vector6 F = Vector6::Zero();
   F.head<3>() = wall.force(arm.link_position(arm.tip()), arm.link_velocity(arm.tip()));
   return F;
 }
 
-Vector6 Environment::push_wrench(const ArticulatedBody& arm, std::int64_t t_ns) const noexcept {
+Vector6 Environment::push_wrench(const LinkDynamics& arm, std::int64_t t_ns) const noexcept {
   Vector6 sum = Vector6::Zero();
   const Eigen::Vector3d p_tip = arm.link_position(arm.tip());
   for (int i = 0; i < pushes.count(); ++i) {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/plant/articulated_body.h"
+#include "sim/plant/link_dynamics.h"
 #include "sim/world/push.h"
 #include "sim/world/wall.h"
 
@@ -16,11 +16,11 @@ struct Environment {
 
   /// Adds all wrenches at the arm's present state and simulated time t to the arm; returns their
   /// power, W.
-  double apply(ArticulatedBody* arm, std::int64_t t_ns) const noexcept;
+  double apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept;
 
   // Base axes, reduced to the tip origin.
-  Vector6 wall_wrench(const ArticulatedBody& arm) const noexcept;
-  Vector6 push_wrench(const ArticulatedBody& arm, std::int64_t t_ns) const noexcept;
+  Vector6 wall_wrench(const LinkDynamics& arm) const noexcept;
+  Vector6 push_wrench(const LinkDynamics& arm, std::int64_t t_ns) const noexcept;
 };
 
 }  // namespace limber::sim

@@ -31,7 +31,7 @@ int find_link(const ArmModel& model, const std::string& name) {
   const int last = static_cast<int>(model.links.size()) - 1;
   if (name.empty()) return last;
   for (int i = last; i >= 0; --i) {
-    if (model.links[i].name == name) return i;
+    if (model.links[i] == name) return i;
   }
   return -1;
 }

@@ -78,6 +78,7 @@ void Rig::read_sensors(const VectorJ& sent) {
     }
     state.preload[i] = static_cast<float>(elastic->c[i]);
     state.preload_dot[i] = static_cast<float>(elastic->c_dot[i]);
+    state.tau_preload_applied[i] = static_cast<float>(answer.tau_preload[i]);
   }
 }
 

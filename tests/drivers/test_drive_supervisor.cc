@@ -175,6 +175,16 @@ TEST(ReplyLostTest, AllSilentIsAHoldUntilTheDrivesOwnWatchdogsHaveActed) {
   EXPECT_TRUE(is_special(arm.motors[1].last(), 0xFD));
 }
 
+TEST(ReplyLostTest, TheJointIsNamedUnlessAllAreSilentForAsLong) {
+  FakeArm arm = loaded_arm(2);
+  arm.motors[0].silent = true;
+  arm.cycle_with(kRequestOn);
+  arm.motors[1].silent = true;
+  for (int i = 0; i < 2; ++i) arm.cycle_with(kRequestOn);
+  ASSERT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
+  EXPECT_EQ(arm.state->fault_joint, 0);
+}
+
 TEST(ReplyLostTest, AStallOfTenCyclesEndsInAFirmHold) {
   FakeArm arm = loaded_arm(2);
   for (testing::FakeMotor& motor : arm.motors) motor.silent = true;
@@ -333,6 +343,34 @@ TEST(DriveErrorTest, WhenNoDriveIsEnabledAnyMoreThereIsNothingToHold) {
   arm.cycle_with(kRequestOn);
   EXPECT_EQ(arm.state->drive_state, kFault);
   EXPECT_EQ(arm.state->fault, joint_state_t::FAULT_DRIVE_ERROR + 0);
+}
+
+// A tenth of a second, and 20 cycles at least: three here would be too few for all steps.
+TEST(EnablingTest, LastsAsLongAsTheDrivesMayTakeAndNoCycleLonger) {
+  for (const auto& [rate_hz, most] : {std::pair{1000.0, 100}, {30.0, 20}}) {
+    Robot robot = test_robot(2);
+    robot.rate_hz = rate_hz;
+    FakeArm arm(robot);
+    ASSERT_TRUE(arm.run_until(kOff, joint_command_t::REQUEST_KEEP));
+    arm.motors[0].obedient = false;
+    ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_ENABLING, kRequestOn));
+    int cycles = 1;
+    for (; arm.state->drive_state == joint_state_t::DRIVE_ENABLING && cycles < 1000; ++cycles)
+      arm.cycle_with(kRequestOn);
+    EXPECT_EQ(arm.state->drive_state, kFault);
+    EXPECT_EQ(cycles, most) << rate_hz << " Hz";
+  }
+}
+
+// While they brake as well: the state is told as it is, and a fault begins the start-up anew.
+TEST(DriveErrorTest, WhenNoDriveIsEnabledInDampTheArmIsInFault) {
+  FakeArm arm = loaded_arm(2);
+  arm.set_speed(0, 5.6);
+  for (int i = 0; i < 3; ++i) arm.cycle_with(kRequestOn);
+  ASSERT_EQ(arm.state->drive_state, kDamp);
+  for (testing::FakeMotor& motor : arm.motors) motor.error = 0;
+  arm.cycle_with(kRequestOn);
+  EXPECT_EQ(arm.state->drive_state, kFault);
 }
 
 TEST(EncoderTest, AnArmThatIsOffMaySwing) {

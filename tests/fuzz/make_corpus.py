@@ -134,6 +134,12 @@ def sensor_inputs() -> None:
     keep("tip_sensor", "limber", own)
 
 
+def black_box_inputs() -> None:
+    messages_of_a_cycle = b"".join(struct.pack("<BH", 11, size) for size in (60, 80, 400)) * 8
+    for ring in (1023, 4095):
+        keep("black_box", f"ring_{ring}", struct.pack("<H", ring) + messages_of_a_cycle)
+
+
 def lockstep_inputs() -> None:
     frames = [
         Frame(0x1FFFFFF0 + kind, True, False, struct.pack("<q", number))
@@ -246,6 +252,7 @@ def main() -> None:
                 sdo_inputs(frames)
         message_inputs(logs)
     sensor_inputs()
+    black_box_inputs()
     lockstep_inputs()
     gate_inputs()
     file_inputs()

@@ -62,6 +62,7 @@ class StandingArm {
         break;
     }
     std::copy_n(answer.tau, kMaxJoints, state_.tau_applied);
+    std::copy_n(answer.tau_preload, kMaxJoints, state_.tau_preload_applied);
     std::copy_n(answer.tau, kMaxJoints, state_.tau);
   }
 

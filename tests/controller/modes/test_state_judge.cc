@@ -96,7 +96,7 @@ TEST(StateJudgeFields, TheEmergencyStopIsOneOfFour) {
 void set(joint_state_t* state, int field, int joint, double value) {
   double* const numbers[] = {state->q,         state->v,   state->theta,
                              state->theta_dot, state->tau, state->tau_applied};
-  float* const short_numbers[] = {state->preload, state->preload_dot};
+  float* const short_numbers[] = {state->preload, state->preload_dot, state->tau_preload_applied};
   if (field < 6) {
     numbers[field][joint] = value;
   } else {
@@ -105,7 +105,7 @@ void set(joint_state_t* state, int field, int joint, double value) {
 }
 
 TEST(StateJudgeFields, EveryNumberOfEveryJointIsFinite) {
-  for (int field = 0; field < 8; ++field) {
+  for (int field = 0; field < 9; ++field) {
     for (int joint = 0; joint < kJoints; ++joint) {
       for (double bad : {kNan, kInf, -kInf})
         EXPECT_FALSE(usable([=](auto& state) { set(&state, field, joint, bad); }))

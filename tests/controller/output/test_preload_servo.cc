@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "controller/output/preload_servo.h"
 #include "tests/controller/one_joint.h"
@@ -31,6 +32,12 @@ class Preload : public ::testing::Test {
     }
   }
 
+  // The drives carry tau; no law runs.
+  void take_over(double tau) {
+    state.tau_preload_applied[0] = tau;
+    servo.rest(state, PreloadAtRest::kAsApplied, false);
+  }
+
   Robot robot;
   PreloadServo servo;
   ArmState state;
@@ -38,8 +45,8 @@ class Preload : public ::testing::Test {
 
 TEST_F(Preload, MovesAlongItsRampAndHoldsTheSprings) {
   state.preload[0] = 0.1;
-  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
-  EXPECT_NEAR(servo.torque()[0], 400.0 * 0.01, 1e-12) << "what the springs pull with there";
+  take_over(400.0 * 0.01);
+  EXPECT_EQ(servo.torque()[0], 400.0 * 0.01);
   run(0.25, 0.4, 0.0, 0.0);
   EXPECT_NEAR(state.preload[0], 0.1 + 0.25 * 0.6, 0.02) << "preload_max a second";
   run(1.0, 0.4, 0.05, 0.0);
@@ -51,7 +58,7 @@ TEST_F(Preload, MovesAlongItsRampAndHoldsTheSprings) {
 
 TEST_F(Preload, LeavesTheMotorsWhatTheJointNeeds) {
   state.preload[0] = 0.3;
-  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
+  take_over(36.0);
   state.preload[0] = -5.0;  // far off: it would pull with all it has
   for (int i = 0; i < 500; ++i) {
     const double before = servo.torque()[0];
@@ -65,31 +72,36 @@ TEST_F(Preload, LeavesTheMotorsWhatTheJointNeeds) {
   }
 }
 
-// Motors that are on, wound up, with no torque yet: as fast as the gate lets, nothing at once.
-TEST_F(Preload, StartsFromWhatWasSent) {
+// The springs are not those of robot.yaml, 36 N m at this preload: whatever the drives apply goes
+// on without a step, and fades over to what robot.yaml's springs need.
+TEST_F(Preload, StartsFromWhatTheDrivesApply) {
   state.preload[0] = 0.3;
-  servo.rest(state, one(0.0), PreloadAtRest::kReleased, false);
-  servo.rest(state, one(0.0), PreloadAtRest::kAsSent, false);
-  EXPECT_EQ(servo.torque()[0], 0.0);
-  for (int i = 1; i <= 45; ++i) {
+  for (const double applied : {0.0, 21.0, 50.0}) {
+    take_over(applied);
+    EXPECT_EQ(servo.torque()[0], applied);
     servo.control(state, one(0.3), one(0.0), one(0.0), kT);
-    EXPECT_NEAR(servo.torque()[0], std::min(0.8 * i, 36.0), 1e-9);
+    EXPECT_NEAR(servo.torque()[0], applied, 1e-12);
+    for (int i = 1; i <= 500; ++i) {
+      servo.control(state, one(0.3), one(0.0), one(0.0), kT);
+      const double left = 0.5 + 0.5 * std::cos(std::numbers::pi * i / 500.0);
+      EXPECT_NEAR(servo.torque()[0], 36.0 + left * (applied - 36.0), 1e-9);
+    }
   }
 }
 
 TEST_F(Preload, LetsGoInSteps) {
   state.preload[0] = 0.3;
-  servo.rest(state, one(0.0), PreloadAtRest::kWound, false);
-  servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
+  take_over(36.0);
+  servo.rest(state, PreloadAtRest::kReleased, true);
   EXPECT_NEAR(servo.torque()[0], 36.0 - 0.8, 1e-12);
-  for (int i = 0; i < 100; ++i) servo.rest(state, one(0.0), PreloadAtRest::kReleased, true);
+  for (int i = 0; i < 100; ++i) servo.rest(state, PreloadAtRest::kReleased, true);
   EXPECT_EQ(servo.torque()[0], 0.0);
 }
 
 TEST_F(Preload, DoesNotAllocate) {
   const auto before = limber::testing::allocations();
   run(0.01, 0.3, 0.0, 1.0);
-  servo.rest(state, one(0.0), PreloadAtRest::kWound, true);
+  servo.rest(state, PreloadAtRest::kAsApplied, true);
   EXPECT_EQ(limber::testing::allocations(), before);
 }
 

@@ -41,9 +41,9 @@ class TorqueOutputTest : public ::testing::Test {
   }
   void stand_by(double target, const Standby& how) {
     limits_ = 0;
-    output_.stand_by(one(target), how, state_, one(0.0), &limits_);
+    output_.stand_by(one(target), how, state_, &limits_);
   }
-  void sent(double tau) { stand_by(tau, {.preload = PreloadAtRest::kWound}); }
+  void sent(double tau) { stand_by(tau, {.preload = PreloadAtRest::kAsApplied}); }
   double torque() const { return output_.torque()[0]; }
   double preload_torque() const { return output_.preload_torque()[0]; }
 
@@ -133,14 +133,13 @@ TEST_F(TorqueOutputTest, StandbyGoesThereAtOnceOrInSteps) {
   EXPECT_EQ(limits_, +Status::LIMIT_RATE);
 }
 
-TEST_F(TorqueOutputTest, StandbyKeepsWindsOrReleasesThePreload) {
+TEST_F(TorqueOutputTest, StandbyKeepsOrReleasesThePreload) {
   state_.preload[0] = 0.3;
-  stand_by(0.0, {.preload = PreloadAtRest::kWound});
-  EXPECT_NEAR(preload_torque(), 36.0, 1e-12) << "400 * 0.3^2";
-  stand_by(0.0, {.preload = PreloadAtRest::kAsSent});
-  EXPECT_NEAR(preload_torque(), 36.0, 1e-12);
+  state_.tau_preload_applied[0] = 21.0;  // of springs softer than robot.yaml's
+  stand_by(0.0, {.preload = PreloadAtRest::kAsApplied});
+  EXPECT_EQ(preload_torque(), 21.0);
   stand_by(0.0, {.in_steps = true});
-  EXPECT_NEAR(preload_torque(), 35.6, 1e-12);
+  EXPECT_NEAR(preload_torque(), 20.6, 1e-12);
   stand_by(0.0, {});
   EXPECT_EQ(preload_torque(), 0.0);
 }
@@ -149,6 +148,7 @@ TEST_F(TorqueOutputTest, StandbyKeepsWindsOrReleasesThePreload) {
 // m/rad.
 TEST_F(TorqueOutputTest, TheLawMayWantAnotherPreload) {
   state_.preload[0] = 0.3;
+  state_.tau_preload_applied[0] = 36.0;
   sent(0.0);
   for (int i = 0; i < 20; ++i) shape(0.0);
   EXPECT_NEAR(preload_torque(), 36.0, 1e-9);

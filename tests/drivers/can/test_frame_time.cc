@@ -97,6 +97,46 @@ TEST(FrameTime, LiesBetweenNoStuffingAndTheWorstCase) {
   EXPECT_NEAR(sum / (kFrames / 2), 115, 1) << "average of random 8-byte frames";
 }
 
+/// The standard's text bit by bit: the frame as a word of zeros and ones up to the end of the CRC.
+std::string written_out(const CanFrame& frame) {
+  const auto binary = [](std::uint32_t value, int bits) {
+    std::string word;
+    while (bits-- > 0) word += (value >> static_cast<unsigned>(bits) & 1U) != 0 ? '1' : '0';
+    return word;
+  };
+  std::string word = "0" + binary(frame.id, 11) + "000" + binary(frame.length, 4);
+  for (std::size_t i = 0; i < frame.length; ++i) word += binary(frame.data[i], 8);
+  // The remainder of the division by x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1.
+  const std::string divisor = "1100010110011001";
+  std::string rest = word + std::string(15, '0');
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (rest[i] == '0') continue;
+    for (std::size_t k = 0; k < divisor.size(); ++k)
+      rest[i + k] = rest[i + k] == divisor[k] ? '0' : '1';
+  }
+  word += rest.substr(word.size());
+  for (std::size_t i = 0; i + 5 <= word.size(); ++i) {
+    const std::string five = word.substr(i, 5);
+    if (five != "00000" && five != "11111") continue;
+    word.insert(i + 5, five == "00000" ? "1" : "0");
+    i += 4;
+  }
+  return word;
+}
+
+TEST(FrameTime, OfRandomFramesIsTheirBitsWrittenOut) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 5'000; ++i) {
+    CanFrame frame;
+    frame.id = random() & kStandardIdMax;
+    frame.length = static_cast<std::uint8_t>(random() % 9);
+    const std::uint32_t mask = (i & 1) != 0 ? random() & random() & random() : random();
+    for (auto& byte : frame.data) byte = static_cast<std::uint8_t>(random() & mask);
+    // Delimiter, acknowledge slot and delimiter, end of frame, gap.
+    ASSERT_EQ(classic_frame_bits(frame), static_cast<int>(written_out(frame).size()) + 13) << i;
+  }
+}
+
 // Runs of equal bits are the worst case where stuffing is known by hand: alternating data needs
 // none.
 TEST(FrameTime, FdStuffingByHand) {

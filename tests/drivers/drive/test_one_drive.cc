@@ -1,6 +1,8 @@
 // One drive through its states: what it forgets, what it counts, and what it begins afresh.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "drivers/drive/drive.h"
 #include "tests/drivers/drive/damiao_reply.h"
 
@@ -110,6 +112,64 @@ TEST_F(OneDrive, ALateReplyToAnAnsweredCycleTakesNothingBack) {
   drive.begin_cycle();
   drive.receive_late(State::kOn, standing.frame());
   EXPECT_EQ(drive.replies_lost(), 1);
+}
+
+// An angle that the joint cannot have reached, at which it stays.
+class OneDriveJumps : public OneDrive {
+ protected:
+  void silence(int count, State state) {
+    for (int i = 0; i < count; ++i) cycle(state, {});
+  }
+  bool taken(State state) {
+    cycle(state, {DamiaoReply{kEnabled, 2.0, 0.0, 0.0}.frame()});
+    return std::abs(drive.link().theta() - 2.0) < 1e-3;
+  }
+};
+
+TEST_F(OneDriveJumps, AreTakenOfADriveThatIsGivenUpAndLost) {
+  for (State state : {State::kFallback, State::kDamp}) {
+    drive.acknowledge();
+    cycle(State::kOff, {standing.frame()});
+    silence(3, state);
+    ASSERT_TRUE(drive.lost());
+    EXPECT_TRUE(taken(state)) << static_cast<int>(state);
+    EXPECT_TRUE(drive.link().jumped());
+    drive.acknowledge();
+    EXPECT_FALSE(drive.link().jumped());
+  }
+}
+
+TEST_F(OneDriveJumps, AreNotTakenWhileItIsOn) {
+  cycles(1, State::kOn, standing);
+  silence(5, State::kOn);
+  ASSERT_TRUE(drive.lost());
+  EXPECT_FALSE(taken(State::kOn));
+}
+
+TEST_F(OneDriveJumps, AreNotTakenBeforeItIsLost) {
+  cycles(1, State::kFallback, standing);
+  silence(5, State::kFallback);
+  drive.acknowledge();
+  EXPECT_FALSE(taken(State::kFallback));
+}
+
+// Two cycles are bridged: in the third the joint is still expected near.
+TEST_F(OneDriveJumps, AreNotTakenWithinWhatIsBridged) {
+  cycles(1, State::kFallback, standing);
+  silence(3, State::kFallback);
+  cycles(1, State::kFallback, standing);
+  silence(2, State::kFallback);
+  ASSERT_TRUE(drive.lost());
+  EXPECT_FALSE(taken(State::kFallback));
+  EXPECT_TRUE(taken(State::kFallback)) << "the next one";
+}
+
+TEST_F(OneDriveJumps, WithoutPowerALateAngleIsTakenAsItComes) {
+  cycles(1, State::kOff, standing);
+  cycle(State::kOff, {});
+  drive.begin_cycle();
+  drive.receive_late(State::kOff, DamiaoReply{testing::kDisabled, 2.0, 0.0, 0.0}.frame());
+  EXPECT_NEAR(drive.link().theta(), 2.0, 1e-3);
 }
 
 TEST_F(OneDrive, TemperaturesFitTheirField) {

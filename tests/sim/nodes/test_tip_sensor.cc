@@ -53,7 +53,7 @@ struct Felt : ::testing::Test {
     return load.F();
   }
 
-  ArticulatedBody arm;
+  LinkDynamics arm;
   Environment environment;
   TipSensorConfig config;
 };

@@ -16,6 +16,8 @@ def report(pinocchio: bool) -> dict:
     rows += [median("impedance/limber/7", 1000.0)]
     rows += [median("BM_ControllerCycle/rigid/cartesian_impedance", 2401.0)]
     rows += [median("BM_ControllerCycle/rigid/joint_pd", 3999.0)]
+    rows += [median("plant_step/reference", 3000.0), median("plant_step/bare_ode", 10000.0)]
+    rows += [median("plant_step/ode", 10900.0)]
     rows += [{**median("impedance/limber/7", 5.0), "aggregate_name": "mean"}]
     if pinocchio:
         rows += [median("impedance/pinocchio/7", 4000.0)]
@@ -31,6 +33,10 @@ def test_ratio_and_verdict():
     assert found["terms, 16 joints"].ratio == pytest.approx(0.25)
     assert found["whole controller cycle, cartesian_impedance (rigid)"].verdict == "missed"
     assert found["whole controller cycle, joint_pd (rigid)"].verdict == "met"
+    step = found["simulated step of 1 ms, rigid arm, Runge-Kutta"]
+    assert step.ratio == pytest.approx(0.3)
+    assert step.verdict == "missed"
+    assert found["the same by ODE"].verdict == "met"
 
 
 def test_without_the_peer_nothing_is_judged():

@@ -225,16 +225,19 @@ def test_a_constant_rests_on_weights(rigid, tmp_path):
 
 
 def test_all_in_one_go(heavier, limber, tmp_path):
-    """Weights, constant, friction and spring of one log, as a robot folder."""
-    done = limber("identify", "arm", str(heavier), "--out", str(tmp_path / "out"))
+    """Weights, constant, friction and spring of one log, as a robot folder, beside the log."""
+    recorded = shutil.copytree(heavier, tmp_path / "run")
+    done = limber("identify", "arm", str(recorded))
     assert done.returncode == 0, done.stderr
-    robot = yaml.safe_load((tmp_path / "out" / "robot" / "robot.yaml").read_text())
+    proposed = recorded / "identify" / "robot"
+    assert {path.name for path in proposed.iterdir()} == {"robot.yaml", "robot.urdf"}
+    robot = yaml.safe_load((proposed / "robot.yaml").read_text())
     joint = robot["joints"]["j1"]
     assert joint["transmission"]["spring"]["stiffness_Nm_per_rad"] == pytest.approx(3000, rel=2e-3)
     assert joint["friction"]["coulomb_Nm"] == pytest.approx(5.0, rel=0.02)
-    body = load_arm(str(tmp_path / "out" / "robot")).robot.dynamics.bodies[0]
+    body = load_arm(str(proposed)).robot.dynamics.bodies[0]
     assert body.moment[1] == pytest.approx(-1.15 * MASS * LEVER, rel=3e-3)
-    again = limber("identify", "arm", str(heavier), "--out", str(tmp_path / "out"))
+    again = limber("identify", "arm", str(recorded))
     assert again.returncode == 2 and "exists" in again.stderr
 
 

@@ -13,6 +13,7 @@ from limber.errors import OK, OUT_OF_TOLERANCE
 app = typer.Typer(
     help="Measure what the lecture claims and compare with the formulas.", no_args_is_help=True
 )
+PROCESSORS = min(len(os.sched_getaffinity(0)), 64)
 DEFAULT_OUT = Path("out") / "experiments"
 Root = Annotated[Path | None, typer.Option("--root", help="Folder with other experiments.")]
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
@@ -35,7 +36,9 @@ def run_experiments(
     which: Annotated[list[str], typer.Argument(help="all, or numbers such as E04 E12.")],
     out: Out = DEFAULT_OUT,
     fast: Annotated[bool, typer.Option("--fast", help="Only those that take seconds.")] = False,
-    jobs: Annotated[int, typer.Option(min=1, max=64, help="Number of experiments at a time.")] = 2,
+    jobs: Annotated[
+        int, typer.Option(min=1, max=64, help="Number of experiments at a time.")
+    ] = PROCESSORS,
     referee: Annotated[
         bool, typer.Option("--referee", help="Judge the CAN frames of every run, too.")
     ] = False,

@@ -56,8 +56,8 @@ def motion(
     commands.plan(robot, spread, poses, seed, out, console)
 
 
-def _from_motion(kind: str, what: str, on_weights: bool) -> None:
-    """The commands that read a motion."""
+def _from_motion(kind: str, what: str, on_weights: bool, example: str) -> None:
+    """The commands that read a motion; `on_weights` rest on the masses of the URDF."""
 
     def identify(
         runs: RunsOrCsv = None,
@@ -81,39 +81,43 @@ def _from_motion(kind: str, what: str, on_weights: bool) -> None:
     ) -> None:
         identify(runs, robot, csv, columns, None, out)
 
-    example = f"Example: limber identify {kind} out/tour"
-    app.command(kind, help=what, epilog=example)(identify if on_weights else of_itself)
+    epilog = f"Example: limber identify {kind} {example}"
+    app.command(kind, help=what, epilog=epilog)(identify if on_weights else of_itself)
 
 
-for kind, what in (
-    ("torque-constant", "Identify true over assumed motor torque, from slow motions up and down."),
+for kind, on_weights, example, what in (
+    (
+        "torque-constant",
+        True,
+        "out/tour",
+        "Identify true over assumed motor torque, from slow motions up and down.",
+    ),
     (
         "friction",
+        True,
+        "out/tour",
         "Identify Coulomb, viscous and breakaway friction, from slow and fast motions both ways.",
     ),
-    ("stiffness", "Identify the stiffness of the joints' springs, from deflection over torque."),
+    (
+        "stiffness",
+        False,
+        "out/tour",
+        "Identify the stiffness of the joints' springs, from deflection over torque.",
+    ),
     (
         "gravity",
+        False,
+        "out/tour",
         "Identify masses and centres of the links as far as gravity shows them; propose a URDF.",
     ),
+    (
+        "arm",
+        True,
+        "tour.yaml --out out/identified",
+        "Identify weights, constants, friction and springs in one go; of a scenario, in the lab.",
+    ),
 ):
-    _from_motion(kind, what, kind in ("torque-constant", "friction"))
-
-
-@app.command("arm", epilog="Example: limber identify arm tour.yaml --out out/identified")
-def whole_arm(
-    runs: RunsOrCsv = None,
-    robot: Robot = None,
-    csv: Csv = None,
-    columns: Columns = None,
-    weights_known: WeightsKnown = None,
-    out: Out = None,
-) -> None:
-    """Identify weights, constants, friction and springs in one go; a scenario is run in the lab."""
-    from limber.identify import commands
-
-    source = commands.Source(runs or [], robot, csv, columns)
-    commands.run_all(source, weights_known, out, console)
+    _from_motion(kind, what, on_weights, example)
 
 
 @app.command("payload", epilog="Example: limber identify payload out/with_tool")

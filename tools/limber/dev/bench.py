@@ -81,6 +81,9 @@ def figures(medians: Medians) -> list[Figure]:
             _, kind, law = name.split("/")
             goal = 0.6 if law == "cartesian_impedance" else 1.0
             found.append(beside(f"whole controller cycle, {law} ({kind})", name, PEER, goal))
+    step = "simulated step of 1 ms, rigid arm, Runge-Kutta"
+    found.append(beside(step, "plant_step/reference", "plant_step/bare_ode", 0.2))
+    found.append(beside("the same by ODE", "plant_step/ode", "plant_step/bare_ode", 1.1))
     return found
 
 

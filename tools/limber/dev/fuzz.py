@@ -28,6 +28,7 @@ MUTATIONS = 20_000
 FILE_MUTATIONS = 2_000
 SLOW = ("joint_command", "joint_state", "robot_yaml", "scenario", "urdf")
 WHAT = {
+    "black_box": "messages of any length in a black box of any size",
     "candump_log": "lines and files of a candump log",
     "canopen_sdo": "SDO frames, both ways, there and back",
     "drive_cia402": "what a CiA 402 drive says, as the driver reads it",

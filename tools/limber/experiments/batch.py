@@ -1,12 +1,16 @@
-"""Runs many experiments, two at a time; each has a process, so a failure stops no other."""
+"""Runs many experiments, one a processor; each has a process, so a failure stops no other.
+
+The processes are forks of one that has imported what all of them need.
+"""
 
 import json
+import multiprocessing
 import os
-import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from multiprocessing.context import BaseContext
 from pathlib import Path
 
 from rich.console import Console
@@ -14,10 +18,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from limber import tables
-from limber.errors import OK, OUT_OF_TOLERANCE, RUN_FAILED
-from limber.experiments.catalog import Experiment
-from limber.experiments.run_one import RESULT, numbers
+from limber.errors import OK, OUT_OF_TOLERANCE, RUN_FAILED, LimberError
+from limber.experiments.catalog import Experiment, load
+from limber.experiments.run_one import RESULT, numbers, run_one
 from limber.paths import output_folder
+
+# Linear algebra must not take the processors of the others.
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 @dataclass(frozen=True)
@@ -49,12 +56,18 @@ def _outcomes(
 ) -> list[Outcome]:
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     done = []
+    os.environ.update(ONE_THREAD)
+    processes = multiprocessing.get_context("forkserver")
+    processes.set_forkserver_preload(["limber.experiments.context"])
+    slow_first = sorted(experiments, key=lambda experiment: experiment.fast)
     with (
         ThreadPoolExecutor(jobs) as pool,
         Progress(*columns, TimeElapsedColumn(), console=console) as progress,
     ):
         task = progress.add_task("experiments", total=len(experiments))
-        futures = [pool.submit(_in_process, experiment, out) for experiment in experiments]
+        futures = [
+            pool.submit(_in_process, experiment, out, processes) for experiment in slow_first
+        ]
         try:
             for future in as_completed(futures):
                 outcome = future.result()
@@ -69,28 +82,32 @@ def _outcomes(
     return done
 
 
-def _in_process(experiment: Experiment, out: Path) -> Outcome:
+def _in_process(experiment: Experiment, out: Path, processes: BaseContext) -> Outcome:
     folder = output_folder(out / experiment.id)
-    root = str(experiment.folder.parent)
-    command = [sys.executable, "-m", "limber", "experiment", "run", experiment.id]
-    # two processes share two cores: linear algebra must not take them all
-    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    log = folder / "run.txt"
     start = time.monotonic()
-    with open(folder / "run.txt", "w", encoding="utf-8") as log:
-        code = subprocess.run(
-            [*command, "--out", str(out), "--root", root],
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=subprocess.STDOUT,
-            env=environment,
-            check=False,
-        ).returncode
+    process = processes.Process(target=_work, args=(experiment.folder, out, log))
+    process.start()
+    process.join()
     seconds = time.monotonic() - start
-    if code in (OK, OUT_OF_TOLERANCE):
+    if process.exitcode == OK:
         rows = json.loads((folder / RESULT).read_text(encoding="utf-8"))
         return Outcome(experiment, rows, "", seconds)
-    lines = (folder / "run.txt").read_text(encoding="utf-8").strip().splitlines()
-    return Outcome(experiment, [], lines[-1] if lines else f"ended with code {code}", seconds)
+    lines = log.read_text(encoding="utf-8").strip().splitlines() if log.exists() else []
+    ended = f"ended with code {process.exitcode}"
+    return Outcome(experiment, [], lines[-1] if lines else ended, seconds)
+
+
+def _work(folder: Path, out: Path, log: Path) -> None:
+    """One experiment; what it prints goes to the log."""
+    with open(log, "w", encoding="utf-8") as file:
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(file.fileno(), stream.fileno())
+    try:
+        run_one(load(folder), out, Console())
+    except LimberError as error:
+        print(error, flush=True)
+        sys.exit(RUN_FAILED)
 
 
 def summary(outcomes: list[Outcome]) -> Table:

@@ -37,7 +37,7 @@ def catalog(root: Path | None = None) -> list[Experiment]:
     """All experiments in the order of their numbers."""
     root = root or ROOT / "experiments"
     folders = sorted(path.parent for path in root.glob("E*/experiment.py"))
-    found = [_load(folder) for folder in folders]
+    found = [load(folder) for folder in folders]
     for before, after in itertools.pairwise(found):
         if before.id == after.id:
             raise InputError(f"{after.folder}: {before.folder.name} has the same number")
@@ -59,7 +59,8 @@ def choose(words: list[str], experiments: list[Experiment]) -> list[Experiment]:
     return list(chosen.values())
 
 
-def _load(folder: Path) -> Experiment:
+def load(folder: Path) -> Experiment:
+    """The experiment of one folder."""
     match = FOLDER_NAME.fullmatch(folder.name)
     if match is None:
         raise InputError(f"{folder}: an experiment's folder is named like E04_finite_deviation")

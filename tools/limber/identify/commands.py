@@ -59,6 +59,9 @@ class Source:
 def run(
     kind: str, source: Source, weights_known: float | None, out: Path | None, console: Console
 ) -> None:
+    """One of KINDS, or all of them: `arm`."""
+    if kind == "arm":
+        return _run_all(source, weights_known, out, console)
     arm, recordings, beside = source.read()
     found = KINDS[kind](arm, motion_of(recordings), weights_known)
     _print(found, console)
@@ -67,7 +70,7 @@ def run(
     _write(found, kind, folder, files, console)
 
 
-def run_all(
+def _run_all(
     source: Source, weights_known: float | None, out: Path | None, console: Console
 ) -> None:
     """Of a scenario, first its tour in the lab. Writes a whole robot folder."""

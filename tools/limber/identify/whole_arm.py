@@ -23,7 +23,7 @@ from limber.identify.proposal import DIGITS
 from limber.identify.static_poses import StaticPoses, static_poses
 from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import set_number
-from limber.model.robot import read_yaml
+from limber.model.robot import copy_description, read_yaml
 from limber.paths import program
 
 
@@ -38,8 +38,9 @@ class Proposal:
 
 def propose(arm: Arm, motion: Motion, weights_known: float | None, folder: Path) -> Proposal:
     """Writes the proposed robot to `folder`; friction and constants rest on its weights."""
-    shutil.copytree(arm.robot.folder, folder, dirs_exist_ok=True)
     weights = gravity.identify(arm, motion)
+    folder.mkdir(parents=True)
+    copy_description(arm.robot, folder)
     if weights.inertials:
         text = with_inertials(arm.robot.urdf, weights.inertials)
         (folder / arm.robot.urdf.name).write_text(text, encoding="utf-8")

@@ -30,6 +30,7 @@ class MeasuredPush:
     offset_after_m: float  # how far from where it was the tip came to rest after the release
     wished: float | None = None  # requested of springs, which come as near as they can
     friction_observed: bool = False  # then the bound is what friction behind the sensors holds
+    dithered: bool = False  # then little of the bound is held in the end
 
     @property
     def span(self) -> tuple[float, float]:
@@ -157,6 +158,7 @@ def _measure(
         _offset_after(truth, rests, scenario),
         float(direction @ gains.K_x @ direction) if gains.law == statics.SPRINGS else None,
         scenario.friction and gains.friction_observed,
+        scenario.friction and gains.dithered,
     )
 
 
@@ -229,11 +231,12 @@ def _results_of(measured: MeasuredPush, tolerance: float) -> list[Result]:
         return [close_to(name, measured.stiffness, unit, measured.expected, allowed, note)]
     value = measured.stiffness_without_friction
     took = f"friction took {measured.friction_took:.2g} {force_unit}"
-    bound = measured.friction_bound
+    bound, band = measured.friction_bound, f"friction band {measured.axis}"
+    band_note = "without dither" if measured.dithered else "predicted, at a rest"
     results = [
-        Result(name, measured.stiffness, unit, note=note),
+        Result(name, measured.stiffness, unit, note=note + ", dither" * measured.dithered),
         close_to(f"{name} less friction", value, unit, measured.expected, allowed, took),
-        Result(f"friction band {measured.axis}", bound, force_unit, note="predicted, at a rest"),
+        Result(band, bound, force_unit, note=band_note),
     ]
     offset_mm = measured.offset_after_m * 1e3
     if np.isfinite(offset_mm):

@@ -28,15 +28,24 @@ class Push:
 
 @dataclass(frozen=True)
 class Gains:
-    """What holds from `at_s` on. `friction_observed`: torque sensors see the gears' friction, and
-    all of it is made up for.
-    """
+    """What holds from `at_s` on. `friction_compensation`: a word of `gains:`."""
 
     at_s: float
     law: str
     K_x: np.ndarray
     K_q: np.ndarray
-    friction_observed: bool = False
+    friction_compensation: str = "none"
+    friction_share: float = 0.0
+
+    @property
+    def friction_observed(self) -> bool:
+        """Torque sensors see the gears' friction, and all of it is made up for."""
+        return self.friction_compensation == "observer" and self.friction_share == 1.0
+
+    @property
+    def dithered(self) -> bool:
+        """The motors swing a little, so that the gears do not stick."""
+        return self.friction_compensation == "dither"
 
 
 @dataclass(frozen=True)
@@ -175,8 +184,11 @@ def _changed(before: Gains, at_s: float, content: dict[str, Any]) -> Gains:
             K_x[rows, rows] = np.diag(np.broadcast_to(np.asarray(content[key], float), 3))
     if "K_q_Nm_per_rad" in content:
         K_q[:] = content["K_q_Nm_per_rad"]
-    observed = before.friction_observed
-    if "friction_compensation" in content:
-        whole = float(content.get("friction_share", 0.0)) == 1.0
-        observed = content["friction_compensation"] == "observer" and whole
-    return Gains(at_s, str(content.get("law", before.law)), K_x, K_q, observed)
+    return Gains(
+        at_s,
+        str(content.get("law", before.law)),
+        K_x,
+        K_q,
+        str(content.get("friction_compensation", before.friction_compensation)),
+        float(content.get("friction_share", before.friction_share)),
+    )

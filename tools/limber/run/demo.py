@@ -32,6 +32,10 @@ MEANING = (
     "Felt is pushed over moved: what a hand on the arm feels. Friction in the joints carried a\n"
     "part of the push. The rest of it over the distance is the spring alone: what was asked for."
 )
+DITHERED = (
+    "With friction_compensation: dither the motors swing a little, the gears do not stick, and a\n"
+    "hand feels what was asked for."
+)
 OBSERVED = (
     "Felt is pushed over moved: what a hand on the arm feels. Torque sensors behind the gears see\n"
     "their friction and the controller makes up for it: a hand feels what was asked for, but for\n"
@@ -107,12 +111,7 @@ def _show(
     if pushes:
         console.print(_stiffness_table(pushes, scenario.tolerances.stiffness, summary))
         console.print(_meaning(pushes, scenario))
-        kept_mm = max(measured.offset_after_m * 1e3 for measured in pushes)
-        if scenario.friction and kept_mm > 0.1:
-            console.print(
-                f"Let go, the hand stayed up to {kept_mm:.0f} mm from where it was: there the "
-                "spring pulls less than friction holds."
-            )
+        _show_rest(pushes, scenario, console)
     force = summary.find("peak contact force")
     if force is not None:
         rest = summary.find("static contact force")
@@ -125,10 +124,26 @@ def _show(
             console.print(f"[bold red]out of tolerance:[/] {_line(result)}")
 
 
+def _show_rest(pushes: list[MeasuredPush], scenario: Scenario, console: Console) -> None:
+    """How far from where it was the hand stayed."""
+    kept_mm = [measured.offset_after_m * 1e3 for measured in pushes if not measured.dithered]
+    if not scenario.friction or not max(kept_mm, default=0.0) > 0.1:
+        return
+    dithered_mm = [measured.offset_after_m * 1e3 for measured in pushes if measured.dithered]
+    console.print(
+        f"Let go, the hand stayed up to {max(kept_mm):.0f} mm from where it was: there the spring "
+        "pulls less than friction holds."
+        + (f" With dither: up to {max(dithered_mm):.1f} mm." if dithered_mm else "")
+    )
+
+
 def _meaning(pushes: list[MeasuredPush], scenario: Scenario) -> str:
     if all(measured.friction_observed for measured in pushes):
         return OBSERVED
-    return MEANING if scenario.friction else MEANING.partition("Friction")[0].strip()
+    if not scenario.friction:
+        return MEANING.partition("Friction")[0].strip()
+    dithered = any(measured.dithered for measured in pushes)
+    return f"{MEANING}\n{DITHERED}" if dithered else MEANING
 
 
 def _health(summary: Summary) -> str:
@@ -150,7 +165,9 @@ def _health(summary: Summary) -> str:
 
 
 def _stiffness_table(pushes: list[MeasuredPush], tolerance: float, summary: Summary) -> Table:
-    columns = ("<along", ">pushed", ">moved", ">felt", ">friction", ">spring alone", ">asked", ">")
+    dithered = any(measured.dithered for measured in pushes)
+    columns = ["<along", ">pushed", ">moved", ">felt", ">friction", ">spring alone", ">asked", ">"]
+    columns[1:1] = ["<dither"] * dithered
     table = tables.table(*columns, title="How soft is the tip?", padding=(0, 1, 0, 0))
     for measured in pushes:
         force, unit = ("N m", "N m/rad") if measured.angular else ("N", "N/m")
@@ -159,10 +176,11 @@ def _stiffness_table(pushes: list[MeasuredPush], tolerance: float, summary: Summ
         good = abs(value - measured.expected) <= measured.allowed(tolerance)
         table.add_row(
             measured.axis,
+            *["on" if measured.dithered else "off"] * dithered,
             f"{measured.force:.1f} {force}",
             f"{moved:.1f} {'°' if measured.angular else 'mm'}",
             f"{measured.stiffness:.0f} {unit}",
-            f"{measured.friction_took:.1f} {force}",
+            f"{round(measured.friction_took, 1) + 0.0:.1f} {force}",  # never -0.0
             f"{value:.0f} {unit}",
             f"{measured.expected:.0f} {unit}",
             "after the fault" if summary.disturbed(measured.span) else tables.verdict(good),

@@ -1,9 +1,11 @@
 """The demo in one picture: pushes, displacements, stiffness, contact with the wall, torques."""
 
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from limber.log.reader import Log, time_s
 from limber.measure.pushes import BEFORE_S, MeasuredPush
@@ -12,6 +14,7 @@ from limber.plot import stick_figure
 from limber.plot.charts import TERMS
 from limber.plot.style import COLORS, STYLE, name_axes, note
 
+DITHER_S = 0.2  # five periods
 AXIS_COLORS = dict(zip("xyz", COLORS, strict=False))
 
 
@@ -59,7 +62,7 @@ def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[MeasuredPush]) -> None:
         tops = [*moved_mm, expected]
         note(
             ax,
-            f"{measured.force:.0f} N\nalong {measured.axis}",
+            f"{measured.force:.0f} N\nalong {measured.axis}" + "\ndither" * measured.dithered,
             (start + length / 2, max(tops) if sign > 0 else min(tops)),
             (0, 6 * sign),
             ha="center",
@@ -67,7 +70,7 @@ def _moved(ax: plt.Axes, truth: np.ndarray, pushes: list[MeasuredPush]) -> None:
             color=_color(measured),
             fontsize=8,
         )
-    ax.margins(y=0.25)
+    ax.margins(y=0.35)
     ax.set_title("The tip gives way when pushed", loc="left")
     name_axes(ax, "arm time (s)", "tip moved along the push's axis (mm)")
     if pushes:
@@ -87,7 +90,8 @@ def _softness(ax: plt.Axes, pushes: list[MeasuredPush]) -> None:
         value = measured.stiffness_without_friction
         label = f"{measured.axis}: {value:.0f} N/m"
         if measured.friction_bound:
-            label += " less friction"
+            label += f" less friction, felt {measured.stiffness:.0f}"
+            label += ", dither" * measured.dithered
             ax.plot(d_mm, measured.force, "o", color=color, mfc="white")
             ax.plot([d_mm] * 2, [measured.force, left], ":", color=color, lw=1.5)
         ax.plot(d_mm, left, "o", color=color, label=label)
@@ -148,18 +152,35 @@ def _forces(ax: plt.Axes, truth: np.ndarray, scenario: Scenario) -> None:
 
 
 def _torques(ax: plt.Axes, status: np.ndarray, scenario: Scenario) -> None:
-    """The terms at the joint whose spring torque moves most."""
+    """The terms at the joint whose spring torque moves most. The mean of a dither's periods: the
+    arm moves by that.
+    """
     t = time_s(status)
+    dithered = any(gains.dithered for gains in scenario.gains)
+    mean = partial(_mean, t, DITHER_S) if dithered else np.asarray
     count = len(scenario.robot.joints)
     spring = status["tau_stiffness"][:, :count]
     joint = int(np.ptp(spring, axis=0).argmax()) if len(status) else 0
     for i, (term, name) in enumerate(TERMS.items()):
-        values = status[f"tau_{term}"][:, joint]
+        values = mean(status[f"tau_{term}"][:, joint])
         if np.abs(values).max(initial=0.0) > 1e-3:
             ax.plot(t, values, label=name, color=COLORS[i])
-    ax.plot(t, status["tau_sent"][:, joint], "k", lw=0.8, label="sum, as sent")
+    sent = status["tau_sent"][:, joint]
+    ax.plot(t, mean(sent), "k", lw=0.8, label="sum, as sent")
     name = scenario.robot.joints[joint].name
-    ax.set_title(f"Which part of the law does it: torque of {name}, term by term", loc="left")
+    title = f"Which part of the law does it: torque of {name}, term by term"
+    if dithered:
+        swing_Nm = np.abs(sent - mean(sent))[t > t[0] + DITHER_S].max(initial=0.0)
+        title += f" (means over {DITHER_S:g} s; the dither swings by {swing_Nm:.1f} N m)"
+    ax.set_title(title, loc="left")
     name_axes(ax, "arm time (s)", "torque (N m)")
     ax.legend(loc="upper left", fontsize=8, ncols=6)
     ax.margins(x=0, y=0.2)
+
+
+def _mean(t: np.ndarray, span_s: float, values: np.ndarray) -> np.ndarray:
+    """Over the span around each time; of evenly spaced samples."""
+    if len(t) < 2:
+        return values
+    count = max(1, round(span_s / float(np.median(np.diff(t)))))
+    return uniform_filter1d(values, count, mode="nearest")

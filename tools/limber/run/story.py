@@ -9,6 +9,11 @@ from limber.model.robot import read_yaml
 from limber.model.scenario import Push, Scenario
 
 AXES = ("x", "y", "z")
+COMPENSATIONS = {
+    "none": "The dither is off again: on a wall it would hammer.",
+    "dither": "One word changed: friction_compensation: dither. The motors swing a little, so that "
+    "the gears no longer stick.",
+}
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,8 @@ def _entry(scenario: Scenario, entry: dict) -> str | None:
     if isinstance(entry.get("gains"), dict) and "K_x_translation_N_per_m" in entry["gains"]:
         asked = entry["gains"]["K_x_translation_N_per_m"]
         return f"Asked for: a spring of {asked} N/m between the hand and its goal."
+    if isinstance(entry.get("gains"), dict) and "friction_compensation" in entry["gains"]:
+        return COMPENSATIONS.get(entry["gains"]["friction_compensation"])
     if isinstance(entry.get("wall"), dict):
         return "A wall is put up in front of the hand."
     if isinstance(entry.get("goal"), dict) and "offset_m" in entry["goal"]:
@@ -83,7 +90,7 @@ def _expected(scenario: Scenario, push: Push) -> tuple[float, float] | None:
     direction = np.concatenate([push.wrench[:3] / np.linalg.norm(push.wrench[:3]), np.zeros(3)])
     C = G @ J.T
     held = 0.0
-    if scenario.friction:
+    if scenario.friction and not gains.dithered:
         observed = gains.friction_observed
         friction = np.array([j.link_friction if observed else j.friction for j in robot.joints])
         held = statics.greatest_friction_force(G, C, direction, friction)

@@ -1,16 +1,19 @@
-#include "controller/model/spd_solve.h"
+#include "dynamics/spd_solve.h"
 
 #include <limits>
 
-namespace limber::controller {
+namespace limber::dynamics {
 
-void solve_spd(const MatrixJ& M, MatrixJ6* X) noexcept {
+template <int Columns>
+void solve_spd(const MatrixJ& M,
+               Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::ColMajor, kMaxJoints, Columns>*
+                   X) noexcept {
   const auto n = M.rows();
-  // By rows: six right-hand sides at once.
-  using Six = Eigen::Array<double, 6, 1>;
+  // By rows: all right-hand sides at once.
+  using Sides = Eigen::Array<double, Columns, 1>;
   double L[kMaxJoints][kMaxJoints];
   double inverse_D[kMaxJoints];
-  Six Y[kMaxJoints];
+  Sides Y[kMaxJoints];
   for (Eigen::Index i = 0; i < n; ++i) {
     Y[i] = X->row(i).transpose();
     double LD[kMaxJoints];  // row i of L D
@@ -26,11 +29,14 @@ void solve_spd(const MatrixJ& M, MatrixJ6* X) noexcept {
     inverse_D[i] = d > 0.0 ? 1.0 / d : std::numeric_limits<double>::quiet_NaN();
   }
   for (Eigen::Index i = n - 1; i >= 0; --i) {
-    Six x = inverse_D[i] * Y[i];
+    Sides x = inverse_D[i] * Y[i];
     for (Eigen::Index k = i + 1; k < n; ++k) x -= L[k][i] * Y[k];
     Y[i] = x;
     X->row(i) = x.transpose();
   }
 }
 
-}  // namespace limber::controller
+template void solve_spd(const MatrixJ& M, MatrixJ6* X) noexcept;
+template void solve_spd(const MatrixJ& M, VectorJ* X) noexcept;
+
+}  // namespace limber::dynamics

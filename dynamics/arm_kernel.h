@@ -22,12 +22,13 @@
 // angular part of S_j.
 #pragma once
 
-#include "common/types.h"
-#include "controller/model/body_chain.h"
-#include "controller/model/joint_rows.h"
-#include "controller/model/pose.h"
+#include <variant>
 
-namespace limber::controller {
+#include "common/types.h"
+#include "dynamics/body_chain.h"
+#include "dynamics/joint_rows.h"
+
+namespace limber::dynamics {
 
 /// For arms of at most N joints. place() comes first; each of the others says what it needs
 /// besides. Results have as many entries as the arm has joints. After construction all may be
@@ -37,11 +38,23 @@ class ArmKernel {
  public:
   /// Gravity: acceleration in base axes, m/s^2.
   ArmKernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
+  /// Another mass of a body, from the next place() on.
+  void set_mass(int body, const MassProperties& mass) noexcept;
 
   /// Poses of all bodies, S, c and h.
   void place(const VectorJ& q) noexcept;
-  Pose tip() const noexcept { return {p_tip_, Eigen::Quaterniond(R_tip_)}; }
+  Eigen::Matrix3d rotation(int body) const noexcept;
+  Eigen::Vector3d position(int body) const noexcept { return p_.at(body); }
+  Eigen::Vector3d centre_of_mass(int body) const noexcept { return c_.at(body); }
+  Eigen::Vector3d axis(int body) const noexcept { return R_z_.at(body); }
+  const Eigen::Matrix3d& tip_rotation() const noexcept { return R_tip_; }
+  const Eigen::Vector3d& tip_position() const noexcept { return p_tip_; }
+  /// Of the tip.
   void jacobian(Matrix6J* J) const noexcept;
+  /// tau_i += S_i . F for the joints that carry the body; F is a wrench at the base origin.
+  void add_wrench(int body, const Vector6& F, VectorJ* tau) const noexcept;
+  /// Of gravity, zero with every mass at the height of the base origin, J.
+  double potential_energy() const noexcept;
   void gravity(VectorJ* g) const noexcept;
   void gravity_gradient(MatrixJ* slope) const noexcept;
 
@@ -52,9 +65,11 @@ class ArmKernel {
 
   /// V and A.
   void move(const VectorJ& v, const VectorJ& a) noexcept;
+  /// After move(): V of a body.
+  Vector6 twist(int body) const noexcept;
   /// After move(): acceleration of the tip, which moves with the twist V_BT.
   Vector6 tip_acceleration(const Vector6& V_BT) const noexcept;
-  /// After weigh() and move(): M a + C v and C^T v.
+  /// After weigh() and move(): M a + C v, and C^T v unless that is null.
   void torque(VectorJ* tau, VectorJ* CTv) const noexcept;
 
  private:
@@ -64,14 +79,15 @@ class ArmKernel {
   BodyChain chain_;
   int size_;
   Eigen::Vector3d gravity_;
-  Row<N> m_;
-  Row3<N> com_;          // in body axes
-  RowSymmetric<N> I_C_;  // about the centre of mass, body axes
+  Row<N> m_, carried_m_;   // of the body; of all bodies that its joint carries
+  Row<N> turns_, slides_;  // 1 for a joint of the kind, else 0
+  Row3<N> com_;            // in body axes
+  RowSymmetric<N> I_C_;    // about the centre of mass, body axes
   // Of the present state.
   Row3<N> R_x_, R_y_, R_z_;  // columns: axes of the bodies
   Row3<N> p_;
   Row6<N> S_;
-  Row3<N> c_, h_;
+  Row3<N> c_, h_, carried_h_;
   RowSymmetric<N> I_O_;
   Row6<N> V_, V_x_S_, A_;
   Eigen::Matrix3d R_tip_;
@@ -81,4 +97,8 @@ class ArmKernel {
 extern template class ArmKernel<8>;
 extern template class ArmKernel<16>;
 
-}  // namespace limber::controller
+/// The smaller one that has room for the chain.
+using AnyArmKernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
+AnyArmKernel arm_kernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
+
+}  // namespace limber::dynamics

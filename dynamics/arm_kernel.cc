@@ -1,32 +1,34 @@
-#include "controller/model/arm_kernel.h"
+#include "dynamics/arm_kernel.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
-namespace limber::controller {
+namespace limber::dynamics {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 template <int N>
-Row6<N> turn_twist(const Row6<N>& V, const Row6<N>& S) noexcept {
+[[gnu::always_inline]] inline Row6<N> turn_twist(const Row6<N>& V, const Row6<N>& S) noexcept {
   return {cross(V.ang, S.lin) + cross(V.lin, S.ang), cross(V.ang, S.ang)};
 }
 
 template <int N>
-Row6<N> turn_momentum(const Row6<N>& V, const Row6<N>& H) noexcept {
+[[gnu::always_inline]] inline Row6<N> turn_momentum(const Row6<N>& V, const Row6<N>& H) noexcept {
   return {cross(V.ang, H.lin), cross(V.ang, H.ang) + cross(V.lin, H.lin)};
 }
 
 template <int N>
-Row6<N> momentum_of(const Row<N>& m, const Row3<N>& h, const RowSymmetric<N>& I_O,
-                    const Row6<N>& V) noexcept {
+[[gnu::always_inline]] inline Row6<N> momentum_of(const Row<N>& m, const Row3<N>& h,
+                                                  const RowSymmetric<N>& I_O,
+                                                  const Row6<N>& V) noexcept {
   return {m * V.lin + cross(V.ang, h), I_O * V.ang + cross(h, V.lin)};
 }
 
 template <int N>
-Row<N> padded(const VectorJ& x) noexcept {
-  Row<N> row = Row<N>::Zero();
+[[gnu::always_inline]] inline Row<N> padded(const VectorJ& x) noexcept {
+  Row<N> row = Row<N>{};
   for (Eigen::Index i = 0; i < x.size(); ++i) row[i] = x[i];
   return row;
 }
@@ -35,20 +37,28 @@ Row<N> padded(const VectorJ& x) noexcept {
 
 template <int N>
 ArmKernel<N>::ArmKernel(const BodyChain& chain, const Vector3d& gravity)
-    : chain_(chain), size_(static_cast<int>(chain.bodies.size())), gravity_(gravity) {
-  const Row<N> zero = Row<N>::Zero();
+    : chain_(chain), size_(chain.size()), gravity_(gravity) {
+  const Row<N> zero = Row<N>{};
   m_ = zero;
   com_ = R_x_ = R_y_ = R_z_ = p_ = c_ = h_ = {zero, zero, zero};
   S_ = V_ = V_x_S_ = A_ = {p_, p_};
   I_C_ = I_O_ = {zero, zero, zero, zero, zero, zero};
+  turns_ = slides_ = zero;
   for (int i = 0; i < size_; ++i) {
     const Body& body = chain.bodies[static_cast<std::size_t>(i)];
-    m_[i] = body.mass;
-    com_.set(i, body.com);
-    const Matrix3d& I = body.inertia;
-    I_C_.xx[i] = I(0, 0), I_C_.yy[i] = I(1, 1), I_C_.zz[i] = I(2, 2);
-    I_C_.xy[i] = I(0, 1), I_C_.xz[i] = I(0, 2), I_C_.yz[i] = I(1, 2);
+    (body.prismatic ? slides_ : turns_)[i] = 1.0;
+    set_mass(i, body.mass);
   }
+}
+
+template <int N>
+void ArmKernel<N>::set_mass(int body, const MassProperties& mass) noexcept {
+  const Matrix3d& I = mass.inertia;
+  m_[body] = mass.mass;
+  com_.set(body, mass.com);
+  I_C_.xx[body] = I(0, 0), I_C_.yy[body] = I(1, 1), I_C_.zz[body] = I(2, 2);
+  I_C_.xy[body] = I(0, 1), I_C_.xz[body] = I(0, 2), I_C_.yz[body] = I(1, 2);
+  carried_m_ = from_tip<N>(m_);
 }
 
 template <int N>
@@ -59,23 +69,31 @@ void ArmKernel<N>::place(const VectorJ& q) noexcept {
     const Body& body = chain_.bodies[static_cast<std::size_t>(i)];
     p += R * body.p;
     R = R * body.R;
-    const Vector3d x = R.col(0), y = R.col(1), z = R.col(2);
     if (body.prismatic) {
-      p += q[i] * z;
-      S_.lin.set(i, z);
+      p += q[i] * R.col(2);
     } else {
       const double cosine = std::cos(q[i]), sine = std::sin(q[i]);
-      R.col(0) = cosine * x + sine * y;
-      R.col(1) = cosine * y - sine * x;
-      S_.lin.set(i, p.cross(z));
-      S_.ang.set(i, z);
+      const Vector3d x = R.col(0);
+      R.col(0) = cosine * x + sine * R.col(1);
+      R.col(1) = cosine * R.col(1) - sine * x;
     }
     R_x_.set(i, R.col(0)), R_y_.set(i, R.col(1)), R_z_.set(i, R.col(2)), p_.set(i, p);
   }
-  R_tip_ = R * chain_.R_tip;
-  p_tip_ = p + R * chain_.p_tip;
+  const Row3<N> moment = cross(p_, R_z_);
+  S_ = {slides_ * R_z_ + turns_ * moment, turns_ * R_z_};
+  const FixedFrame& tip = chain_.frames.back();
+  R_tip_ = R * tip.R;
+  p_tip_ = p + R * tip.p;
   c_ = p_ + com_.x * R_x_ + com_.y * R_y_ + com_.z * R_z_;
   h_ = m_ * c_;
+  carried_h_ = from_tip<N>(h_);
+}
+
+template <int N>
+Matrix3d ArmKernel<N>::rotation(int body) const noexcept {
+  Matrix3d R;
+  R << R_x_.at(body), R_y_.at(body), R_z_.at(body);
+  return R;
 }
 
 // I_O = R I_C R^T + m (c.c 1 - c c^T).
@@ -111,6 +129,25 @@ void ArmKernel<N>::jacobian(Matrix6J* J) const noexcept {
   }
 }
 
+template <int N>
+void ArmKernel<N>::add_wrench(int body, const Vector6& F, VectorJ* tau) const noexcept {
+  const Row<N> torque = F[0] * S_.lin.x + F[1] * S_.lin.y + F[2] * S_.lin.z + F[3] * S_.ang.x +
+                        F[4] * S_.ang.y + F[5] * S_.ang.z;
+  for (int i = 0; i <= body; ++i) (*tau)[i] += torque[i];
+}
+
+template <int N>
+double ArmKernel<N>::potential_energy() const noexcept {
+  return -gravity_.dot(carried_h_.at(0));
+}
+
+template <int N>
+Vector6 ArmKernel<N>::twist(int body) const noexcept {
+  Vector6 V;
+  V << V_.lin.at(body), V_.ang.at(body);
+  return V;
+}
+
 // Of the tip itself, not of the point fixed to the last body that passes the base origin.
 template <int N>
 Vector6 ArmKernel<N>::tip_acceleration(const Vector6& V_BT) const noexcept {
@@ -123,7 +160,7 @@ Vector6 ArmKernel<N>::tip_acceleration(const Vector6& V_BT) const noexcept {
 
 template <int N>
 Row3<N> ArmKernel<N>::linear_momentum() const noexcept {
-  return from_tip<N>(m_) * S_.lin + cross(S_.ang, from_tip<N>(h_));
+  return carried_m_ * S_.lin + cross(S_.ang, carried_h_);
 }
 
 template <int N>
@@ -144,7 +181,7 @@ void ArmKernel<N>::gravity_gradient(MatrixJ* slope) const noexcept {
 
 template <int N>
 void ArmKernel<N>::mass(MatrixJ* M) const noexcept {
-  const Row6<N> P = momentum_of<N>(from_tip<N>(m_), from_tip<N>(h_), from_tip<N>(I_O_), S_);
+  const Row6<N> P = momentum_of<N>(carried_m_, carried_h_, from_tip<N>(I_O_), S_);
   for (int j = 0; j < size_; ++j) {
     const Row<N> column = P.lin.x[j] * S_.lin.x + P.lin.y[j] * S_.lin.y + P.lin.z[j] * S_.lin.z +
                           P.ang.x[j] * S_.ang.x + P.ang.y[j] * S_.ang.y + P.ang.z[j] * S_.ang.z;
@@ -157,11 +194,18 @@ void ArmKernel<N>::torque(VectorJ* tau, VectorJ* CTv) const noexcept {
   const Row6<N> H = momentum_of<N>(m_, h_, I_O_, V_);
   const Row6<N> F = momentum_of<N>(m_, h_, I_O_, A_) + turn_momentum(V_, H);
   const Row<N> Ma_Cv = dot(S_, from_tip<N>(F));
+  for (int i = 0; i < size_; ++i) (*tau)[i] = Ma_Cv[i];
+  if (CTv == nullptr) return;
   const Row<N> C_transposed_v = dot(V_x_S_, from_tip<N>(H));
-  for (int i = 0; i < size_; ++i) (*tau)[i] = Ma_Cv[i], (*CTv)[i] = C_transposed_v[i];
+  for (int i = 0; i < size_; ++i) (*CTv)[i] = C_transposed_v[i];
 }
 
 template class ArmKernel<8>;
 template class ArmKernel<16>;
 
-}  // namespace limber::controller
+AnyArmKernel arm_kernel(const BodyChain& chain, const Vector3d& gravity) {
+  if (chain.size() <= 8) return ArmKernel<8>(chain, gravity);
+  return ArmKernel<16>(chain, gravity);
+}
+
+}  // namespace limber::dynamics

@@ -1,0 +1,73 @@
+// Two motors a joint whose springs are not those of robot.yaml: the controller takes the arm over
+// with the preload torque that the drives apply.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "controller/laws/registry.h"
+#include "lab/lab.h"
+#include "tests/support/mutation.h"
+
+namespace limber::test_two_motors {
+namespace {
+
+const char* const kScenario = R"(format: limber-scenario/1
+name: softer_springs
+description: springs that pull a quarter less than robot.yaml believes
+robot: antagonist2r
+duration_s: 5
+reality:
+  joints:
+    shoulder: {transmission: {spring: {k2_Nm_per_rad2: 300}}}
+    elbow: {transmission: {spring: {k2_Nm_per_rad2: 300}}}
+timeline:
+  - {at_s: 0.3, mode: hold}
+  - {at_s: 2.0, fault: {joint: elbow, kind: silent, for_s: 0.1}}
+  - {at_s: 3.0, mode: acknowledge}
+  - {at_s: 3.2, mode: hold}
+)";
+
+TEST(TwoMotors, AreTakenOverWithoutAStep) {
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write("scenario.yaml", kScenario);
+  const LoadedRobot robot = load_robot("antagonist2r");
+  const Scenario scenario = load_scenario(file, robot, &controller::law_catalog());
+  Lab lab(robot, scenario);
+  const auto run_to = [&lab](double time_s) {
+    while (lab.time_ns() < std::llround(time_s * 1e9)) lab.step();
+  };
+  run_to(2.5);
+  ASSERT_EQ(lab.state().drive_state, +joint_state_t::DRIVE_HOLD);
+  // What robot.yaml's springs would pull with is far from what holds these.
+  for (int i = 0; i < 2; ++i) {
+    // Quadratic springs: k2 ((c + x)^2 + (c - x)^2) / 2.
+    const double c = lab.state().preload[i];
+    const double x = lab.state().theta[i] - lab.state().q[i];
+    const double square = c * c + x * x;
+    const double applied = lab.state().tau_preload_applied[i];
+    EXPECT_GT(std::abs(400.0 * square - applied), 2.0) << i;
+    EXPECT_NEAR(300.0 * square, applied, 0.3) << i << ": the springs there are";
+  }
+  int takeovers = 0;
+  double slowest = 0.0;
+  while (lab.time_ns() < 4'500'000'000) {
+    const auto before = lab.state();
+    lab.step();
+    const bool on = lab.state().drive_state == joint_state_t::DRIVE_ON;
+    if (before.drive_state != joint_state_t::DRIVE_ON && on) {
+      ++takeovers;
+      for (int i = 0; i < 2; ++i) {
+        const double applied = lab.state().tau_preload_applied[i];
+        EXPECT_NEAR(lab.torque().tau_preload[i], applied, 1e-3) << i;
+        EXPECT_NEAR(before.tau_preload_applied[i], applied, 0.3) << i;
+      }
+    }
+    if (on) slowest = std::max(slowest, std::abs<double>(lab.state().preload_dot[0]));
+  }
+  EXPECT_EQ(takeovers, 1);
+  EXPECT_LT(slowest, 0.5) << "the preload is not let go";
+}
+
+}  // namespace
+}  // namespace limber::test_two_motors
