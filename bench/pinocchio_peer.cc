@@ -38,8 +38,8 @@ pinocchio::Model make_model(const dynamics::BodyChain& chain, const Eigen::Vecto
 PinocchioPeer::PinocchioPeer(const dynamics::BodyChain& chain, const Eigen::Vector3d& gravity)
     : J(6, static_cast<Eigen::Index>(chain.bodies.size())),
       data_(std::make_unique<Data>(make_model(chain, gravity))),
-      R_tip_(chain.R_tip),
-      p_tip_(chain.p_tip),
+      R_tip_(chain.frames.back().R),
+      p_tip_(chain.frames.back().p),
       gravity_(gravity) {}
 
 PinocchioPeer::~PinocchioPeer() = default;

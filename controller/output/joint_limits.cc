@@ -123,4 +123,17 @@ std::int32_t JointLimits::clamp(double period_s, VectorJ* tau) noexcept {
          (acted.rate ? controller_status_t::LIMIT_RATE : 0);
 }
 
+std::int32_t JointLimits::clamp(double period_s, const VectorJ& applied, VectorJ* tau) noexcept {
+  std::int32_t acted = clamp(period_s, tau);
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    const double step = kShareFromApplied * torque_rate_[i] * period_s;
+    const double from = std::clamp(applied[i], -torque_limit()[i], torque_limit()[i]);
+    const double limited = std::clamp((*tau)[i], from - step, from + step);
+    if (limited != (*tau)[i]) acted |= controller_status_t::LIMIT_RATE;
+    (*tau)[i] = limited;
+  }
+  limiter_.set_previous(*tau);
+  return acted;
+}
+
 }  // namespace limber::controller

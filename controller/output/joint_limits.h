@@ -21,7 +21,9 @@ namespace limber::controller {
 ///             spring that reaches half the joint's torque at the limit, and a damper against
 ///             motion into the wall (of the motor where it has a spring before it);
 ///   torque    clamped to the limit;
-///   rate      the step from the torque sent before is clamped to 80 % of what the gate lets pass.
+///   rate      the step from the torque sent before is clamped to 80 % of what the gate lets pass,
+///             that from the torque the drives apply to 90 %: an answer that came too late for its
+///             cycle lies between the two, and the gate counts from what the drives apply.
 class JointLimits {
  public:
   explicit JointLimits(const Robot& robot);
@@ -38,6 +40,8 @@ class JointLimits {
   /// Torque and rate: clamps a finite `tau`, makes it the previous torque, returns the LIMIT_* bits
   /// that acted. In the cycle.
   std::int32_t clamp(double period_s, VectorJ* tau) noexcept;
+  /// Likewise, for drives that apply `applied`.
+  std::int32_t clamp(double period_s, const VectorJ& applied, VectorJ* tau) noexcept;
 
   const VectorJ& torque_limit() const noexcept { return limiter_.torque(); }
   const VectorJ& previous() const noexcept { return limiter_.previous(); }

@@ -6,6 +6,13 @@
 #include "controller/output/torque_limiter.h"
 
 namespace limber::controller {
+namespace {
+
+// The gate's step of the preload, in steps of the torque.
+constexpr double kGateSteps = 2.0;
+
+}  // namespace
+
 PreloadServo::PreloadServo(const Robot& robot)
     : at_rest_(VectorJ::Zero(robot.size())), c_d_(at_rest_), blend_(robot.size()), tau_(at_rest_) {
   for (int i = 0; i < robot.size(); ++i) {
@@ -17,7 +24,7 @@ PreloadServo::PreloadServo(const Robot& robot)
                       joint.drive.rotor_inertia_kgm2 + joint.antagonist.rotor_inertia_kgm2,
                       joint.transmission.preload_max_rad,
                       std::min(joint.drive.peak_torque_Nm, joint.antagonist.peak_torque_Nm),
-                      kShareOfGateStep * joint.torque_rate_limit_Nm_per_s});
+                      joint.torque_rate_limit_Nm_per_s});
   }
 }
 
@@ -28,7 +35,7 @@ void PreloadServo::rest(const ArmState& state, PreloadAtRest where, bool in_step
     c_d_[i] = state.preload[i];
     const double applied = where == PreloadAtRest::kAsApplied ? state.tau_preload_applied[i] : 0.0;
     const double target = std::clamp(applied, -2.0 * pair.torque_Nm, 2.0 * pair.torque_Nm);
-    const double step = pair.rate_Nm_per_s * state.period_s;
+    const double step = kShareOfGateStep * pair.rate_Nm_per_s * state.period_s;
     tau_[i] = in_steps ? std::clamp(target, tau_[i] - step, tau_[i] + step) : target;
   }
 }
@@ -64,8 +71,11 @@ std::int32_t PreloadServo::control(const ArmState& state, const VectorJ& wanted,
     const double asked = all[i];
     const double room = std::max(2.0 * pair.torque_Nm - std::abs(tau[i]), 0.0);
     const double limited = std::clamp(asked, -room, room);
-    const double step = pair.rate_Nm_per_s * state.period_s;
-    tau_[i] = std::clamp(limited, tau_[i] - step, tau_[i] + step);
+    const double step = kShareOfGateStep * pair.rate_Nm_per_s * state.period_s;
+    const double applied = state.tau_preload_applied[i];
+    const double reach = kGateSteps * kShareFromApplied * pair.rate_Nm_per_s * state.period_s;
+    tau_[i] = std::clamp(std::clamp(limited, tau_[i] - step, tau_[i] + step), applied - reach,
+                         applied + reach);
     if (limited != asked) acted |= controller_status_t::LIMIT_TORQUE;
     if (limited != tau_[i]) acted |= controller_status_t::LIMIT_RATE;
   }

@@ -27,8 +27,8 @@ enum class PreloadAtRest {
 /// rate to what is wanted. The torque starts from what the drives apply, and the difference fades
 /// (TorqueBlend): springs that are not those of robot.yaml make no step. The joint's torque comes
 /// first: |tau| + |tau_preload| stays within twice what the weaker motor can give; and the gate's
-/// step is kept. Zero for joints with one motor. After construction all members may be called in
-/// the cycle.
+/// step is kept, from the torque before and from what the drives apply. Zero for joints with one
+/// motor. After construction all members may be called in the cycle.
 class PreloadServo {
  public:
   static constexpr double kBandwidth_rad_per_s = 30.0;
@@ -54,7 +54,7 @@ class PreloadServo {
     double B;
     double preload_max_rad;
     double torque_Nm;      // of the weaker one
-    double rate_Nm_per_s;  // of their sum
+    double rate_Nm_per_s;  // of the joint's torque
   };
 
   double servo(const Motors& pair, const ArmState& state, double wanted, double x,

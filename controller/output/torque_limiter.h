@@ -7,6 +7,8 @@ namespace limber::controller {
 
 /// Of the largest change a cycle that the driver's gate allows.
 inline constexpr double kShareOfGateStep = 0.8;
+/// Likewise, counted from what the drives apply. The rest is for drives that round their torque.
+inline constexpr double kShareFromApplied = 0.9;
 
 /// In this order: |tau| <= torque; |tau - previous| <= rate T, counted from the torque sent before.
 /// A sine of amplitude a and angular frequency w passes unchanged while a <= rate T / (2 sin(w T /

@@ -14,7 +14,7 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
   blend_next_ = false;
   blend_.add_to(&tau);
   if (blend_.active()) *limits |= controller_status_t::LIMIT_RAMP;
-  *limits |= limits_.clamp(state.period_s, &tau);
+  *limits |= limits_.clamp(state.period_s, state.tau_applied, &tau);
   const VectorJ& wanted = preload != nullptr ? *preload : preload_.preload_at_rest();
   *limits |= preload_.control(state, wanted, deflection, tau, dt_s);
   return true;

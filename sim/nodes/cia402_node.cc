@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/nodes/cia402_objects.h"
+#include "sim/nodes/encoder_counts.h"
 
 namespace limber::sim {
 namespace {
@@ -58,9 +59,9 @@ Cia402Node::Sensed Cia402Node::sense() const noexcept {
   const auto turns = [&](double angle) { return (drive.sign * angle + drive.offset_rad) / kTurn; };
   const double counts = drive.counts_per_turn;
   const double link_counts = std::ldexp(1.0, joint_.link_encoder.bits);
-  return {std::floor(turns(reading_.theta) * counts),
+  return {whole_counts(turns(reading_.theta) * counts),
           std::nearbyint(drive.sign * reading_.theta_dot / kTurn * counts),
-          std::floor(reading_.q / kTurn * link_counts),
+          whole_counts(reading_.q / kTurn * link_counts),
           std::nearbyint(reading_.v / kTurn * link_counts)};
 }
 

@@ -5,6 +5,8 @@
 #include <limber/scenario_event_t.hpp>
 #include <numbers>
 
+#include "sim/nodes/encoder_counts.h"
+
 namespace limber::sim {
 namespace {
 
@@ -28,7 +30,7 @@ DamiaoNode::Sensed DamiaoNode::sense(const JointReading& joint) const noexcept {
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_position_, 0.0, torque};
   const double step = 2.0 * std::numbers::pi / drive_.counts_per_turn;
   const double angle = drive_.sign * joint.theta + drive_.offset_rad;
-  return {std::floor(angle / step) * step + zero_, drive_.sign * joint.theta_dot, torque};
+  return {whole_counts(angle / step) * step + zero_, drive_.sign * joint.theta_dot, torque};
 }
 
 CanFrame DamiaoNode::state_frame(const CanFrame& request,

@@ -5,6 +5,8 @@
 #include <limber/scenario_event_t.hpp>
 #include <numbers>
 
+#include "sim/nodes/encoder_counts.h"
+
 namespace limber::sim {
 namespace {
 
@@ -36,7 +38,7 @@ MoteusNode::Sensed MoteusNode::sense(const JointReading& joint) const noexcept {
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_turns_, 0.0, torque};
   const double counts = drive_.counts_per_turn;
   const double turns = (drive_.sign * joint.theta + drive_.offset_rad) / kTurn_rad;
-  return {std::floor(turns * counts) / counts + zero_turns_,
+  return {whole_counts(turns * counts) / counts + zero_turns_,
           drive_.sign * joint.theta_dot / kTurn_rad, torque};
 }
 

@@ -103,9 +103,6 @@ def test_walk_through_the_states(drive):
     assert drive.state == "READY TO SWITCH ON"
 
 
-AT_REST = (-1, 0)  # counts: the encoder rounds down, and the joint hangs within rounding of zero
-
-
 def test_tpdo_answers_sync(drive):
     drive.tpdo.read()
     state = drive.tpdo[1]
@@ -122,7 +119,7 @@ def test_tpdo_answers_sync(drive):
     for _ in range(3):
         assert state.wait_for_reception(timeout=5) is not None
         assert state[0x6041].raw & 0x6F == 0x40
-        assert state[0x6064].raw in AT_REST
+        assert state[0x6064].raw == 0
         assert state[0x6077].raw == 0
     drive.network.sync.stop()
 
@@ -159,8 +156,7 @@ def test_the_eds_is_what_the_drive_serves(drive):
         if entry.data_type in datatypes.NUMBER_TYPES:
             assert 8 * len(data) == len(entry), entry.name
         if entry.default is not None:
-            allowed = AT_REST if entry.index == 0x6064 else (entry.default,)
-            assert entry.decode_raw(data) in allowed, entry.name
+            assert entry.decode_raw(data) == entry.default, entry.name
         if not entry.writable:
             with pytest.raises(canopen.SdoAbortedError) as refusal:
                 drive.sdo.download(entry.index, entry.subindex, data)

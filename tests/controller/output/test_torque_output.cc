@@ -35,7 +35,12 @@ class TorqueOutputTest : public ::testing::Test {
     joint.position_max = 3.0;
     return robot;
   }
+  /// The drives apply what was sent.
   bool shape(double tau, const VectorJ* preload = nullptr) {
+    state_.tau_applied = output_.torque();
+    return shape_as_applied(tau, preload);
+  }
+  bool shape_as_applied(double tau, const VectorJ* preload = nullptr) {
     limits_ = 0;
     return output_.shape(one(tau), preload, state_, terms_, one(0.0), kT, &limits_);
   }
@@ -121,6 +126,48 @@ TEST_F(TorqueOutputTest, StepsAreCountedFromWhatTheDrivesApply) {
   state_.tau_applied << -3.0;
   output_.follow_drives(state_);
   EXPECT_EQ(torque(), -3.0);
+}
+
+// An answer may arrive after the drives have been sent the torque before once more, and the next
+// one be in time again. The gate compares with what left last; its step is 0.5 N m.
+TEST_F(TorqueOutputTest, NoAnswerIsAStepTooLargeWhicheverCameLate) {
+  constexpr int kCycles = 14;
+  for (int late = 0; late < 1 << kCycles; ++late) {
+    TorqueOutput output(robot_);
+    double present = 0.0;
+    double accepted = 0.0;
+    const auto judge = [&](double tau) {
+      ASSERT_LE(std::abs(tau - present), 0.5) << "of pattern " << late;
+      accepted = tau;
+    };
+    for (int k = 0; k < kCycles; ++k) {
+      present = accepted;
+      if (k > 0 && (late >> (k - 1) & 1) != 0) judge(output.torque()[0]);
+      state_.tau_applied << present;
+      output.follow_drives(state_);
+      output.shape(one(10.0), nullptr, state_, terms_, one(0.0), kT, &limits_);
+      if ((late >> k & 1) == 0) judge(output.torque()[0]);
+    }
+  }
+}
+
+TEST_F(TorqueOutputTest, AStepFromWhatTheDrivesApplyIsTold) {
+  sent(5.0);
+  state_.tau_applied << 4.75;
+  EXPECT_TRUE(shape_as_applied(5.1));
+  EXPECT_EQ(torque(), 5.1);
+  EXPECT_EQ(limits_, 0);
+  state_.tau_applied << 4.6;
+  EXPECT_TRUE(shape_as_applied(5.3));
+  EXPECT_NEAR(torque(), 5.05, 1e-12);
+  EXPECT_EQ(limits_, +Status::LIMIT_RATE);
+  state_.tau_applied << 5.5;
+  EXPECT_TRUE(shape_as_applied(4.7));
+  EXPECT_NEAR(torque(), 5.05, 1e-12);
+  sent(20.0);
+  state_.tau_applied << 40.0;
+  EXPECT_TRUE(shape_as_applied(19.8));
+  EXPECT_NEAR(torque(), 19.8, 1e-12) << "no drive is sent more than the joint's torque";
 }
 
 TEST_F(TorqueOutputTest, StandbyGoesThereAtOnceOrInSteps) {

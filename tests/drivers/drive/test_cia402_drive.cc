@@ -2,13 +2,14 @@
 // an encoder on the link.
 #include <gtest/gtest.h>
 
-#include "drivers/drive/drive.h"
+#include "tests/drivers/drive/drive_cycles.h"
 #include "tests/drivers/families/fake_cia402.h"
 
 namespace limber::test_cia402_drive {
 namespace {
 
 using testing::cia402_robot;
+using testing::DriveCycles;
 using testing::FakeCia402;
 using testing::kOperationEnabled;
 using testing::kSwitchedOn;
@@ -29,24 +30,15 @@ struct Motor : FakeCia402 {
   }
 };
 
-struct Bench {
-  explicit Bench(bool fd) : joint(cia402_robot(fd).joints[0]), motor(joint, fd) {}
+struct Bench : DriveCycles {
+  explicit Bench(bool fd)
+      : DriveCycles(cia402_robot(fd).joints[0], fd), motor(cia402_robot(fd).joints[0], fd) {}
 
-  void cycle(State state, const std::vector<CanFrame>& frames) {
-    drive.begin_cycle();
-    drive.next_frame(state, 0.0, true);
-    for (const CanFrame& frame : frames) drive.receive(state, frame);
-    drive.close_cycle(state, number, 1e-3 * static_cast<double>(number));
-    ++number;
-  }
   void cycles(int count, State state, int statusword) {
     for (int i = 0; i < count; ++i) cycle(state, motor.state_frames(statusword));
   }
 
-  JointConfig joint;
   Motor motor;
-  Drive drive{joint, motor.fd, 1000.0, 2};
-  std::int64_t number = 0;
 };
 
 TEST(Cia402DriveTest, ThreeIgnoredTargetsInARowAreTooMany) {

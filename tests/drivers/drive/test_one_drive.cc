@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "drivers/drive/drive.h"
 #include "tests/drivers/drive/damiao_reply.h"
+#include "tests/drivers/drive/drive_cycles.h"
 
 namespace limber::test_one_drive {
 namespace {
@@ -15,16 +15,10 @@ using State = DriveState;
 
 constexpr double kTorqueCount = 20.0 / 4095.0;
 
-/// Two cycles are bridged, 1000 cycles a second.
-class OneDrive : public ::testing::Test {
+class OneDrive : public ::testing::Test, protected testing::DriveCycles {
  protected:
-  void cycle(State state, const std::vector<CanFrame>& frames) {
-    drive.begin_cycle();
-    drive.next_frame(state, 0.0, true);
-    for (const CanFrame& frame : frames) drive.receive(state, frame);
-    drive.close_cycle(state, number, 1e-3 * static_cast<double>(number));
-    ++number;
-  }
+  OneDrive() : DriveCycles(testing::test_robot(1).joints[0]) {}
+
   void cycles(int count, State state, const DamiaoReply& reply) {
     for (int i = 0; i < count; ++i) cycle(state, {reply.frame()});
   }
@@ -33,8 +27,6 @@ class OneDrive : public ::testing::Test {
     return testing::raw_command(frame).t * kTorqueCount - 10.0;
   }
 
-  Drive drive{testing::test_robot(1).joints[0], true, 1000.0, 2};
-  std::int64_t number = 0;
   DamiaoReply standing{kEnabled, 0.0, 0.0, 0.0};
   DamiaoReply pulling{kEnabled, 0.0, 0.0, 9.0};
 };

@@ -42,6 +42,22 @@ def test_without_friction_nothing_is_held_back(demo):
     assert not any("joint friction" in line.text for line in lines)
 
 
+def test_only_a_dither_that_ran_is_off_again(demo):
+    from dataclasses import replace
+
+    def told(words):
+        gains = [
+            replace(demo.gains[0], at_s=float(at_s), friction_compensation=word)
+            for at_s, word in enumerate(words)
+        ]
+        lines = story.story(replace(demo, gains=gains, pushes=[]))
+        return [(line.time_s, "off" in line.text) for line in lines if "dither" in line.text]
+
+    assert told(["none", "none", "feedforward", "none"]) == []
+    assert told(["dither", "dither", "observer"]) == [(2.0, True)]
+    assert told(["none", "dither", "none"]) == [(1.0, False), (2.0, True)]
+
+
 class Receiver:
     def __init__(self, robot) -> None:
         self.records = {

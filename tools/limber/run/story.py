@@ -1,6 +1,7 @@
 """What a scenario does to the arm, in words for somebody who has never heard of impedance."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -9,11 +10,11 @@ from limber.model.robot import read_yaml
 from limber.model.scenario import Push, Scenario
 
 AXES = ("x", "y", "z")
-COMPENSATIONS = {
-    "none": "The dither is off again: on a wall it would hammer.",
-    "dither": "One word changed: friction_compensation: dither. The motors swing a little, so that "
-    "the gears no longer stick.",
-}
+DITHER = (
+    "One word changed: friction_compensation: dither. The motors swing a little, so that the gears "
+    "no longer stick."
+)
+DITHER_OFF = "The dither is off again: on a wall it would hammer."
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,11 @@ def story(scenario: Scenario) -> list[Line]:
     lines += [
         Line(push.at_s + push.duration_s, "The hand lets go: the spring brings the arm back.")
         for push in scenario.pushes
+    ]
+    lines += [
+        Line(now.at_s, DITHER if now.dithered else DITHER_OFF)
+        for before, now in pairwise(scenario.gains)
+        if now.dithered != before.dithered
     ]
     for entry in read_yaml(scenario.path).get("timeline") or []:
         text = _entry(scenario, entry)
@@ -51,8 +57,6 @@ def _entry(scenario: Scenario, entry: dict) -> str | None:
     if isinstance(entry.get("gains"), dict) and "K_x_translation_N_per_m" in entry["gains"]:
         asked = entry["gains"]["K_x_translation_N_per_m"]
         return f"Asked for: a spring of {asked} N/m between the hand and its goal."
-    if isinstance(entry.get("gains"), dict) and "friction_compensation" in entry["gains"]:
-        return COMPENSATIONS.get(entry["gains"]["friction_compensation"])
     if isinstance(entry.get("wall"), dict):
         return "A wall is put up in front of the hand."
     if isinstance(entry.get("goal"), dict) and "offset_m" in entry["goal"]:
