@@ -38,6 +38,7 @@ class TorqueOutputTest : public ::testing::Test {
   /// The drives apply what was sent.
   bool shape(double tau, const VectorJ* preload = nullptr) {
     state_.tau_applied = output_.torque();
+    state_.tau_preload_applied = output_.preload_torque();
     return shape_as_applied(tau, preload);
   }
   bool shape_as_applied(double tau, const VectorJ* preload = nullptr) {
