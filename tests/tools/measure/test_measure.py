@@ -171,6 +171,20 @@ def test_friction_is_no_excuse_for_a_wrong_spring(tmp_path, scenario):
     assert not measured(tmp_path, rough, truth_of(rough, C, friction_N=3.0)).passed
 
 
+@pytest.mark.parametrize(("friction_N", "passed"), [(0.5, True), (3.0, False)])
+def test_with_dither_a_hand_feels_what_is_asked(tmp_path, scenario, friction_N, passed):
+    """Judged is what is felt, to a tenth: that the spring is right is no excuse."""
+    gains = "  - {at_s: 0.5, gains: {friction_compensation: dither}}"
+    swinging = scenario("openarm", timeline(("+x", "+y"), gains))
+    C = np.linalg.inv(swinging.robot.K_x)
+    summary = measured(tmp_path, swinging, truth_of(swinging, C, friction_N=friction_N))
+    felt = summary.find("stiffness +x")
+    assert felt.value == pytest.approx(felt.expected * 20 / (20 - friction_N), rel=1e-3)
+    assert felt.passed is passed
+    assert summary.find("stiffness +x less friction").passed is None
+    assert summary.passed is passed
+
+
 def test_friction_band_is_what_the_joints_can_hold(scenario):
     """No pure tip force that friction can hold on every joint is outside the band (linear program),
     and friction that works against the push on every joint takes just the band.

@@ -13,6 +13,7 @@ from limber.model.scenario import Push, Scenario
 
 BEFORE_S = 0.2  # rest that is averaged before a push
 PLATEAU_SHARE = 0.4  # the last part of a push's plateau, in which the arm is at rest again
+DITHER_TOLERANCE = 0.1  # of what is asked: what a hand feels of an arm with dither
 AXIS_NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -62,10 +63,20 @@ class MeasuredPush:
     def expected(self) -> float:
         return statics.stiffness_along(self.C_expected, self.direction)
 
-    def allowed(self, tolerance: float) -> float:
-        """How far the spring may be from the expected one. What friction behind the sensors holds
-        is not known, but for its bound, at the rest before the push and at the one during it.
+    @property
+    def judged(self) -> float:
+        """What is held against the expected: what a hand feels, where friction is made up for;
+        otherwise the law's part of it.
         """
+        felt = self.friction_bound == 0.0 or self.friction_observed or self.dithered
+        return self.stiffness if felt else self.stiffness_without_friction
+
+    def allowed(self, tolerance: float) -> float:
+        """How far that may be from the expected. What friction behind the sensors holds is not
+        known, but for its bound, at the rest before the push and at the one during it.
+        """
+        if self.dithered:
+            tolerance = max(tolerance, DITHER_TOLERANCE)
         hidden = 2.0 * self.friction_bound if self.friction_observed else 0.0
         left = abs(self.force) - hidden
         share = hidden / left if left > 0.0 else np.inf
@@ -227,17 +238,22 @@ def _results_of(measured: MeasuredPush, tolerance: float) -> list[Result]:
         note += (
             f"; behind the sensors friction holds up to {measured.friction_bound:.2g} {force_unit}"
         )
+    felt = close_to(name, measured.stiffness, unit, measured.expected, allowed, note)
     if measured.friction_bound == 0.0 or measured.friction_observed:
-        return [close_to(name, measured.stiffness, unit, measured.expected, allowed, note)]
+        return [felt]
     value = measured.stiffness_without_friction
     took = f"friction took {measured.friction_took:.2g} {force_unit}"
-    bound, band = measured.friction_bound, f"friction band {measured.axis}"
+    law = close_to(f"{name} less friction", value, unit, measured.expected, allowed, took)
+    if measured.dithered:
+        felt.note += ", dither"
+        law = Result(law.name, value, unit, note=took)
+    else:
+        felt = Result(name, measured.stiffness, unit, note=note)
     band_note = "without dither" if measured.dithered else "predicted, at a rest"
-    results = [
-        Result(name, measured.stiffness, unit, note=note + ", dither" * measured.dithered),
-        close_to(f"{name} less friction", value, unit, measured.expected, allowed, took),
-        Result(band, bound, force_unit, note=band_note),
-    ]
+    bound = Result(
+        f"friction band {measured.axis}", measured.friction_bound, force_unit, note=band_note
+    )
+    results = [felt, law, bound]
     offset_mm = measured.offset_after_m * 1e3
     if np.isfinite(offset_mm):
         offset = f"offset after {measured.axis}"

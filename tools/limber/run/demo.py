@@ -173,7 +173,7 @@ def _stiffness_table(pushes: list[MeasuredPush], tolerance: float, summary: Summ
         force, unit = ("N m", "N m/rad") if measured.angular else ("N", "N/m")
         moved = measured.moved * (180 / math.pi if measured.angular else 1e3)
         value = measured.stiffness_without_friction
-        good = abs(value - measured.expected) <= measured.allowed(tolerance)
+        good = abs(measured.judged - measured.expected) <= measured.allowed(tolerance)
         table.add_row(
             measured.axis,
             *["on" if measured.dithered else "off"] * dithered,
