@@ -5,6 +5,8 @@ import pytest
 from same_bytes import expect_equal, of_the_lab, of_three_processes, shipped, shortened
 from stack import ROOT
 
+pytestmark = pytest.mark.lockstep
+
 
 @pytest.mark.parametrize("name", ["quick", "planar2r_push"])
 def test_same_bytes_every_time(name, tmp_path):

@@ -11,6 +11,8 @@ import pytest
 
 from stack import ROOT
 
+pytestmark = pytest.mark.lockstep
+
 LIMBER = [sys.executable, "-m", "limber"]
 START = "  - {at_s: 0.3, mode: hold}\n  - {at_s: 0.8, mode: active}\n"
 

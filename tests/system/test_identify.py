@@ -22,6 +22,8 @@ from limber.identify.urdf_edit import with_inertials
 from limber.model.bodies import read_inertials
 from stack import BIN, ROOT
 
+pytestmark = pytest.mark.lockstep
+
 CONSTANT = "rotor_torque_constant_Nm_per_A"
 STANDARD_ERRORS = 4.0
 SLOW_PART_S = 25.0  # of a tour of three poses

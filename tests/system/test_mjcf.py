@@ -11,6 +11,8 @@ from limber.identify.arm import load_arm
 from limber.log.reader import Log
 from stack import BIN
 
+pytestmark = pytest.mark.lockstep
+
 FALL_S, LONG_S = 3.0, 0.9
 FALL = f"""format: limber-scenario/1
 name: fall

@@ -37,6 +37,7 @@ def numbers(folder) -> dict[str, dict]:
     return {result["name"]: result for result in summary["results"]}
 
 
+@pytest.mark.lockstep
 @pytest.mark.parametrize(
     "name",
     [
@@ -62,6 +63,7 @@ def test_stiffness_without_friction(name, tmp_path):
             assert abs(result["value"] / result["expected"] - 1) <= 0.02, result
 
 
+@pytest.mark.lockstep
 def test_demo_in_lock_step(tmp_path):
     out = tmp_path / "out"
     done = limber("demo", "--lockstep", "--no-watch", "--out", str(out))

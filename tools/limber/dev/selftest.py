@@ -43,6 +43,10 @@ def _threads() -> list[str]:
     return [*_private(), *PYTEST, "tests/threads"]
 
 
+def _system(which: str) -> list[str]:
+    return [*_private(), *PYTEST, "tests/system", "-m", which]
+
+
 def _limber(*words: str) -> list[str]:
     return [sys.executable, "-m", "limber", *words]
 
@@ -58,8 +62,6 @@ class Part:
     # Runs beside others: it neither fills all processors nor runs in real time
     beside: bool = False
 
-
-DETERMINISM = "tests/system/test_determinism.py"
 
 PARTS: dict[str, Part] = {
     "ctest": Part(lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)]),
@@ -77,7 +79,7 @@ PARTS: dict[str, Part] = {
     "fuzz": Part(lambda: _limber("fuzz")),
     "threads": Part(_threads),
     "pytest": Part(lambda: [*PYTEST, "tests/tools", "tests/fuzz"], beside=True),
-    "lockstep": Part(lambda: [*_private(), *PYTEST, DETERMINISM], beside=True),
+    "lockstep": Part(lambda: _system("lockstep"), beside=True),
     "tutorial": Part(lambda: [*PYTEST, "tests/tutorial"], beside=True),
     # What decides whether the arm moves; the other areas take longer
     "mutation": Part(
@@ -90,7 +92,7 @@ PARTS: dict[str, Part] = {
     "repo": Part(lambda: [*PYTEST, "tests/repo"], beside=True),
     "format": Part(_format, beside=True),
     "lint": Part(lambda: [sys.executable, "-m", "ruff", "check", "."], beside=True),
-    "system": Part(lambda: [*_private(), *PYTEST, "tests/system", f"--ignore={DETERMINISM}"]),
+    "system": Part(lambda: _system("not lockstep")),
     # SocketCAN in a guest kernel that has vcan; one guest at a time
     "vcan": Part(lambda: [*CTEST, "-L", "vcan", "--no-tests=error"]),
 }
