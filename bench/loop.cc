@@ -107,9 +107,11 @@ class FakeDriver {
     arm_.subscribe<joint_command_t>(channels::kJointTorque, [this](const joint_command_t& torque) {
       if (torque.state_seq == state_.seq) answer_ = torque, answered_ = true;
     });
-    user_.subscribe<controller_status_t>(
-        channels::kControllerStatus, 10,
-        [this](const controller_status_t& status) { mode_ = status.mode; });
+    user_.subscribe<controller_status_t>(channels::kControllerStatus, 10,
+                                         [this](const controller_status_t& status) {
+                                           mode_ = status.mode;
+                                           controller_ = status.controller;
+                                         });
   }
 
   /// One cycle; returns the round trip in ns, or -1 if no answer came within a second.
@@ -136,8 +138,9 @@ class FakeDriver {
       user_.handle_waiting();
       if (i % 200 == 199) {
         mode_request_t request{};
-        request.seq = i;
+        request.controller = controller_;
         request.client = 1;
+        request.seq = i;
         request.request = mode_ < controller_status_t::MODE_HOLD ? mode_request_t::REQUEST_HOLD
                                                                  : mode_request_t::REQUEST_ACTIVE;
         user_.publish(channels::kModeRequest, request);
@@ -156,6 +159,7 @@ class FakeDriver {
   joint_command_t answer_{};
   bool answered_ = false;
   int mode_ = -1;
+  std::int64_t controller_ = 0;
 };
 
 std::int64_t ping(int descriptor, const std::vector<char>& message, std::vector<char>& buffer) {
@@ -190,7 +194,7 @@ int run(const std::string& controller, std::int64_t rounds) {
     for (int i = 0; i < kBatch; ++i) limber_time.add(driver.round());
     for (int i = 0; i < kBatch; ++i) udp_time.add(ping(descriptor, message, buffer));
   }
-  kill(child, SIGKILL);
+  kill(child, SIGTERM);  // it closes its black box
   kill(peer, SIGKILL);
   while (wait(nullptr) > 0) {
   }
