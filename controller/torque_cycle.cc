@@ -161,8 +161,10 @@ Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activ
   if (const char* reason = gains_.check_springs(candidate_, wanted, goals_.goal(), arm_)) {
     return {request_answer_t::REFUSED_SPRINGS, reason};
   }
-  const char* unstable = stability_.check(candidate_, arm_.terms());
-  if (!simulated_ && unstable != nullptr) return {request_answer_t::REFUSED_UNSTABLE, unstable};
+  const Doubts doubts = doubts_about(candidate_, wanted);
+  if (!simulated_ && doubts.unstable != nullptr) {
+    return {request_answer_t::REFUSED_UNSTABLE, doubts.unstable};
+  }
 
   requested_fields_ = fields;
   requested_ = candidate_;
@@ -177,7 +179,19 @@ Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activ
     laws_.run_selected();
     switch_law(from, wanted.goal_type == GoalType::kNone || from == GoalType::kNone);
   }
-  return {.warning = unstable};
+  return {.warning = doubts.unstable != nullptr ? doubts.unstable : doubts.undamped};
+}
+
+TorqueCycle::Doubts TorqueCycle::doubts_about(const Gains& gains, const LawEntry& law) noexcept {
+  if (arm_.elastic() == nullptr || arm_.elastic()->position == PositionFeedback::kAuto) {
+    return {stability_.check(gains, arm_.terms()), nullptr};
+  }
+  JointElasticity elastic = *arm_.elastic();
+  elastic.K_J = arm_.springs().at_rest();
+  elastic.position = arm_.resolve(gains.settings.position_feedback, law.potential);
+  const Gains here = gains_.here(gains, elastic.position, goals_.goal(), arm_);
+  return {stability_.check(here, arm_.terms(), &elastic),
+          damping_.check(here, law, arm_.terms(), elastic)};
 }
 
 bool TorqueCycle::due(Term term) const noexcept {
@@ -191,6 +205,7 @@ LawInputs TorqueCycle::inputs(double dt_s) const noexcept {
           .goal = goals_.goal(),
           .gains = gains_.effective(),
           .estimates = observers_.estimates(),
+          .elastic = arm_.elastic(),
           .dt_s = dt_s,
           .stiffness_due = due(Term::kStiffness),
           .damping_due = due(Term::kDamping)};

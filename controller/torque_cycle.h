@@ -16,6 +16,7 @@
 #include <limber/joint_state_t.hpp>
 
 #include "controller/cycle_trace.h"
+#include "controller/gains/damping_check.h"
 #include "controller/gains/gain_scheduler.h"
 #include "controller/gains/gains_check.h"
 #include "controller/gains/stability.h"
@@ -69,6 +70,12 @@ class TorqueCycle {
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:
+  /// nullptr each where there is none.
+  struct Doubts {
+    const char* unstable;
+    const char* undamped;
+  };
+  Doubts doubts_about(const Gains& gains, const LawEntry& law) noexcept;
   void enter(Activity activity) noexcept;
   void switch_law(GoalType from, bool from_here) noexcept;
   void evaluate_model(Potential potential, const VectorJ& tau_constant) noexcept;
@@ -95,6 +102,7 @@ class TorqueCycle {
 
   GainsCheck check_;
   StabilityCheck stability_;
+  DampingCheck damping_;
   bool simulated_;                       // every bus is
   compliance_gains_t requested_fields_;  // of the last accepted request, merged; no parameters
   Gains requested_;                      // the same, with parameters

@@ -1,14 +1,33 @@
 #include "controller/gains/chosen_damping.h"
 
 #include "controller/gains/damping_design.h"
+#include "controller/gains/elastic_design.h"
 
 namespace limber::controller {
+namespace {
+
+bool reckons_with(const JointElasticity* elastic, DampingDesign design) noexcept {
+  return elastic != nullptr && elastic->position != PositionFeedback::kAuto &&
+         design == DampingDesign::kDoubleDiagonalisation;
+}
+
+}  // namespace
 
 MatrixJ chosen_joint_damping(const Gains& gains, const MatrixJ& M, const MatrixJ& K_q) noexcept {
   const DampingDesign design = gains.settings.joint_damping;
   if (design == DampingDesign::kGiven) return gains.D_q;
   MatrixJ D = joint_damping(design, M, K_q, gains.joint_damping_ratio);
   D.diagonal() += joint_damping_floor(M, K_q);
+  return D;
+}
+
+MatrixJ chosen_joint_damping(const Gains& gains, const ArmTerms& terms, const MatrixJ& K_q,
+                             const JointElasticity* elastic) noexcept {
+  if (!reckons_with(elastic, gains.settings.joint_damping)) {
+    return chosen_joint_damping(gains, terms.M_total, K_q);
+  }
+  MatrixJ D = elastic_joint_damping(*elastic, terms, K_q, gains.joint_damping_ratio);
+  D.diagonal() += joint_damping_floor(terms.M_total, K_q);
   return D;
 }
 
@@ -30,9 +49,13 @@ const MatrixJ& KeptJointDamping::of(const Gains& gains, const MatrixJ& M,
   return D_;
 }
 
-Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms) noexcept {
+Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms,
+                           const JointElasticity* elastic) noexcept {
   const DampingDesign design = gains.settings.damping;
   if (design == DampingDesign::kGiven) return gains.D_x;
+  if (reckons_with(elastic, design)) {
+    return elastic_tip_damping(*elastic, terms, gains.K_x, gains.damping_ratio);
+  }
   return tip_damping(design, terms.J, terms.Minv_JT, gains.K_x, gains.damping_ratio);
 }
 

@@ -9,6 +9,7 @@
 // the link to its spring.
 #pragma once
 
+#include "controller/elastic/joint_elasticity.h"
 #include "controller/gains/gains.h"
 #include "controller/model/arm_terms.h"
 
@@ -34,7 +35,13 @@ class KeptJointDamping {
   MatrixJ D_;
 };
 
+/// The same for a law that moves its links through springs: the double diagonalisation reckons with
+/// them (elastic_design.h). `elastic` nullptr: rigid joints. In the cycle.
+MatrixJ chosen_joint_damping(const Gains& gains, const ArmTerms& terms, const MatrixJ& K_q,
+                             const JointElasticity* elastic) noexcept;
+
 /// For K_x at the tip, without the floor. In the cycle.
-Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms) noexcept;
+Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms,
+                           const JointElasticity* elastic = nullptr) noexcept;
 
 }  // namespace limber::controller

@@ -150,6 +150,14 @@ Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Min
   return tip_damping(design, tip_mobility(J, Minv_JT), K, ratio);
 }
 
+TipModes tip_modes_of(const Matrix6J& J, const MatrixJ6& Minv_JT, const Matrix6& K) noexcept {
+  std::optional<Reach> reach = Reach::regular(J, Minv_JT);
+  if (!reach) reach.emplace(tip_mobility(J, Minv_JT));
+  const Matrix6 S = reach->L.transpose() * K * reach->L;
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(0.5 * (S + S.transpose())));
+  return {eigen.eigenvalues().cwiseMax(0.0), reach->inverse_transpose * eigen.eigenvectors()};
+}
+
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {
   const Reach reach(mobility);
   const Matrix6 S = reach.L.transpose() * K * reach.L;

@@ -41,6 +41,15 @@ Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
 Matrix6 inertia_damping(DampingDesign design, const Matrix6& M_d, const Matrix6& K,
                         double ratio) noexcept;
 
+/// The double-diagonalised modes of the tip, softest first: the tip moves by L v_i, for which it
+/// takes the wrench stiffness_i L^-T v_i.
+struct TipModes {
+  Vector6 stiffness;  ///< 1/s^2; zero for directions out of reach
+  Matrix6 force;      ///< columns L^-T v_i, N or N m for 1 m/s^2 of the mode
+};
+/// In the cycle.
+TipModes tip_modes_of(const Matrix6J& J, const MatrixJ6& Minv_JT, const Matrix6& K) noexcept;
+
 /// Stiffness of each double-diagonalised mode, ascending, 1/s^2: squares of the natural
 /// frequencies; zero for directions out of reach.
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept;

@@ -86,6 +86,16 @@ void GainScheduler::draw_from_tank(const Goal& goal, const ArmView& arm, double 
   effective_.K_x = tank_.update(effective_.K_x, D, error.e, V, period_s);
 }
 
+Gains GainScheduler::here(const Gains& gains, PositionFeedback position, const Goal& goal,
+                          const ArmView& arm) const noexcept {
+  Gains here = gains;
+  turn_to_base(goal.X_BD.Q.toRotationMatrix(), &here);
+  if (position != PositionFeedback::kMotor) {
+    here.K_q = arm.springs().within(here.K_q, arm.springs().at_rest());
+  }
+  return here;
+}
+
 const char* GainScheduler::check_springs(const Gains& gains, const LawEntry& law, const Goal& goal,
                                          const ArmView& arm) const noexcept {
   const PositionFeedback position = arm.resolve(gains.settings.position_feedback, law.potential);

@@ -40,6 +40,9 @@ class GainScheduler {
   void set_dissipated(double power_W) noexcept { last_dissipated_W_ = power_W; }
 
   double tank_energy_J() const noexcept { return settings().tank_J > 0.0 ? tank_.energy_J() : 0.0; }
+  /// Requested gains in base axes, K_q as the springs at rest allow: what they would be now.
+  Gains here(const Gains& gains, PositionFeedback position, const Goal& goal,
+             const ArmView& arm) const noexcept;
   /// nullptr if the links can be given these gains with this law, at this goal, else why not.
   const char* check_springs(const Gains& gains, const LawEntry& law, const Goal& goal,
                             const ArmView& arm) const noexcept;

@@ -4,7 +4,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
+#include "controller/gains/elastic_design.h"
 #include "controller/gains/sampling_limits.h"
 
 namespace limber::controller {
@@ -43,6 +45,18 @@ StiffnessModes modes_of(const MatrixJ& M, const MatrixJ& K, const Damper& damper
   return found;
 }
 
+StiffnessModes modes_of(const ElasticDesign& design) noexcept {
+  StiffnessModes found;
+  for (std::size_t i = 0; i < design.count; ++i) {
+    const ElasticDesign::Mode& mode = design.modes[i];
+    found.modes[i] = {mode.frequency_rad_per_s, mode.ratio > 0.0
+                                                    ? mode.motor_share
+                                                    : std::numeric_limits<double>::infinity()};
+  }
+  found.count = static_cast<int>(design.count);
+  return found;
+}
+
 }  // namespace
 
 double StiffnessModes::highest_share() const noexcept {
@@ -54,21 +68,34 @@ double StiffnessModes::highest_share() const noexcept {
   return highest;
 }
 
-StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T) noexcept {
+StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T,
+                         const JointElasticity* elastic) noexcept {
+  if (elastic != nullptr && gains.settings.damping == DampingDesign::kDoubleDiagonalisation) {
+    ElasticDesign design;
+    elastic_tip_damping(*elastic, terms, gains.K_x, gains.damping_ratio, &design);
+    return modes_of(design);
+  }
   const MatrixJ K = terms.J.transpose() * gains.K_x * terms.J;
   const MatrixJ D = terms.J.transpose() * gains.D_x * terms.J;
   const bool given = gains.settings.damping == DampingDesign::kGiven;
   return modes_of(terms.M_total, K, {given, gains.damping_ratio, D}, T);
 }
 
-StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T) noexcept {
+StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T,
+                           const JointElasticity* elastic) noexcept {
+  if (elastic != nullptr && gains.settings.joint_damping == DampingDesign::kDoubleDiagonalisation) {
+    ElasticDesign design;
+    elastic_joint_damping(*elastic, terms, gains.K_q, gains.joint_damping_ratio, &design);
+    return modes_of(design);
+  }
   const bool given = gains.settings.joint_damping == DampingDesign::kGiven;
   return modes_of(terms.M_total, gains.K_q, {given, gains.joint_damping_ratio, gains.D_q}, T);
 }
 
-const char* StabilityCheck::check(const Gains& gains, const ArmTerms& terms) noexcept {
-  const double tip = tip_modes(gains, terms, T_).highest_share();
-  const double joints = joint_modes(gains, terms, T_).highest_share();
+const char* StabilityCheck::check(const Gains& gains, const ArmTerms& terms,
+                                  const JointElasticity* elastic) noexcept {
+  const double tip = tip_modes(gains, terms, T_, elastic).highest_share();
+  const double joints = joint_modes(gains, terms, T_, elastic).highest_share();
   if (tip <= 1.0 && joints <= 1.0) return nullptr;
   const bool at_tip = !(tip <= 1.0);
   const double share = at_tip ? tip : joints;

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "controller/elastic/joint_elasticity.h"
 #include "controller/gains/gains.h"
 #include "controller/model/arm_terms.h"
 
@@ -26,8 +27,13 @@ struct StiffnessModes {
 /// Of K_x through the arm, and of K_q, with the damping that `gains` ask for. `terms`: Jacobian and
 /// inertia with rotors at a pose; T: control period, s. The torque takes one cycle to the motor
 /// (sampling_limits.h). Friction is left out, so an arm with it is more stable. In the cycle.
-StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T) noexcept;
-StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T) noexcept;
+///
+/// With springs in the joints and damping designed for them, the share is that of the motors, which
+/// swing between law and spring (elastic_damping.h). `elastic` nullptr: rigid joints.
+StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T,
+                         const JointElasticity* elastic = nullptr) noexcept;
+StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T,
+                           const JointElasticity* elastic = nullptr) noexcept;
 
 /// Checks both springs of gains, whatever the law: any law may be selected next, and HOLD uses K_q.
 class StabilityCheck {
@@ -36,7 +42,8 @@ class StabilityCheck {
 
   /// nullptr if they are stable at this pose, else which is not and by how much. The text lasts
   /// until the next call. In the cycle.
-  const char* check(const Gains& gains, const ArmTerms& terms) noexcept;
+  const char* check(const Gains& gains, const ArmTerms& terms,
+                    const JointElasticity* elastic = nullptr) noexcept;
 
  private:
   double T_;

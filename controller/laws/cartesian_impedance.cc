@@ -27,7 +27,7 @@ class CartesianImpedance : public Law {
  public:
   void start(const LawInputs& in) noexcept override {
     read_stiffness(in.gains);
-    D_x_ = chosen_tip_damping(in.gains, in.terms);
+    D_x_ = chosen_tip_damping(in.gains, in.terms, in.elastic);
   }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
@@ -35,7 +35,7 @@ class CartesianImpedance : public Law {
         moment_Nm_ != in.gains.settings.spring_moment_Nm) {
       read_stiffness(in.gains);
     }
-    if (in.damping_due) D_x_ = chosen_tip_damping(in.gains, in.terms);
+    if (in.damping_due) D_x_ = chosen_tip_damping(in.gains, in.terms, in.elastic);
     const PoseError error = pose_error(in.terms.X_BT, in.goal.X_BD, in.gains.settings.orientation);
 
     const Vector6 Ke = K_x_ * error.e;
@@ -87,6 +87,7 @@ LawEntry cartesian_impedance_law() {
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .coriolis = true, .null_space = true},
           .potential = Potential::kTipSpring,
+          .damped = DampedAt::kTip,
           .parameters = {&inertia_feedforward},
           .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
             return std::make_unique<CartesianImpedance>();

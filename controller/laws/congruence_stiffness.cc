@@ -22,13 +22,13 @@ class CongruenceStiffness : public Law {
 
   void start(const LawInputs& in) noexcept override {
     map(in);
-    K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
+    K_v_ = chosen_joint_damping(in.gains, in.terms, K_q_, in.elastic);
   }
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     if (in.stiffness_due) map(in);
     // The design wants a spring: where the load makes it none, it takes the rest.
-    if (in.damping_due) K_v_ = chosen_joint_damping(in.gains, in.terms.M_total, K_q_);
+    if (in.damping_due) K_v_ = chosen_joint_damping(in.gains, in.terms, K_q_, in.elastic);
     const VectorJ error = in.point.q - in.goal.q_d;
     out->F = in.goal.F_ff;
     out->tau_stiffness = -K_q_ * error;

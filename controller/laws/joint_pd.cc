@@ -25,7 +25,7 @@ class JointPd : public Law {
 
  private:
   void design(const LawInputs& in) noexcept {
-    D_ = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
+    D_ = chosen_joint_damping(in.gains, in.terms, in.gains.K_q, in.elastic);
   }
 
   MatrixJ D_;
@@ -40,6 +40,7 @@ LawEntry joint_pd_law() {
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = true},
           .potential = Potential::kJointSpring,
+          .damped = DampedAt::kJoints,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<JointPd>(robot.robot.size());
           }};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/types.h"
+#include "controller/elastic/joint_elasticity.h"
 #include "controller/gains/gains.h"
 #include "controller/goals/goal.h"
 #include "controller/model/arm_state.h"
@@ -57,6 +58,9 @@ enum class Potential : std::uint8_t {
   kTipSpring,    ///< and J^T (F_ff - h A^T K_x e)
 };
 
+/// Which spring's designed damping reckons with springs in the joints (elastic_design.h).
+enum class DampedAt : std::uint8_t { kNothing, kJoints, kTip };
+
 /// Estimates of this instant; zero where LawSettings::contact names no source.
 struct Estimates {
   explicit Estimates(int joints) : tau_ext(VectorJ::Zero(joints)) {}
@@ -89,7 +93,8 @@ struct LawInputs {
   const Goal& goal;           ///< after interpolation
   const Gains& gains;         ///< after ramps, in base axes
   const Estimates& estimates;
-  double dt_s = 0.0;          ///< since the law's last cycle
+  const JointElasticity* elastic = nullptr;  ///< springs of the joints; nullptr: all are rigid
+  double dt_s = 0.0;                       ///< since the law's last cycle
   bool stiffness_due = true;  ///< what a law derives from K_x, it may derive anew
   bool damping_due = true;    ///< the same for damping
 };
@@ -165,6 +170,7 @@ struct LawEntry {
   GoalType goal_type;
   Compensation compensation;
   Potential potential = Potential::kNone;
+  DampedAt damped = DampedAt::kNothing;
   /// Shows a mistake found in print; refused unless every bus is simulated.
   bool demonstration = false;
   /// Numbers of this law alone; rows at namespace scope in its file.

@@ -58,7 +58,7 @@ class MappedJointImpedance : public Law {
     const MappingChoice choice{own.choice<MappingPose>(stiffness_pose),
                                own.choice<DampingPartials>(damping_partials)};
     const MappedGains mapped = mapped_gains(&model_, in.point.q, in.point.v, in.goal, in.gains,
-                                            chosen_tip_damping(in.gains, in.terms), choice);
+                                            chosen_tip_damping(in.gains, in.terms, in.elastic), choice);
     if (in.stiffness_due) K_p_ = mapped.K_p;
     if (in.damping_due) K_v_ = mapped.K_v;
   }
@@ -77,6 +77,7 @@ LawEntry mapped_joint_impedance_law() {
       .needs = sensors::kMotorEncoder,
       .goal_type = GoalType::kJointsAndWrench,
       .compensation = {.gravity = true, .null_space = true},
+      .damped = DampedAt::kTip,
       .parameters = {&stiffness_pose, &damping_partials, &follow_velocity},
       .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
         return std::make_unique<MappedJointImpedance>(robot);

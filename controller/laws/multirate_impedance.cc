@@ -44,7 +44,7 @@ class MultirateImpedance : public Law {
   }
 
   void map_damping(const LawInputs& in) noexcept {
-    const Matrix6 D_x = chosen_tip_damping(in.gains, in.terms);
+    const Matrix6 D_x = chosen_tip_damping(in.gains, in.terms, in.elastic);
     K_v_.noalias() = in.terms.J.transpose() * D_x * in.terms.J;
     tau_goal_.noalias() = in.terms.J.transpose() * (D_x * in.goal.V_BD);
   }
@@ -65,6 +65,7 @@ LawEntry multirate_impedance_law() {
           .needs = sensors::kMotorEncoder,
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .null_space = true},
+          .damped = DampedAt::kTip,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<MultirateImpedance>(robot);
           }};

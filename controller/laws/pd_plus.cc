@@ -38,7 +38,7 @@ class PdPlus : public Law {
 
  private:
   void design(const LawInputs& in) noexcept {
-    D_ = chosen_joint_damping(in.gains, in.terms.M_total, in.gains.K_q);
+    D_ = chosen_joint_damping(in.gains, in.terms, in.gains.K_q, in.elastic);
   }
 
   ArmModel model_;
@@ -54,6 +54,7 @@ LawEntry pd_plus_law() {
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = true},
           .potential = Potential::kJointSpring,
+          .damped = DampedAt::kJoints,
           .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
             return std::make_unique<PdPlus>(robot);
           }};

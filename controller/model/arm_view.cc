@@ -17,9 +17,9 @@ ArmView::ArmView(const LoadedRobot& robot)
       terms_(model_.size()),
       springs_(robot.robot),
       link_measured_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
-      K_J_(springs_.at_rest()),
+      elastic_(robot.robot, springs_),
       deflection_(VectorJ::Zero(model_.size())),
-      qbar_(&model_, K_J_, kInTheCycle) {
+      qbar_(&model_, elastic_.K_J, kInTheCycle) {
   VectorJ home = VectorJ::Zero(model_.size());
   for (Eigen::Index i = 0; i < home.size(); ++i)
     home[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
@@ -38,12 +38,15 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
   point_.v = state.v;
   if (springs_.any()) {
     point_.v = state.theta_dot;
-    K_J_ = springs_.stiffness(deflection_, state.preload);
+    elastic_.K_J = springs_.stiffness(deflection_, state.preload);
     solved_ = true;
     if (resolved != PositionFeedback::kLink) point_.q = state.theta;
     if (resolved == PositionFeedback::kStatic) {
       solved_ = solve(state.theta, statics);
       point_.q = qbar_.q_bar();
+    }
+    if (elastic_.position != PositionFeedback::kAuto) {
+      elastic_.position = solved_ ? resolved : PositionFeedback::kMotor;
     }
     deflection_ = state.theta - (link_measured_ ? state.q : point_.q);
   }
@@ -51,7 +54,7 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
 }
 
 bool ArmView::solve(const VectorJ& theta, const Statics& statics) noexcept {
-  qbar_.set(K_J_, statics.gravity, statics.tau_constant);
+  qbar_.set(elastic_.K_J, statics.gravity, statics.tau_constant);
   const Goal& goal = statics.goal;
   const Gains& gains = statics.gains;
   if (statics.potential == Potential::kTipSpring) {

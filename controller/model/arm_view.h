@@ -1,6 +1,7 @@
 // The arm as a law sees it in one cycle: the control point and the model's terms there.
 #pragma once
 
+#include "controller/elastic/joint_elasticity.h"
 #include "controller/elastic/joint_springs.h"
 #include "controller/elastic/qbar.h"
 #include "controller/gains/gains.h"
@@ -40,7 +41,9 @@ class ArmView {
 
   const JointSprings& springs() const noexcept { return springs_; }
   /// Stiffness of the springs as they are stretched now, n, N m/rad.
-  const VectorJ& K_J() const noexcept { return K_J_; }
+  const VectorJ& K_J() const noexcept { return elastic_.K_J; }
+  /// The springs, and the position that the law received last; nullptr: all joints are rigid.
+  const JointElasticity* elastic() const noexcept { return springs_.any() ? &elastic_ : nullptr; }
   /// theta - q, n, rad: measured, or with q at the control point.
   const VectorJ& deflection() const noexcept { return deflection_; }
   /// False while q_bar has no solution: the control point is then the motor's.
@@ -54,7 +57,7 @@ class ArmView {
   ArmTerms terms_;
   JointSprings springs_;
   bool link_measured_;
-  VectorJ K_J_;
+  JointElasticity elastic_;
   VectorJ deflection_;
   QbarSolver qbar_;
   bool solved_ = true;

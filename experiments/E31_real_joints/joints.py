@@ -1,6 +1,7 @@
 """Five joints that are given the same gains, and what formulas say each makes of them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -8,16 +9,24 @@ import numpy as np
 from limber.experiments import testbench as bench
 from limber.experiments import variants
 from limber.experiments.elastic import Drives, ElasticArm, State, one_joint
-from limber.experiments.testbench import B, M
+from limber.experiments.plants import held
+from limber.experiments.testbench import CYCLE_S, B, M
 
 LEVER_M = 0.5  # from the joint to the tip
 K = 500.0  # N m/rad asked of each joint: 2000 N/m at the tip
 ZETA = 0.3  # asked
-D = 2 * ZETA * np.sqrt(K * (M + B))
 KAPPA, COULOMB_NM = 0.9, 2.0  # of a real motor
 RHO = 4.0  # of the drive's torque loop
+LOOP_HZ = 4000
 RIGID = 1e6  # N m/rad, D 100: a spring that gives way to nobody, where there is none
 WEIGHT_NM = 10.0  # of the link, held level
+STABLE_SHARE = 0.5  # of B/(ρT), where a motor under its own late damper becomes unstable
+TRIED = 500  # dampings
+
+
+def overshoot(ratio: float) -> float:
+    """Of a pair of roots with this damping ratio."""
+    return float(np.exp(-np.pi * ratio / np.sqrt(1 - ratio**2)))
 
 
 @dataclass(frozen=True)
@@ -65,6 +74,46 @@ class Joint:
         spring = -missing if self.static else 1.0
         return WEIGHT_NM * (missing / K + spring * self.yields)
 
+    @property
+    def at_motor(self) -> float:
+        """The law's stiffness there: where the spring is counted in, K in series with it."""
+        return K * self.spring / (self.spring - K) if self.static else K
+
+    @cached_property
+    def design(self) -> tuple[float, float]:
+        """Damping at the motor, and the link's damping ratio with it: ZETA, or the greatest.
+
+        Of the joint that robot.yaml describes.
+        """
+        if self.rigid:
+            return 2 * ZETA * np.sqrt(K * (M + B)), ZETA
+        s, last = 1j * np.sqrt(1 / (1 / self.at_motor + 1 / self.spring) / M), (0.0, -1.0)
+        for D in np.linspace(0, STABLE_SHARE * B / self.rho / CYCLE_S, TRIED):
+            roots = self.roots(D)
+            s = roots[np.argmin(abs(roots - s))]  # the pair that began as the link's
+            ratio = float(-s.real / abs(s))
+            if ratio >= ZETA:
+                return float(np.interp(ZETA, (last[1], ratio), (last[0], D))), ZETA
+            if ratio < last[1]:
+                break
+            last = float(D), ratio
+        return last
+
+    def roots(self, D: float) -> np.ndarray:
+        """Of the sampled joint, torque one cycle late, torque loop at 4 kHz: state (x, u)."""
+        loops = round(CYCLE_S * LOOP_HZ)
+        A, E = held(*self.plant().matrices(), CYCLE_S / loops)
+        torque = np.array([[-self.spring, self.spring, -self.damper, self.damper]])
+        step = np.block(
+            [
+                [A + (1 - self.rho) * E[:, :1] @ torque, self.rho * E[:, :1]],
+                [np.zeros((1, 4)), np.eye(1)],
+            ]
+        )
+        cycle = np.linalg.matrix_power(step, loops)
+        cycle[4] = [0.0, -self.at_motor, 0.0, -D, 0.0]
+        return np.log(np.linalg.eigvals(cycle).astype(complex)) / CYCLE_S
+
     def plant(self) -> ElasticArm:
         return one_joint(M, B, self.spring, self.damper)
 
@@ -76,13 +125,13 @@ class Joint:
         q = x.theta
         if self.static:
             q = (self.spring * x.theta - weight - K * q_d) / (self.spring - K)
-        return weight - K * (q - q_d) - D * (x.theta_dot - v_d)
+        return weight - K * (q - q_d) - self.design[0] * (x.theta_dot - v_d)
 
     def changes(self) -> dict[str, Any]:
         """Of robot.yaml of the bench."""
         if self.rigid:
             return bench.joint(**bench.RIGID)
-        loop = {"inertia_ratio": self.rho, "rate_hz": 4000}
+        loop = {"inertia_ratio": self.rho, "rate_hz": LOOP_HZ}
         return bench.sprung(self.spring, self.damper, torque_loop=loop)
 
     def reality(self, friction: bool = True) -> dict[str, Any]:

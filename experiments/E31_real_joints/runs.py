@@ -10,11 +10,11 @@ import numpy as np
 
 from limber.experiments import testbench as bench
 from limber.experiments.context import Context
-from limber.experiments.elastic import State, run
+from limber.experiments.elastic import Drives, State, run
 from limber.experiments.timeline import UNBOUNDED, tip_gains
 from limber.experiments.truth import Log, motion, status, time_s
 
-from .joints import LEVER_M, WEIGHT_NM, D, Joint, K
+from .joints import LEVER_M, WEIGHT_NM, ZETA, Joint, K
 
 PUSH_NM, RAMP_S, HOLD_S, FREE_S = 20.0, 1.0, 0.5, 1.5
 STEPS = 100  # of the ramp
@@ -31,6 +31,7 @@ class Seen:
     overshoot: float  # share of the way back
     lag: float  # rad
     sag: float  # rad
+    as_told: float  # overshoot of a motor without friction, whose torque constant is right
     t: np.ndarray
     q: np.ndarray
 
@@ -77,35 +78,48 @@ def ideal(joint: Joint) -> Seen:
     late = path.t > TURN_S + 0.1
     wanted = np.array([circle(t)[0] for t in path.t[late]])
     behind = float((wanted - path.x.q[late, 0]).mean())
-    return _seen(push.t, push.x.q[:, 0], behind, -float(rest.x.q[-1, 0]))
+    told = run(arm, still, end, lambda t: np.array([float(pushed(t))]), Drives(joint.rho))
+    as_told = _overshoot(told.t, told.x.q[:, 0])
+    return _seen(push.t, push.x.q[:, 0], behind, -float(rest.x.q[-1, 0]), as_told)
 
 
 def bus(context: Context, joint: Joint) -> Seen:
     """With the gains at the tip: K/l² there is K at the joint."""
     name = joint.name.replace(",", "").replace(" ", "_")
-    K_tip, D_tip = K / LEVER_M**2, D / LEVER_M**2
+    K_tip = K / LEVER_M**2
     gains = tip_gains(
         [K_tip, K_tip, 0.0],
         position_feedback="static" if joint.static else "motor",
-        damping="given",
-        D_x=np.diag([D_tip, D_tip, 0.0, 0.0, 0.0, 0.0]),
+        damping_ratio=ZETA,
         **UNBOUNDED,
     )
     real = {"changes": joint.changes(), "reality": joint.reality()}
     end = START_S + RAMP_S + HOLD_S + FREE_S
     log = bench.on_bus(context, f"{name}_push", gains, pushes(), end, **real)
-    before = bench.mean(log, START_S - 0.2, START_S)
-    push = bench.truth(log, START_S, end)
+    push = _pushed_motion(log, end)
+    told = bench.on_bus(context, f"{name}_told", gains, pushes(), end, changes=joint.changes())
+    as_told = _overshoot(*_pushed_motion(told, end))
     turn = {"circle_centre_m": [0.0, LEVER_M, 0.0], "circle_axis": [0.0, 0.0, 1.0]}
     goal = {"at_s": START_S, "goal": {**turn, "duration_s": TURN_S}}
     end = START_S + TURN_S + TURNING_S
-    log = bench.on_bus(context, f"{name}_path", gains, [goal], end, **real)
+    # The goal does not turn on its circle, the tip does: a designed damper, which acts on both as
+    # the joint moves them, would miss part of the goal's motion.
+    D_tip = joint.design[0] / LEVER_M**2
+    steady = {"damping": "given", "D_x": np.diag([D_tip, D_tip, 0.0, 0.0, 0.0, 0.0])}
+    log = bench.on_bus(context, f"{name}_path", {**gains, **steady}, [goal], end, **real)
     behind = _behind(log, end - 0.5, end)
     level = bench.gravity(WEIGHT_NM / bench.LINK_MASS_M)
     real = {"changes": {**joint.changes(), **level}, "reality": joint.reality(friction=False)}
     end = START_S + REST_S
     log = bench.on_bus(context, f"{name}_level", gains, [], end, **real, start_q=[np.pi / 2])
-    return _seen(push["t"] - START_S, push["q"] - before, behind, _behind(log, end - 0.2, end))
+    return _seen(*push, behind, _behind(log, end - 0.2, end), as_told)
+
+
+def _pushed_motion(log: Log, end_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Since the push began; the angle less where it was before."""
+    before = bench.mean(log, START_S - 0.2, START_S)
+    push = bench.truth(log, START_S, end_s)
+    return push["t"] - START_S, push["q"] - before
 
 
 def _behind(log: Log, start_s: float, end_s: float) -> float:
@@ -116,10 +130,16 @@ def _behind(log: Log, start_s: float, end_s: float) -> float:
     return float(np.arctan2(x * y_d - y * x_d, x * x_d + y * y_d).mean())
 
 
-def _seen(t: np.ndarray, q: np.ndarray, lag: float, sag: float) -> Seen:
+def _seen(t: np.ndarray, q: np.ndarray, lag: float, sag: float, as_told: float) -> Seen:
     up = (t > 0.4 * RAMP_S) & (t < 0.95 * RAMP_S)  # friction slips, the ramp goes on
     slope = np.polyfit(pushed(t[up]), q[up], 1)[0]
     let_go = RAMP_S + HOLD_S
-    held = q[(t > let_go - 0.05) & (t < let_go)].mean()
     free = t >= let_go
-    return Seen(1 / slope, float(-q[free].min() / held), lag, sag, t[free] - let_go, q[free])
+    through = _overshoot(t, q)
+    return Seen(1 / slope, through, lag, sag, as_told, t[free] - let_go, q[free])
+
+
+def _overshoot(t: np.ndarray, q: np.ndarray) -> float:
+    let_go = RAMP_S + HOLD_S
+    held = q[(t > let_go - 0.05) & (t < let_go)].mean()
+    return float(-q[t >= let_go].min() / held)

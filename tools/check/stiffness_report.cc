@@ -15,15 +15,27 @@
 namespace limber {
 namespace {
 
+using controller::PositionFeedback;
 using controller::StiffnessModes;
 
 constexpr double kClose = 0.5;
 
 StiffnessReport report(double at_s, const compliance_gains_t& fields,
-                       const controller::ArmTerms& terms, double T) {
-  controller::Gains gains(static_cast<int>(terms.B.size()));
+                       const controller::ArmTerms& terms, const Robot& robot) {
+  controller::Gains gains(robot.size());
   controller::read_gains(fields, &gains);
-  return {at_s, tip_modes(gains, terms, T), joint_modes(gains, terms, T)};
+  const double T = 1.0 / robot.rate_hz;
+  const controller::JointSprings springs(robot);
+  controller::JointElasticity elastic(robot, springs);
+  if (!springs.any() || elastic.position == PositionFeedback::kAuto) {
+    return {at_s, tip_modes(gains, terms, T), joint_modes(gains, terms, T)};
+  }
+  elastic.position = gains.settings.position_feedback;
+  if (elastic.position == PositionFeedback::kAuto) elastic.position = PositionFeedback::kStatic;
+  if (elastic.position != PositionFeedback::kMotor) {
+    gains.K_q = springs.within(gains.K_q, elastic.K_J);
+  }
+  return {at_s, tip_modes(gains, terms, T, &elastic), joint_modes(gains, terms, T, &elastic)};
 }
 
 std::span<const controller::StiffnessMode> each(const StiffnessModes& modes) {
@@ -61,14 +73,13 @@ std::vector<StiffnessReport> make_stiffness_reports(const Scenario& scenario,
   controller::ArmTerms terms(model.size());
   const VectorJ q = Eigen::Map<const Eigen::VectorXd>(scenario.start_q.data(), model.size());
   model.evaluate(q, VectorJ::Zero(model.size()), &terms);
-  const double T = 1.0 / robot.robot.rate_hz;
   compliance_gains_t present = default_gains(robot.robot);
-  std::vector<StiffnessReport> reports{report(0.0, present, terms, T)};
+  std::vector<StiffnessReport> reports{report(0.0, present, terms, robot.robot)};
   for (const TimedMessage& timed : scenario.timeline) {
     const auto* gains = std::get_if<compliance_gains_t>(&timed.message);
     if (gains == nullptr) continue;
     merge_gains(*gains, &present);
-    reports.push_back(report(static_cast<double>(timed.time_ns) * 1e-9, present, terms, T));
+    reports.push_back(report(static_cast<double>(timed.time_ns) * 1e-9, present, terms, robot.robot));
   }
   return reports;
 }

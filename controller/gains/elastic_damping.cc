@@ -1,0 +1,136 @@
+#include "controller/gains/elastic_damping.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+namespace limber::controller {
+namespace {
+
+constexpr int kSteps = 24;
+constexpr int kNewtonSteps = 3;  // of each; the first has more
+constexpr int kFirstNewtonSteps = 8;
+constexpr double kFactor = 5.0;       // of a rigid joint's damping: beyond it D is not looked for
+constexpr double kLeastLookedFor = 0.3;  // or of that for this ratio
+constexpr double kSwings = 0.95;      // greatest ratio at which a pair is still followed
+constexpr double kWorthFrom = 0.15;   // of the ratio asked
+constexpr double kWorthFull = 0.3;
+constexpr double kNearly = 0.9;       // from here on a ratio above kSwings is in proportion
+constexpr double kAgainstDelay = 2.0;
+constexpr double kLeastLeft = 0.05;  // of the spring, see QbarSolver
+
+using Root = std::complex<double>;
+using Quartic = std::array<double, 5>;  // the constant last
+
+Quartic quartic(const ElasticMode& m, double D, double t_d) noexcept {
+  const double late = 0.5 * m.law * t_d * t_d;
+  const double r = m.rotor - D * t_d + late;
+  const double d = D - m.law * t_d;
+  const double at_motor = m.at_link ? 0.0 : 1.0;
+  return {m.link * (m.at_link ? r - late : r),
+          m.link * (m.damper + (m.at_link ? D : d)) + m.damper * r,
+          m.link * (m.spring + at_motor * m.law) + m.damper * d + m.spring * r,
+          m.damper * m.law + m.spring * d, m.spring * m.law};
+}
+
+Root refined(const Quartic& p, Root s, int steps) noexcept {
+  for (int i = 0; i < steps; ++i) {
+    Root value = p[0];
+    Root slope = 0.0;
+    for (std::size_t k = 1; k < p.size(); ++k) {
+      slope = slope * s + value;
+      value = value * s + p[k];
+    }
+    s -= value / slope;
+  }
+  return s;
+}
+
+struct Sample {
+  double D = 0.0;
+  double ratio = 0.0;
+};
+
+// The peak of the parabola through three samples.
+Sample peak(const Sample& a, const Sample& b, const Sample& c) noexcept {
+  const double left = (b.ratio - a.ratio) / (b.D - a.D);
+  const double right = (c.ratio - b.ratio) / (c.D - b.D);
+  const double bend = (right - left) / (c.D - a.D);
+  if (!(bend < 0.0)) return b;
+  const double D = std::clamp(0.5 * (a.D + b.D) - 0.5 * left / bend, a.D, c.D);
+  return {D, a.ratio + (D - a.D) * (left + bend * (D - b.D))};
+}
+
+// The pair that begins as the link on all springs.
+Sample followed(const ElasticMode& m, double ratio, double end, double t_d) noexcept {
+  const double at_link =
+      m.at_link ? m.law : m.law * m.spring / (m.law + m.spring);
+  Root s(0.0, std::sqrt(at_link / (m.link + m.rotor)));
+  Sample last;
+  Sample before;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double D = end * i / kSteps;
+    s = refined(quartic(m, D, t_d), s, i == 0 ? kFirstNewtonSteps : kNewtonSteps);
+    const Sample now{D, -s.real() / std::abs(s)};
+    // The pair has met on the real axis, or is lost.
+    if (!(s.imag() > 0.0) || !std::isfinite(now.ratio)) return last;
+    if (now.ratio >= ratio) {
+      if (i == 0) return {0.0, now.ratio};
+      return {last.D + (ratio - last.ratio) / (now.ratio - last.ratio) * (D - last.D), ratio};
+    }
+    if (i > 1 && now.ratio < last.ratio) return peak(before, last, now);
+    before = last;
+    last = now;
+  }
+  return last;
+}
+
+// 0 up to `from`, 1 beyond `to`, smooth between.
+double step_between(double x, double from, double to) noexcept {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+}  // namespace
+
+double law_stiffness(PositionFeedback position, double K, double compliance) noexcept {
+  if (position != PositionFeedback::kStatic) return K;
+  return K / std::max(1.0 - K * compliance, kLeastLeft);
+}
+
+ElasticDamping elastic_damping(const ElasticMode& mode, double ratio, double rigid, double most,
+                               double t_d) noexcept {
+  if (!(mode.law > 0.0) || !(ratio > 0.0)) return {std::min(rigid, most), 0.0};
+  const double wanted = std::min(ratio, kSwings);
+  const double above = ratio / wanted;
+  const double least_seen = std::max(1.0, kLeastLookedFor / ratio);
+  const double end = std::min(most, kFactor * least_seen * rigid / above);
+  const Sample found = followed(mode, wanted, end, t_d);
+  const double floor = kAgainstDelay * mode.law * t_d;
+  const double worth = step_between(found.ratio / wanted, kWorthFrom, kWorthFull);
+  const double reached = step_between(found.ratio / wanted, kNearly, 1.0);
+  const double scaled = (1.0 + (above - 1.0) * reached) * found.D;
+  const double D = std::max(rigid + worth * (scaled - rigid), floor);
+  return {std::min(D, most), found.ratio};
+}
+
+double motor_share(const ElasticMode& m, double D, double t_d) noexcept {
+  constexpr int kRounds = 30;
+  const double k = m.law;
+  double w = std::sqrt((m.spring + (m.at_link ? 0.0 : k)) / m.rotor);
+  const double slowest = std::sqrt(m.spring / m.rotor);
+  for (int i = 0; i < kRounds; ++i) {
+    const double x = std::min(w * t_d, 3.0);
+    const double square =
+        (m.spring + (m.at_link ? 0.0 : k * std::cos(x)) + D * w * std::sin(x)) / m.rotor;
+    w = 0.5 * (w + std::max(std::sqrt(std::max(square, 0.0)), slowest));
+  }
+  const double x = w * t_d;
+  const double left = m.damper + D * std::cos(x);
+  if (!(left > 0.0)) return std::numeric_limits<double>::infinity();
+  return k * std::sin(x) / (w * left);
+}
+
+}  // namespace limber::controller
