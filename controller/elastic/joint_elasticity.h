@@ -13,8 +13,10 @@ struct JointElasticity {
 
   VectorJ K_J;  ///< n, N m/rad; rigid joints: JointSprings::kRigid_Nm_per_rad
   VectorJ D_J;  ///< of the dampers beside the springs, n, N m s/rad
-  PositionFeedback position = PositionFeedback::kMotor;  ///< that the law receives; never kAuto
-  double period_s;                                       ///< of the controller
+  /// That the law receives. kAuto on arms with pairs of motors, whose springs change with the
+  /// preload: nothing is designed for those.
+  PositionFeedback position = PositionFeedback::kMotor;
+  double period_s;  ///< of the controller
 };
 
 }  // namespace limber::controller

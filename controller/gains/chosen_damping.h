@@ -1,12 +1,9 @@
 // The damping a user's gains ask for: a design, or the matrix given.
 //
-// M with rotors also where a spring K_J lies between motor and link. A link M on K_J, the motor
-// held by K_m with the damper D, loses most where w D = sqrt(K_m (K_m + K_J)), K_m = K_d K_J / (K_J
-// - K_d) for the link stiffness K_d. The design for M + B gives w D = 2 zeta K_d sqrt(1 + B / M):
-// within a factor of two of that up to K_d = K_J / 2, right where the spring is stiff or the link
-// light. The link's ratio is bounded by about K_J / (4 sqrt(K_m (K_m + K_J))) whatever the design:
-// 0.37 for K_d = K_J / 4, 0.18 for K_J / 2. More damping than this would hold the motor and leave
-// the link to its spring.
+// M with rotors also where a spring lies between motor and link, for laws that know no springs. A
+// link M on K_J, the motor held by K_m with the damper D, loses most where w D = sqrt(K_m (K_m +
+// K_J)); more damping than this would hold the motor and leave the link to its spring. For laws
+// that tell of their springs, elastic_damping.h finds it.
 #pragma once
 
 #include "controller/elastic/joint_elasticity.h"

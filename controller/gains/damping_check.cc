@@ -32,8 +32,8 @@ const char* DampingCheck::check(const Gains& gains, const LawEntry& law, const A
   *fmt::format_to_n(text_.data(), text_.size() - 1,
                     FMT_STRING("{} is {:.3g}, {:.0f} % of overshoot; against the joints' springs "
                                "{:.2g} is possible in this pose, {:.0f} %"),
-                    tip ? "damping_ratio" : "joint_damping_ratio", asked,
-                    100.0 * overshoot(asked), possible, 100.0 * overshoot(possible))
+                    tip ? "damping_ratio" : "joint_damping_ratio", asked, 100.0 * overshoot(asked),
+                    possible, 100.0 * overshoot(possible))
        .out = '\0';
   return text_.data();
 }

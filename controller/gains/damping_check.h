@@ -16,7 +16,8 @@ class DampingCheck {
   static constexpr double kTold = 0.03;
 
   /// nullptr if this law's damper can give every mode about the ratio asked in this pose, else what
-  /// is possible: of the mode that misses it most. The text lasts until the next call. In the cycle.
+  /// is possible: of the mode that misses it most. The text lasts until the next call. In the
+  /// cycle.
   const char* check(const Gains& gains, const LawEntry& law, const ArmTerms& terms,
                     const JointElasticity& elastic) noexcept;
 

@@ -4,20 +4,22 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 namespace limber::controller {
 namespace {
 
-constexpr int kSteps = 24;
+constexpr int kSteps = 40;
 constexpr int kNewtonSteps = 3;  // of each; the first has more
 constexpr int kFirstNewtonSteps = 8;
-constexpr double kFactor = 5.0;       // of a rigid joint's damping: beyond it D is not looked for
+constexpr double kFactor = 5.0;  // of a rigid joint's damping: beyond it D is not looked for
 constexpr double kLeastLookedFor = 0.3;  // or of that for this ratio
-constexpr double kSwings = 0.95;      // greatest ratio at which a pair is still followed
-constexpr double kWorthFrom = 0.15;   // of the ratio asked
+constexpr double kSwings = 0.75;         // greatest ratio at which a pair is still followed
+constexpr double kWorthFrom = 0.15;      // of the ratio asked
 constexpr double kWorthFull = 0.3;
-constexpr double kNearly = 0.9;       // from here on a ratio above kSwings is in proportion
+constexpr double kNearly = 0.9;  // from here on a ratio above kSwings is in proportion
 constexpr double kAgainstDelay = 2.0;
 constexpr double kLeastLeft = 0.05;  // of the spring, see QbarSolver
 
@@ -63,28 +65,49 @@ Sample peak(const Sample& a, const Sample& b, const Sample& c) noexcept {
   return {D, a.ratio + (D - a.D) * (left + bend * (D - b.D))};
 }
 
-// The pair that begins as the link on all springs.
-Sample followed(const ElasticMode& m, double ratio, double end, double t_d) noexcept {
-  const double at_link =
-      m.at_link ? m.law : m.law * m.spring / (m.law + m.spring);
+// How the damping ratio of the pair that begins as the link on all springs changes with D.
+struct Way {
+  std::array<Sample, kSteps + 1> samples{};
+  int count = 0;
+
+  double ratio_at(double D) const noexcept {
+    const auto end = samples.begin() + count;
+    const auto next = std::find_if(samples.begin(), end, [D](const Sample& s) { return s.D >= D; });
+    if (count == 0) return 0.0;
+    if (next == end) return std::prev(end)->ratio;
+    if (next == samples.begin()) return next->ratio;
+    const Sample& a = *std::prev(next);
+    return a.ratio + (D - a.D) / (next->D - a.D) * (next->ratio - a.ratio);
+  }
+};
+
+// The first D with the ratio, or that with the greatest; the way goes on to `end`.
+Sample followed(const ElasticMode& m, double ratio, double end, double t_d, Way* way) noexcept {
+  const double at_link = m.at_link ? m.law : m.law * m.spring / (m.law + m.spring);
   Root s(0.0, std::sqrt(at_link / (m.link + m.rotor)));
-  Sample last;
-  Sample before;
+  std::optional<Sample> found;
   for (int i = 0; i <= kSteps; ++i) {
     const double D = end * i / kSteps;
     s = refined(quartic(m, D, t_d), s, i == 0 ? kFirstNewtonSteps : kNewtonSteps);
     const Sample now{D, -s.real() / std::abs(s)};
     // The pair has met on the real axis, or is lost.
-    if (!(s.imag() > 0.0) || !std::isfinite(now.ratio)) return last;
+    if (!(s.imag() > 0.0) || !std::isfinite(now.ratio)) break;
+    way->samples[static_cast<std::size_t>(way->count++)] = now;
+    if (found) continue;
+    const auto last = [way](int back) -> const Sample& {
+      return way->samples[static_cast<std::size_t>(way->count - 1 - back)];
+    };
     if (now.ratio >= ratio) {
-      if (i == 0) return {0.0, now.ratio};
-      return {last.D + (ratio - last.ratio) / (now.ratio - last.ratio) * (D - last.D), ratio};
+      found = i == 0 ? now
+                     : Sample{last(1).D + (ratio - last(1).ratio) / (now.ratio - last(1).ratio) *
+                                              (D - last(1).D),
+                              ratio};
+    } else if (i > 1 && now.ratio < last(1).ratio) {
+      found = peak(last(2), last(1), now);
     }
-    if (i > 1 && now.ratio < last.ratio) return peak(before, last, now);
-    before = last;
-    last = now;
   }
-  return last;
+  if (found) return *found;
+  return way->count > 0 ? way->samples[static_cast<std::size_t>(way->count - 1)] : Sample{};
 }
 
 // 0 up to `from`, 1 beyond `to`, smooth between.
@@ -107,13 +130,15 @@ ElasticDamping elastic_damping(const ElasticMode& mode, double ratio, double rig
   const double above = ratio / wanted;
   const double least_seen = std::max(1.0, kLeastLookedFor / ratio);
   const double end = std::min(most, kFactor * least_seen * rigid / above);
-  const Sample found = followed(mode, wanted, end, t_d);
+  if (!(end > 0.0)) return {};
+  Way way;
+  const Sample found = followed(mode, wanted, end, t_d, &way);
   const double floor = kAgainstDelay * mode.law * t_d;
   const double worth = step_between(found.ratio / wanted, kWorthFrom, kWorthFull);
   const double reached = step_between(found.ratio / wanted, kNearly, 1.0);
   const double scaled = (1.0 + (above - 1.0) * reached) * found.D;
-  const double D = std::max(rigid + worth * (scaled - rigid), floor);
-  return {std::min(D, most), found.ratio};
+  const double D = std::min(std::max(rigid + worth * (scaled - rigid), floor), most);
+  return {D, D == found.D ? found.ratio : way.ratio_at(D)};
 }
 
 double motor_share(const ElasticMode& m, double D, double t_d) noexcept {

@@ -29,17 +29,15 @@ double mode_damping(const JointElasticity& joints, const VectorJ& B, const Vecto
   const double compliance = p.dot(bend);
   const double spring = 1.0 / std::max(compliance, 1e-300);
   const double rotor = std::clamp(u.dot(B.cwiseProduct(u)), kLeastInertia, 1.0 - kLeastInertia);
-  const ElasticMode mode = {
-      .link = 1.0 - rotor,
-      .rotor = rotor,
-      .spring = spring,
-      .damper = bend.dot(joints.D_J.cwiseProduct(bend)) * spring * spring,
-      .law = law_stiffness(joints.position, k, compliance),
-      .at_link = joints.position == PositionFeedback::kLink};
+  const ElasticMode mode = {.link = 1.0 - rotor,
+                            .rotor = rotor,
+                            .spring = spring,
+                            .damper = bend.dot(joints.D_J.cwiseProduct(bend)) * spring * spring,
+                            .law = law_stiffness(joints.position, k, compliance),
+                            .at_link = joints.position == PositionFeedback::kLink};
   const double t_d = kCyclesLate * joints.period_s;
   const double most = most_damping(joints) / p.dot(p.cwiseQuotient(B));
-  const ElasticDamping found =
-      elastic_damping(mode, ratio, 2.0 * ratio * std::sqrt(k), most, t_d);
+  const ElasticDamping found = elastic_damping(mode, ratio, 2.0 * ratio * std::sqrt(k), most, t_d);
   if (design != nullptr) {
     design->modes[design->count++] = {std::sqrt(k), found.ratio, motor_share(mode, found.D, t_d)};
   }
@@ -70,8 +68,8 @@ double ElasticDesign::least_ratio() const noexcept {
   return least;
 }
 
-MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& terms, const MatrixJ& K,
-                              double ratio, ElasticDesign* design) noexcept {
+MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& terms,
+                              const MatrixJ& K, double ratio, ElasticDesign* design) noexcept {
   if (design != nullptr) *design = ElasticDesign();
   const Eigen::LLT<MatrixJ> cholesky(terms.M_total);
   MatrixJ S = K;

@@ -1,12 +1,12 @@
 // Damping for joints or tip of an arm with springs in its joints, mode by mode.
 //
 // The modes u are those of the design for rigid joints, u^T (M + B) u = 1 and u^T K u = w^2 (see
-// damping_design.h). Each is taken as a joint of its own (elastic_damping.h): a force w^2 along it is
-// the joint torque p = (M + B) u, which bends the springs by K_J^-1 p. So
+// damping_design.h). Each is taken as a joint of its own (elastic_damping.h): a force w^2 along it
+// is the joint torque p = (M + B) u, which bends the springs by K_J^-1 p. So
 //   rotor u^T B u, link 1 - u^T B u, 1 / spring p^T K_J^-1 p,
 //   damper / spring^2  p^T K_J^-1 D_J K_J^-1 p
-// and D = sum of d p p^T. That is exact where M, B, K_J and K have their modes in common, as those of
-// one joint do.
+// and D = sum of d p p^T. That is exact where M, B, K_J and K have their modes in common, as those
+// of one joint do.
 //
 // At no motor D may take more than half of what is stable: sampled at T and a cycle late, a rotor
 // under its own damper is stable for D < B / T.
@@ -37,8 +37,9 @@ struct ElasticDesign {
 
 /// n x n, N m s/rad, for the stiffness K (n x n) that a law with this position asks for. `terms`:
 /// inertia. May be called in the cycle.
-MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& terms, const MatrixJ& K,
-                              double ratio, ElasticDesign* design = nullptr) noexcept;
+MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& terms,
+                              const MatrixJ& K, double ratio,
+                              ElasticDesign* design = nullptr) noexcept;
 
 /// 6 x 6 for K (6 x 6) at the tip. `terms`: inertia and Jacobian. Directions out of reach get none.
 /// May be called in the cycle.

@@ -94,9 +94,9 @@ struct LawInputs {
   const Gains& gains;         ///< after ramps, in base axes
   const Estimates& estimates;
   const JointElasticity* elastic = nullptr;  ///< springs of the joints; nullptr: all are rigid
-  double dt_s = 0.0;                       ///< since the law's last cycle
-  bool stiffness_due = true;  ///< what a law derives from K_x, it may derive anew
-  bool damping_due = true;    ///< the same for damping
+  double dt_s = 0.0;                         ///< since the law's last cycle
+  bool stiffness_due = true;                 ///< what a law derives from K_x, it may derive anew
+  bool damping_due = true;                   ///< the same for damping
 };
 
 /// The law's torque by parts, N m, n each; their sum is what counts.

@@ -57,8 +57,9 @@ class MappedJointImpedance : public Law {
     const LawParameters& own = in.gains.parameters;
     const MappingChoice choice{own.choice<MappingPose>(stiffness_pose),
                                own.choice<DampingPartials>(damping_partials)};
-    const MappedGains mapped = mapped_gains(&model_, in.point.q, in.point.v, in.goal, in.gains,
-                                            chosen_tip_damping(in.gains, in.terms, in.elastic), choice);
+    const MappedGains mapped =
+        mapped_gains(&model_, in.point.q, in.point.v, in.goal, in.gains,
+                     chosen_tip_damping(in.gains, in.terms, in.elastic), choice);
     if (in.stiffness_due) K_p_ = mapped.K_p;
     if (in.damping_due) K_v_ = mapped.K_v;
   }

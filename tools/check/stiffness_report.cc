@@ -79,7 +79,8 @@ std::vector<StiffnessReport> make_stiffness_reports(const Scenario& scenario,
     const auto* gains = std::get_if<compliance_gains_t>(&timed.message);
     if (gains == nullptr) continue;
     merge_gains(*gains, &present);
-    reports.push_back(report(static_cast<double>(timed.time_ns) * 1e-9, present, terms, robot.robot));
+    reports.push_back(
+        report(static_cast<double>(timed.time_ns) * 1e-9, present, terms, robot.robot));
   }
   return reports;
 }

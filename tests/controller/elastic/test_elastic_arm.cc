@@ -158,9 +158,9 @@ TEST(ElasticArm, WarnsOfDampingThatItsSpringsDoNotAllow) {
 
 // Pushed and let go, the link swings through as the damping ratio says.
 TEST(ElasticArm, LinkOvershootsAsAsked) {
-  for (const auto& [position, K] : {std::pair{Gains::POSITION_MOTOR, 300.0F},
-                                    std::pair{Gains::POSITION_STATIC, 250.0F},
-                                    std::pair{Gains::POSITION_LINK, 250.0F}}) {
+  for (const auto& [position, K] :
+       {std::pair{Gains::POSITION_MOTOR, 300.0F}, std::pair{Gains::POSITION_STATIC, 250.0F},
+        std::pair{Gains::POSITION_LINK, 250.0F}}) {
     Rig rig(limber::testing::one_joint({.weight = 1e-3}), "joint_pd");
     rig.plant.q[0] = 0.0;
     rig.elastic->rest_at(rig.plant.q);
