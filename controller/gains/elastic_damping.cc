@@ -81,19 +81,18 @@ struct Way {
   }
 };
 
-// The first D with the ratio, or that with the greatest; the way goes on to `end`.
+// The first D up to `end` with the ratio, or with the greatest; the way ends there.
 Sample followed(const ElasticMode& m, double ratio, double end, double t_d, Way* way) noexcept {
   const double at_link = m.at_link ? m.law : m.law * m.spring / (m.law + m.spring);
   Root s(0.0, std::sqrt(at_link / (m.link + m.rotor)));
   std::optional<Sample> found;
-  for (int i = 0; i <= kSteps; ++i) {
+  for (int i = 0; i <= kSteps && !found; ++i) {
     const double D = end * i / kSteps;
     s = refined(quartic(m, D, t_d), s, i == 0 ? kFirstNewtonSteps : kNewtonSteps);
     const Sample now{D, -s.real() / std::abs(s)};
     // The pair has met on the real axis, or is lost.
     if (!(s.imag() > 0.0) || !std::isfinite(now.ratio)) break;
     way->samples[static_cast<std::size_t>(way->count++)] = now;
-    if (found) continue;
     const auto last = [way](int back) -> const Sample& {
       return way->samples[static_cast<std::size_t>(way->count - 1 - back)];
     };

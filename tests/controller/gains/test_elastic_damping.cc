@@ -183,17 +183,17 @@ TEST_P(Sampled, OvershootsAsAskedOrAsIsPossible) {
 constexpr PositionFeedback kMotor = PositionFeedback::kMotor;
 constexpr PositionFeedback kStatic = PositionFeedback::kStatic;
 constexpr PositionFeedback kLink = PositionFeedback::kLink;
-INSTANTIATE_TEST_SUITE_P(Joints, Sampled,
-                         ::testing::Values(Joint{"flexible", 1500, 2, 0.2, kMotor, 500, 0.3},
-                                           Joint{"torque_loop", 1500, 2, 0.05, kStatic, 500, 0.3},
-                                           Joint{"series_elastic", 300, 0.5, 0.2, kMotor, 500, 0.3},
-                                           Joint{"soft_motor", 1500, 2, 0.2, kMotor, 150, 0.7},
-                                           Joint{"soft_static", 1500, 2, 0.2, kStatic, 150, 0.7},
-                                           Joint{"stiff_spring_late", 1e5, 20, 0.2, kMotor, 2000, 0.3},
+INSTANTIATE_TEST_SUITE_P(
+    Joints, Sampled,
+    ::testing::Values(Joint{"flexible", 1500, 2, 0.2, kMotor, 500, 0.3},
+                      Joint{"torque_loop", 1500, 2, 0.05, kStatic, 500, 0.3},
+                      Joint{"series_elastic", 300, 0.5, 0.2, kMotor, 500, 0.3},
+                      Joint{"soft_motor", 1500, 2, 0.2, kMotor, 150, 0.7},
+                      Joint{"soft_static", 1500, 2, 0.2, kStatic, 150, 0.7},
+                      Joint{"stiff_spring_late", 1e5, 20, 0.2, kMotor, 2000, 0.3},
                       Joint{"half_link", 1000, 2, 0.2, kLink, 250, 0.3},
-                                           Joint{"nearly_its_spring", 1000, 2, 0.2, kStatic, 850,
-                                                 0.7}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+                      Joint{"nearly_its_spring", 1000, 2, 0.2, kStatic, 850, 0.7}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 // As asked where the spring lets it.
 TEST(ElasticDamping, MeetsTheRatioAskedWhereTheSpringAllows) {
