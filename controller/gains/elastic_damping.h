@@ -45,9 +45,10 @@ struct ElasticDamping {
 /// M + B as one, is what is left where the spring is so soft against the law that no D makes much
 /// of a difference: between 0.3 and 0.15 of the ratio asked the one goes over into the other. Never
 /// less than twice what the delay takes from the motor, k t_d. Of ratios above 0.75 that of 0.75 in
-/// proportion. D is continuous in all arguments, but for ratios above 0.5 on rotors as heavy as the
-/// link, where the pair meets that of the spring: there it may change by a third. t_d in s, 0 or
-/// more; `most` and `rigid` 0 or more. A bounded number of operations; may be called in the cycle.
+/// proportion. D is continuous in all arguments but where the pair meets that of the spring: on a
+/// rotor as heavy as the link it may change by a fifth at ratios of 0.5 to 0.7 and by half above,
+/// on one of 0.4 of the link by two fifths from 0.9 on. t_d in s, 0 or more; `most` and `rigid` 0
+/// or more. A bounded number of operations; may be called in the cycle.
 ElasticDamping elastic_damping(const ElasticMode& mode, double ratio, double rigid, double most,
                                double t_d) noexcept;
 
