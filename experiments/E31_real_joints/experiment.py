@@ -61,11 +61,10 @@ def checks(joint: Joint, ideal: Seen, bus: Seen) -> list[Comparison]:
 
 def draw_release(found: Found, ax: Axes) -> None:
     for (name, (_, seen)), color in zip(found.items(), COLORS, strict=True):
-        described = f"{100 * seen.as_told:.0f} % without friction, as described"
-        label = f"{name}: {100 * seen.overshoot:.0f} %; {described}"
+        label = f"{name}: {100 * seen.overshoot:.0f} % ({100 * seen.as_told:.0f} %)"
         ax.plot(seen.t, seen.q * 1e3, color=color, label=label)
     asked = f"{100 * OVERSHOOT:.0f} % asked"
-    ax.set_title(f"Pushed by 20 N m and let go, on the bus; overshoot, {asked}")
+    ax.set_title(f"Let go on the bus: overshoot (without friction), {asked}")
     ax.set_xlim(0, 1.0)
     name_axes(ax, "time (s)", "angle of the link (mrad)", "upper right")
 

@@ -111,7 +111,7 @@ def swing_mm(run: np.ndarray) -> float:
 
 
 def draw(context: Context, runs: dict[str, np.ndarray]) -> None:
-    names = dict(zip(runs, ("no compensation, friction x 1", *list(runs)[1:]), strict=True))
+    names = dict(zip(runs, ("no dither, friction x 1", *list(runs)[1:]), strict=True))
     colors = dict(zip(runs, (ORANGE, GREEN, BLUE, PINK), strict=True))
     with context.picture(TITLE, columns=3, size=(13.5, 4.6)) as axes:
         for i, (ax, axis) in enumerate(zip(axes, AXES, strict=True)):
@@ -124,4 +124,4 @@ def draw(context: Context, runs: dict[str, np.ndarray]) -> None:
             ax.axhline(asked, color=BLACK, ls="--", lw=1, label=f"asked: 9 N / {K_N_per_m:g} N/m")
             ax.set_title(f"Pushed along {axis} for {PUSH_S:g} s")
             name_axes(ax, "time since the push began (s)", f"moved along {axis} (mm)")
-        axes[1].legend(loc=(0.17, 0.3), fontsize=8)
+        axes[1].legend(loc=(0.15, 0.3), fontsize=7.5)
