@@ -41,15 +41,23 @@ def flexible(rho: float, coulomb: np.ndarray) -> dict[str, Any]:
 
 
 def run(
-    context: Context, name: str, rho: float, coulomb: np.ndarray, more: list, end_s: float
+    context: Context,
+    name: str,
+    rho: float,
+    coulomb: np.ndarray,
+    more: list,
+    end_s: float,
+    *,
+    ratio: float = ZETA,
+    kappa: float = KAPPA,
 ) -> Log:
     changes = flexible(rho, coulomb)
     weak = {
-        motor: {"rotor_torque_constant_Nm_per_A": KAPPA * values["rotor_torque_constant_Nm_per_A"]}
+        motor: {"rotor_torque_constant_Nm_per_A": kappa * values["rotor_torque_constant_Nm_per_A"]}
         for motor, values in changes["motors"].items()
     }
     null = {"K_null_Nm_per_rad": K_NULL, "D_null_Nms_per_rad": D_NULL}
-    law = {"position_feedback": "static", "damping_ratio": ZETA, **null, **UNBOUNDED}
+    law = {"position_feedback": "static", "damping_ratio": ratio, **null, **UNBOUNDED}
     gains = tip_gains(K_X[0, 0], K_X[3, 3], **law)
     robot = variant(context.out / name, ROBOT, changes)
     return context.run_law(name, robot, gains, more, end_s, reality={"motors": weak})

@@ -6,7 +6,7 @@ from limber.experiments.context import Comparison, Context, at_most
 from limber.experiments.pictures import BLUE, ORANGE, Axes, name_axes
 from limber.model.robot import load_robot
 
-from . import bus, classes, ideal
+from . import bus, classes, ideal, release
 from .arm import K_X, KAPPA, ROBOT, Pose, share
 
 TITLE = "Torque loops bring seven elastic joints nearly the stiffness that is asked of them"
@@ -24,15 +24,17 @@ Loop = tuple[np.ndarray, np.ndarray]
 
 
 def run(context: Context) -> list[Comparison]:
-    checks, loops, home = [], {}, load_robot(ROBOT).home
+    checks, loops, released, home = [], {}, {}, load_robot(ROBOT).home
     for rho in RATIOS:
         context.progress(f"inertia ratio {rho:g}")
         checks += stiffness(context, rho)
+        released[rho] = release.measure(context, rho)
+        checks += release.checks(rho, released[rho])
         loops[rho] = {
             "ideal": ideal.loop(Pose(home, rho), LOADED, UP_S),
             "bus": bus.loop(context, rho, LOADED, UP_S),
         }
-    draw(context, loops)
+    draw(context, loops, released)
     return [*checks, *friction(loops), *classes.checks(context)]
 
 
@@ -82,10 +84,11 @@ def friction(loops: dict[float, dict[str, Loop]]) -> list[Comparison]:
     return made
 
 
-def draw(context: Context, loops: dict[float, dict[str, Loop]]) -> None:
-    with context.picture(TITLE, columns=2, size=(13.0, 5.2)) as axes:
+def draw(context: Context, loops: dict[float, dict[str, Loop]], released: dict) -> None:
+    with context.picture(TITLE, columns=3, size=(18.0, 5.2)) as axes:
+        release.draw(RATIOS[-1], released[RATIOS[-1]], axes[2])
         titles = {"ideal": "Exact sensors, linearised arm", "bus": "Seven drives on the bus"}
-        for ax, (where, title) in zip(axes, titles.items(), strict=True):
+        for ax, (where, title) in zip(axes[:2], titles.items(), strict=True):
             draw_loops({rho: ways[where] for rho, ways in loops.items()}, ax)
             ax.set_title(title)
 
