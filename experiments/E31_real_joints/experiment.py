@@ -4,9 +4,10 @@ import numpy as np
 
 from limber.experiments.context import Comparison, Context
 from limber.experiments.pictures import BLACK, BLUE, GREEN, MARKS, ORANGE, PINK, Axes, name_axes
+from limber.experiments.sampled_damping import overshoot
 
 from . import runs
-from .joints import JOINTS, ZETA, Joint, K, overshoot
+from .joints import JOINTS, ZETA, Joint, K
 from .runs import Seen
 
 TITLE = "The same Cartesian gains on five joints: what was asked, and what a hand gets"

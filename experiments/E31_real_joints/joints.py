@@ -10,6 +10,7 @@ from limber.experiments import testbench as bench
 from limber.experiments import variants
 from limber.experiments.elastic import Drives, ElasticArm, State, one_joint
 from limber.experiments.plants import held
+from limber.experiments.sampled_damping import STABLE_SHARE, damped
 from limber.experiments.testbench import CYCLE_S, B, M
 
 LEVER_M = 0.5  # from the joint to the tip
@@ -20,13 +21,6 @@ RHO = 4.0  # of the drive's torque loop
 LOOP_HZ = 4000
 RIGID = 1e6  # N m/rad, D 100: a spring that gives way to nobody, where there is none
 WEIGHT_NM = 10.0  # of the link, held level
-STABLE_SHARE = 0.5  # of B/(ρT), where a motor under its own late damper becomes unstable
-TRIED = 500  # dampings
-
-
-def overshoot(ratio: float) -> float:
-    """Of a pair of roots with this damping ratio."""
-    return float(np.exp(-np.pi * ratio / np.sqrt(1 - ratio**2)))
 
 
 @dataclass(frozen=True)
@@ -87,20 +81,11 @@ class Joint:
         """
         if self.rigid:
             return 2 * ZETA * np.sqrt(K * (M + B)), ZETA
-        s, last = 1j * np.sqrt(1 / (1 / self.at_motor + 1 / self.spring) / M), (0.0, -1.0)
-        for D in np.linspace(0, STABLE_SHARE * B / self.rho / CYCLE_S, TRIED):
-            roots = self.roots(D)
-            s = roots[np.argmin(abs(roots - s))]  # the pair that began as the link's
-            ratio = float(-s.real / abs(s))
-            if ratio >= ZETA:
-                return float(np.interp(ZETA, (last[1], ratio), (last[0], D))), ZETA
-            if ratio < last[1]:
-                break
-            last = float(D), ratio
-        return last
+        w = np.sqrt(1 / (1 / self.at_motor + 1 / self.spring) / M)
+        return damped(self.cycle, w, ZETA, STABLE_SHARE * B / self.rho / CYCLE_S)
 
-    def roots(self, D: float) -> np.ndarray:
-        """Of the sampled joint, torque one cycle late, torque loop at 4 kHz: state (x, u)."""
+    def cycle(self, D: float) -> np.ndarray:
+        """State (x, u) a period later: torque one cycle late, torque loop at 4 kHz."""
         loops = round(CYCLE_S * LOOP_HZ)
         A, E = held(*self.plant().matrices(), CYCLE_S / loops)
         torque = np.array([[-self.spring, self.spring, -self.damper, self.damper]])
@@ -112,7 +97,7 @@ class Joint:
         )
         cycle = np.linalg.matrix_power(step, loops)
         cycle[4] = [0.0, -self.at_motor, 0.0, -D, 0.0]
-        return np.log(np.linalg.eigvals(cycle).astype(complex)) / CYCLE_S
+        return cycle
 
     def plant(self) -> ElasticArm:
         return one_joint(M, B, self.spring, self.damper)
