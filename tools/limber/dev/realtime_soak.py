@@ -104,7 +104,7 @@ def _report(watch: Watch, trip: str, folder: Path, console: Console) -> int:
         raise RunError(f"the driver said nothing: see {folder / 'limber-driver.log'}")
     last = watch.last
     report = {name: int(last[name]) for name in ("cycles", "late_cycles", "overrun_cycles")}
-    report |= {name.replace("_ns", "_us"): 1e-3 * int(last[name]) for name in LATENESS}
+    report |= {name.replace("_ns", "_us"): int(last[name]) / 1000 for name in LATENESS}
     report |= {"commands_missing": int(last["commands_missing"]), "trip": trip}
     (folder / "lateness.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
     _draw(np.asarray(watch.rows), folder / "lateness.png")
@@ -127,6 +127,7 @@ def _draw(rows: np.ndarray, path: Path) -> None:
         names = ("half of all cycles", "99 %", "99.9 %", "all")
         for column, (name, color) in enumerate(zip(names, style.COLORS, strict=False), 1):
             ax.semilogy(rows[:, 0] / 60, np.maximum(rows[:, column], 0.1), color=color, label=name)
-        style.name_axes(ax, "time of the run, min", "late by less than, µs", "upper left")
+        ax.set_ylim(bottom=5e-4)  # room for the legend
+        style.name_axes(ax, "time of the run, min", "late by less than, µs", "lower center")
         figure.savefig(path, dpi=120)
         pyplot.close(figure)
