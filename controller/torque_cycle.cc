@@ -183,7 +183,7 @@ Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activ
 }
 
 TorqueCycle::Doubts TorqueCycle::doubts_about(const Gains& gains, const LawEntry& law) noexcept {
-  if (arm_.elastic() == nullptr || arm_.elastic()->position == PositionFeedback::kAuto) {
+  if (arm_.elastic() == nullptr) {
     return {stability_.check(gains, arm_.terms()), nullptr};
   }
   JointElasticity elastic = *arm_.elastic();

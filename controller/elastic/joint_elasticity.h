@@ -13,10 +13,10 @@ struct JointElasticity {
 
   VectorJ K_J;  ///< n, N m/rad; rigid joints: JointSprings::kRigid_Nm_per_rad
   VectorJ D_J;  ///< of the dampers beside the springs, n, N m s/rad
-  /// That the law receives. kAuto on arms with pairs of motors, whose springs change with the
-  /// preload: nothing is designed for those.
-  PositionFeedback position = PositionFeedback::kMotor;
-  double period_s;  ///< of the controller
+  PositionFeedback position = PositionFeedback::kMotor;  ///< that the law receives; never kAuto
+  double period_s;                                       ///< of the controller
+  /// False for rigid arms, and for pairs of motors, whose springs change with the preload.
+  bool designed_for;
 };
 
 }  // namespace limber::controller

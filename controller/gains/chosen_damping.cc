@@ -4,14 +4,6 @@
 #include "controller/gains/elastic_design.h"
 
 namespace limber::controller {
-namespace {
-
-bool reckons_with(const JointElasticity* elastic, DampingDesign design) noexcept {
-  return elastic != nullptr && elastic->position != PositionFeedback::kAuto &&
-         design == DampingDesign::kDoubleDiagonalisation;
-}
-
-}  // namespace
 
 MatrixJ chosen_joint_damping(const Gains& gains, const MatrixJ& M, const MatrixJ& K_q) noexcept {
   const DampingDesign design = gains.settings.joint_damping;

@@ -19,14 +19,10 @@ const char* DampingCheck::check(const Gains& gains, const LawEntry& law, const A
   if (law.damped == DampedAt::kNothing) return nullptr;
   const bool tip = law.damped == DampedAt::kTip;
   const DampingDesign chosen = tip ? gains.settings.damping : gains.settings.joint_damping;
-  if (chosen != DampingDesign::kDoubleDiagonalisation) return nullptr;
+  if (!reckons_with(&elastic, chosen)) return nullptr;
   const double asked = tip ? gains.damping_ratio : gains.joint_damping_ratio;
-  ElasticDesign design;
-  if (tip) {
-    elastic_tip_damping(elastic, terms, gains.K_x, asked, &design);
-  } else {
-    elastic_joint_damping(elastic, terms, gains.K_q, asked, &design);
-  }
+  const ElasticDesign design =
+      tip ? tip_design(elastic, terms, gains) : joint_design(elastic, terms, gains);
   const double possible = design.least_ratio();
   if (!(overshoot(possible) > overshoot(asked) + kTold)) return nullptr;
   *fmt::format_to_n(text_.data(), text_.size() - 1,

@@ -101,6 +101,11 @@ struct Reach {
     return 2.0 * ratio * inverse_transpose * root<Matrix6>(L.transpose() * K * L) *
            inverse_transpose.transpose();
   }
+  /// Of the modes, symmetric.
+  Matrix6 stiffness(const Matrix6& K) const noexcept {
+    const Matrix6 S = L.transpose() * K * L;
+    return 0.5 * (S + S.transpose());
+  }
   Matrix6 L;
   Matrix6 inverse_transpose;
 
@@ -153,15 +158,12 @@ Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Min
 TipModes tip_modes_of(const Matrix6J& J, const MatrixJ6& Minv_JT, const Matrix6& K) noexcept {
   std::optional<Reach> reach = Reach::regular(J, Minv_JT);
   if (!reach) reach.emplace(tip_mobility(J, Minv_JT));
-  const Matrix6 S = reach->L.transpose() * K * reach->L;
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(0.5 * (S + S.transpose())));
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(reach->stiffness(K));
   return {eigen.eigenvalues().cwiseMax(0.0), reach->inverse_transpose * eigen.eigenvectors()};
 }
 
 Vector6 modal_stiffness(const TipMobility& mobility, const Matrix6& K) noexcept {
-  const Reach reach(mobility);
-  const Matrix6 S = reach.L.transpose() * K * reach.L;
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(0.5 * (S + S.transpose())),
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Reach(mobility).stiffness(K),
                                                      Eigen::EigenvaluesOnly);
   return eigen.eigenvalues().cwiseMax(0.0);
 }

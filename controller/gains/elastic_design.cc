@@ -108,4 +108,18 @@ Matrix6 elastic_tip_damping(const JointElasticity& joints, const ArmTerms& terms
   return bounded<Matrix6>(D, N, most_damping(joints));
 }
 
+ElasticDesign joint_design(const JointElasticity& joints, const ArmTerms& terms,
+                           const Gains& gains) noexcept {
+  ElasticDesign design;
+  elastic_joint_damping(joints, terms, gains.K_q, gains.joint_damping_ratio, &design);
+  return design;
+}
+
+ElasticDesign tip_design(const JointElasticity& joints, const ArmTerms& terms,
+                         const Gains& gains) noexcept {
+  ElasticDesign design;
+  elastic_tip_damping(joints, terms, gains.K_x, gains.damping_ratio, &design);
+  return design;
+}
+
 }  // namespace limber::controller

@@ -17,6 +17,7 @@
 
 #include "common/types.h"
 #include "controller/elastic/joint_elasticity.h"
+#include "controller/gains/gains.h"
 #include "controller/model/arm_terms.h"
 
 namespace limber::controller {
@@ -45,5 +46,16 @@ MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& ter
 /// May be called in the cycle.
 Matrix6 elastic_tip_damping(const JointElasticity& joints, const ArmTerms& terms, const Matrix6& K,
                             double ratio, ElasticDesign* design = nullptr) noexcept;
+
+/// What comes of the modes with these gains. May be called in the cycle.
+ElasticDesign joint_design(const JointElasticity& joints, const ArmTerms& terms,
+                           const Gains& gains) noexcept;
+ElasticDesign tip_design(const JointElasticity& joints, const ArmTerms& terms,
+                         const Gains& gains) noexcept;
+
+/// Only the double diagonalisation is designed for springs. `elastic` nullptr: there are none.
+inline bool reckons_with(const JointElasticity* elastic, DampingDesign design) noexcept {
+  return elastic != nullptr && design == DampingDesign::kDoubleDiagonalisation;
+}
 
 }  // namespace limber::controller

@@ -70,11 +70,8 @@ double StiffnessModes::highest_share() const noexcept {
 
 StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T,
                          const JointElasticity* elastic) noexcept {
-  if (elastic != nullptr && gains.settings.damping == DampingDesign::kDoubleDiagonalisation) {
-    ElasticDesign design;
-    elastic_tip_damping(*elastic, terms, gains.K_x, gains.damping_ratio, &design);
-    return modes_of(design);
-  }
+  if (reckons_with(elastic, gains.settings.damping))
+    return modes_of(tip_design(*elastic, terms, gains));
   const MatrixJ K = terms.J.transpose() * gains.K_x * terms.J;
   const MatrixJ D = terms.J.transpose() * gains.D_x * terms.J;
   const bool given = gains.settings.damping == DampingDesign::kGiven;
@@ -83,11 +80,8 @@ StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T,
 
 StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T,
                            const JointElasticity* elastic) noexcept {
-  if (elastic != nullptr && gains.settings.joint_damping == DampingDesign::kDoubleDiagonalisation) {
-    ElasticDesign design;
-    elastic_joint_damping(*elastic, terms, gains.K_q, gains.joint_damping_ratio, &design);
-    return modes_of(design);
-  }
+  if (reckons_with(elastic, gains.settings.joint_damping))
+    return modes_of(joint_design(*elastic, terms, gains));
   const bool given = gains.settings.joint_damping == DampingDesign::kGiven;
   return modes_of(terms.M_total, gains.K_q, {given, gains.joint_damping_ratio, gains.D_q}, T);
 }

@@ -45,9 +45,7 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
       solved_ = solve(state.theta, statics);
       point_.q = qbar_.q_bar();
     }
-    if (elastic_.position != PositionFeedback::kAuto) {
-      elastic_.position = solved_ ? resolved : PositionFeedback::kMotor;
-    }
+    elastic_.position = solved_ ? resolved : PositionFeedback::kMotor;
     deflection_ = state.theta - (link_measured_ ? state.q : point_.q);
   }
   model_.evaluate(point_.q, point_.v, due, &terms_);

@@ -42,8 +42,11 @@ class ArmView {
   const JointSprings& springs() const noexcept { return springs_; }
   /// Stiffness of the springs as they are stretched now, n, N m/rad.
   const VectorJ& K_J() const noexcept { return elastic_.K_J; }
-  /// The springs, and the position that the law received last; nullptr: all joints are rigid.
-  const JointElasticity* elastic() const noexcept { return springs_.any() ? &elastic_ : nullptr; }
+  /// The springs, and the position that the law received last; nullptr where no damping is designed
+  /// for them (JointElasticity::designed_for).
+  const JointElasticity* elastic() const noexcept {
+    return elastic_.designed_for ? &elastic_ : nullptr;
+  }
   /// theta - q, n, rad: measured, or with q at the control point.
   const VectorJ& deflection() const noexcept { return deflection_; }
   /// False while q_bar has no solution: the control point is then the motor's.

@@ -27,7 +27,7 @@ StiffnessReport report(double at_s, const compliance_gains_t& fields,
   const double T = 1.0 / robot.rate_hz;
   const controller::JointSprings springs(robot);
   controller::JointElasticity elastic(robot, springs);
-  if (!springs.any() || elastic.position == PositionFeedback::kAuto) {
+  if (!elastic.designed_for) {
     return {at_s, tip_modes(gains, terms, T), joint_modes(gains, terms, T)};
   }
   elastic.position = gains.settings.position_feedback;

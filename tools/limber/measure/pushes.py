@@ -64,12 +64,14 @@ class MeasuredPush:
         return statics.stiffness_along(self.C_expected, self.direction)
 
     @property
+    def felt_as_asked(self) -> bool:
+        """Friction is made up for: a hand shall feel what was asked for."""
+        return self.friction_bound == 0.0 or self.friction_observed or self.dithered
+
+    @property
     def judged(self) -> float:
-        """What is held against the expected: what a hand feels, where friction is made up for;
-        otherwise the law's part of it.
-        """
-        felt = self.friction_bound == 0.0 or self.friction_observed or self.dithered
-        return self.stiffness if felt else self.stiffness_without_friction
+        """What is held against the expected: what a hand feels, or else the law's part of it."""
+        return self.stiffness if self.felt_as_asked else self.stiffness_without_friction
 
     def allowed(self, tolerance: float) -> float:
         """How far that may be from the expected. What friction behind the sensors holds is not
@@ -238,17 +240,19 @@ def _results_of(measured: MeasuredPush, tolerance: float) -> list[Result]:
         note += (
             f"; behind the sensors friction holds up to {measured.friction_bound:.2g} {force_unit}"
         )
-    felt = close_to(name, measured.stiffness, unit, measured.expected, allowed, note)
+    note += ", dither" * measured.dithered
+
+    def row(name: str, value: float, note: str, judged: bool) -> Result:
+        if not judged:
+            return Result(name, value, unit, note=note)
+        return close_to(name, value, unit, measured.expected, allowed, note)
+
+    felt = row(name, measured.stiffness, note, measured.felt_as_asked)
     if measured.friction_bound == 0.0 or measured.friction_observed:
         return [felt]
     value = measured.stiffness_without_friction
     took = f"friction took {measured.friction_took:.2g} {force_unit}"
-    law = close_to(f"{name} less friction", value, unit, measured.expected, allowed, took)
-    if measured.dithered:
-        felt.note += ", dither"
-        law = Result(law.name, value, unit, note=took)
-    else:
-        felt = Result(name, measured.stiffness, unit, note=note)
+    law = row(f"{name} less friction", value, took, not measured.felt_as_asked)
     band_note = "without dither" if measured.dithered else "predicted, at a rest"
     bound = Result(
         f"friction band {measured.axis}", measured.friction_bound, force_unit, note=band_note
