@@ -122,7 +122,8 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
     supervisor_.raise(Event::kStrayed, joint);
   if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);
-  if (energy_watch_.exceeded(state, cycle_.gravity(), M, dt_s)) supervisor_.raise(Event::kEnergy);
+  const EnergyWatch::Model bodies{terms.M, terms.B, cycle_.link_gravity(), cycle_.spring_torque()};
+  if (energy_watch_.exceeded(state, bodies, dt_s)) supervisor_.raise(Event::kEnergy);
 }
 
 void ArmController::set_timeline(const std::vector<TimedMessage>* timeline) {

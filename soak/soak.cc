@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/problem_text.h"
+#include "drivers/drives_text.h"
+
 namespace limber::soak {
 namespace {
 
@@ -99,6 +102,19 @@ void Soak::judge_numbers() {
   if (state.seq != result_.cycles - 1) violated("a cycle was left out");
 }
 
+std::string Soak::trip_text() {
+  const joint_state_t& state = lab_.state();
+  const int fault = state.fault;
+  const std::string joint =
+      state.fault_joint < 0 ? ""
+                            : robot_.robot.joints[static_cast<std::size_t>(state.fault_joint)].name;
+  return drives_text(
+             state.drive_state, fault, joint,
+             lab_.driver().fault_text(fault, state.fault_joint, lab_.driver().fault_detail())) +
+         "; controller: " +
+         problem_text(problems::kController, lab_.controller_status().reason, "", "");
+}
+
 void Soak::judge_trip() {
   const joint_state_t& state = lab_.state();
   const int fault = state.fault;
@@ -110,11 +126,8 @@ void Soak::judge_trip() {
     return;
   }
   const bool tripped = phase_ == Phase::kWorking && state.drive_state != joint_state_t::DRIVE_ON;
-  if (fault != joint_state_t::FAULT_NONE || tripped) {
-    violated(fmt::format(
-        "a trip without a cause: {}",
-        lab_.driver().fault_text(fault, state.fault_joint, lab_.driver().fault_detail())));
-  }
+  if (fault != joint_state_t::FAULT_NONE || tripped)
+    violated("a trip without a cause: " + trip_text());
 }
 
 void Soak::act() {

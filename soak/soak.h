@@ -49,6 +49,8 @@ class Soak {
   void judge();
   void judge_numbers();
   void judge_trip();
+  /// State of the drives and faults, of driver and controller.
+  std::string trip_text();
   void act();
   void inject();
   void recover();

@@ -44,6 +44,13 @@ VectorJ JointSprings::stiffness(const VectorJ& d, const VectorJ& preload) const 
   return K;
 }
 
+VectorJ JointSprings::torque(const VectorJ& d, const VectorJ& preload) const noexcept {
+  VectorJ tau = stiffness(d, preload).cwiseProduct(d);
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    if (joints_[static_cast<std::size_t>(i)].kind == TransmissionKind::kRigid) tau[i] = 0.0;
+  return tau;
+}
+
 const char* JointSprings::check(const MatrixJ& K_q, const VectorJ& K_J) const noexcept {
   for (Eigen::Index i = 0; i < K_J.size(); ++i) {
     if (!(K_q(i, i) <= kHighestShare * K_J[i])) {

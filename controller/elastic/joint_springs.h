@@ -27,7 +27,9 @@ class JointSprings {
   /// stiffness, for quadratic pairs 2 k2 c, both local too; for others the secant at this
   /// deflection. d = theta - q and preload, n, rad. In the cycle.
   VectorJ stiffness(const VectorJ& d, const VectorJ& preload) const noexcept;
-  /// The same of unloaded joints at the preload they rest at.
+  /// The torque itself, of the springs on the links, n, N m; zero for rigid joints. In the cycle.
+  VectorJ torque(const VectorJ& d, const VectorJ& preload) const noexcept;
+  /// The stiffness of unloaded joints at the preload they rest at.
   const VectorJ& at_rest() const noexcept { return at_rest_; }
 
   /// nullptr if the link can be given K_q, n x n diagonal, else why not. In the cycle.

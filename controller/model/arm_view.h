@@ -47,6 +47,14 @@ class ArmView {
   const JointElasticity* elastic() const noexcept {
     return elastic_.designed_for ? &elastic_ : nullptr;
   }
+  /// What acts on the links as they are measured, n, N m: the springs (zero for rigid joints), and
+  /// the torque that would hold the weight, which terms() has at the control point.
+  VectorJ spring_torque(const ArmState& state) const noexcept {
+    return springs_.torque(deflection_, state.preload);
+  }
+  VectorJ link_gravity(const ArmState& state) noexcept {
+    return springs_.any() ? model_.gravity(state.q) : terms_.g;
+  }
   /// theta - q, n, rad: measured, or with q at the control point.
   const VectorJ& deflection() const noexcept { return deflection_; }
   /// False while q_bar has no solution: the control point is then the motor's.

@@ -1,5 +1,5 @@
-// Kinetic energy that the torques of the arm cannot have given it: one joint whose motion is known
-// in closed form.
+// Kinetic energy that the torques of the arm cannot have given it: one joint, rigid or with a
+// spring, whose motion is known in closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,8 +30,7 @@ class Arm {
     state.num_joints = 1;
     state.v[0] = v;
     state.tau_applied[0] = tau;
-    return watch_.exceeded(state, VectorJ::Constant(1, kWeight_Nm),
-                           MatrixJ::Constant(1, 1, kInertia), kPeriod_s);
+    return watch_.exceeded(state, model(), kPeriod_s);
   }
   /// As many cycles at this speed as it takes.
   bool holds(double v, double tau = kWeight_Nm) {
@@ -42,6 +41,11 @@ class Arm {
   double unexplained_J() const { return watch_.unexplained_J(); }
 
  private:
+  EnergyWatch::Model model() const { return {M_, B_, g_, VectorJ::Zero(1)}; }
+
+  MatrixJ M_ = MatrixJ::Constant(1, 1, kInertia);
+  VectorJ B_ = VectorJ::Zero(1);
+  VectorJ g_ = VectorJ::Constant(1, kWeight_Nm);
   EnergyWatch watch_;
 };
 
@@ -167,12 +171,96 @@ TEST(EnergyWatch, TheLimitItselfIsAllowed) {
   EXPECT_TRUE(arm.holds(4.03));
 }
 
-TEST(EnergyWatch, ArmsWithSpringsAreNotWatched) {
+Robot one_spring(bool link_encoder = true) {
   Robot robot = one_joint();
   robot.joints[0].transmission.kind = TransmissionKind::kElastic;
-  Arm arm(robot);
-  arm.step(0.0, kWeight_Nm);
-  EXPECT_FALSE(arm.step(50.0, kWeight_Nm));
+  robot.joints[0].link_encoder.present = link_encoder;
+  return robot;
+}
+
+/// Link and rotor on a spring, no weight.
+class SprungArm {
+ public:
+  static constexpr double kLink = 0.5;      // kg m^2
+  static constexpr double kRotor = 0.2;     // kg m^2
+  static constexpr double kSpring = 400.0;  // N m/rad
+
+  explicit SprungArm(bool link_encoder = true) : watch_(one_spring(link_encoder)) {}
+
+  /// One more cycle: speeds of link and motor, the spring's stretch in rad, the motor's torque.
+  bool step(double v, double w, double stretch, double tau) {
+    joint_state_t state{};
+    state.num_joints = 1;
+    state.v[0] = v;
+    state.theta_dot[0] = w;
+    state.tau_applied[0] = tau;
+    return watch_.exceeded(state, {M_, B_, g_, VectorJ::Constant(1, kSpring * stretch)}, kPeriod_s);
+  }
+  double unexplained_J() const { return watch_.unexplained_J(); }
+
+ private:
+  MatrixJ M_ = MatrixJ::Constant(1, 1, kLink);
+  VectorJ B_ = VectorJ::Constant(1, kRotor);
+  VectorJ g_ = VectorJ::Zero(1);
+  EnergyWatch watch_;
+};
+
+// Let go at a stretch s, link and rotor swing against each other: theta - q = s cos(w t) with
+// w^2 = K (1/M + 1/B). The 18 J of the spring become motion; nothing comes from outside.
+TEST(EnergyWatch, WhatASpringGivesIsExplained) {
+  constexpr double kLink = SprungArm::kLink;
+  constexpr double kRotor = SprungArm::kRotor;
+  const double stretch = 0.3;
+  const double omega = std::sqrt(SprungArm::kSpring * (1.0 / kLink + 1.0 / kRotor));
+  SprungArm arm;
+  for (int k = 0; k <= 2000; ++k) {
+    const double phase = omega * k * kPeriod_s;
+    const double rate = stretch * omega * std::sin(phase);
+    ASSERT_FALSE(arm.step(rate * kRotor / (kLink + kRotor), -rate * kLink / (kLink + kRotor),
+                          stretch * std::cos(phase), 0.0))
+        << k;
+  }
+  EXPECT_NEAR(arm.unexplained_J(), 0.0, 0.05);
+}
+
+// Half a radian of wind-up by a motor that crawls: 50 J in the spring, none of them in the motion.
+TEST(EnergyWatch, WindingASpringUpIsTheMotorsWork) {
+  SprungArm arm;
+  for (int k = 0; k <= 1000; ++k) {
+    const double stretch = 0.5 * k * kPeriod_s;
+    ASSERT_FALSE(arm.step(0.0, 0.5, stretch, SprungArm::kSpring * stretch));
+  }
+  EXPECT_NEAR(arm.unexplained_J(), 0.0, 0.05);
+}
+
+// The motor was told +tau and turned to the other side: T = tau^2 t^2 / (2 B), and as much again is
+// missing of what the motor seems to have given.
+TEST(EnergyWatch, AMotorThatTurnsTheWrongWayOnASpringIsFound) {
+  SprungArm arm;
+  const double tau = 10.0;
+  int found = -1;
+  for (int k = 0; k < 1000 && found < 0; ++k)
+    if (arm.step(0.0, -tau / SprungArm::kRotor * k * kPeriod_s, 0.0, tau)) found = k;
+  const double time_s = std::sqrt(5.0 * 2.0 * SprungArm::kRotor) / tau;
+  EXPECT_EQ(found, static_cast<int>(std::ceil(time_s / kPeriod_s)) + 4);
+}
+
+TEST(EnergyWatch, ABlowOnALinkBehindASpringCounts) {
+  const auto found = [](double energy_J) {
+    SprungArm arm;
+    const double v = std::sqrt(2.0 * energy_J / SprungArm::kLink);
+    bool exceeded = arm.step(0.0, 0.0, 0.0, 0.0);
+    for (int k = 0; k < EnergyWatch::kCycles; ++k) exceeded = arm.step(v, 0.0, 0.0, 0.0);
+    return exceeded;
+  };
+  EXPECT_FALSE(found(4.9));
+  EXPECT_TRUE(found(5.1));
+}
+
+TEST(EnergyWatch, SpringsWithoutLinkEncodersAreNotWatched) {
+  SprungArm arm(false);
+  arm.step(0.0, 0.0, 0.0, 0.0);
+  for (int k = 0; k < 10; ++k) EXPECT_FALSE(arm.step(50.0, 50.0, 0.0, 0.0));
 }
 
 }  // namespace
