@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "bench/held_arm.h"
 #include "controller/arm_controller.h"
 #include "controller/laws/registry.h"
 #include "controller/modes/state_judge.h"
@@ -109,6 +110,13 @@ void BM_LabCycle(benchmark::State& run, const std::string& name, Integrator inte
   run.counters["x_real_time"] = benchmark::Counter(
       static_cast<double>(run.iterations()) / robot.robot.rate_hz, benchmark::Counter::kIsRate);
 }
+
+/// The same with all that can be left out left out: beside the two kernels in it.
+void held_cycle(benchmark::State& run) {
+  bench::HeldArm arm("openarm", Integrator::kReference);
+  for (auto _ : run) arm.run(1);
+}
+BENCHMARK(held_cycle)->Name("lab_cycle/held");
 
 /// Each law on the first of these arms that can run it: rigid, elastic, two motors a joint.
 void register_controller_cycles() {

@@ -1,7 +1,13 @@
 // What a step of the simulated arm costs: 1 ms of the openarm as a rigid arm without friction,
-// beside one bare dWorldStep of the same bodies and hinges.
+// beside one bare dWorldStep of the same bodies and hinges, and one Euler step of MuJoCo.
 #include <benchmark/benchmark.h>
 #include <ode/ode.h>
+#ifdef LIMBER_MUJOCO
+#include <mujoco/mujoco.h>
+#endif
+
+#include <array>
+#include <cstdlib>
 
 #include "dynamics/body_chain.h"
 #include "robots/loader/load_robot.h"
@@ -76,5 +82,31 @@ void bare_ode_step(benchmark::State& run) {
   for (auto _ : run) world.step();
 }
 BENCHMARK(bare_ode_step)->Name("plant_step/bare_ode");
+
+#ifdef LIMBER_MUJOCO
+/// The file is the arm as `limber export mjcf` writes it; friction and limits are taken out here.
+void mujoco_step(benchmark::State& run, const char* file) {
+  std::array<char, 1000> problem{};
+  mjModel* model = mj_loadXML(file, nullptr, problem.data(), problem.size());
+  if (model == nullptr) return run.SkipWithError(problem.data());
+  model->opt.timestep = kStep_s;
+  model->opt.integrator = mjINT_EULER;
+  model->opt.disableflags |= mjDSBL_CONTACT | mjDSBL_CONSTRAINT | mjDSBL_ACTUATION;
+  std::fill_n(model->dof_damping, model->nv, 0.0);
+  mjData* data = mj_makeData(model);
+  int i = 0;
+  for (auto _ : run) {
+    if (i++ % kStepsOfAFall == 0) mj_resetData(model, data);
+    mj_step(model, data);
+  }
+  mj_deleteData(data);
+  mj_deleteModel(model);
+}
+const bool kWithMujoco = [] {
+  const char* file = std::getenv("LIMBER_BENCH_MJCF");
+  if (file != nullptr) benchmark::RegisterBenchmark("plant_step/mujoco", mujoco_step, file);
+  return file != nullptr;
+}();
+#endif
 
 }  // namespace

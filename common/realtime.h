@@ -20,6 +20,8 @@ RealtimeGrant ask_for_realtime(int priority);
 /// deadline and spins the rest.
 class PeriodicLoop {
  public:
+  static constexpr std::int64_t kSpin_ns = 80'000;  ///< the driver's; sleeping is 10 to 50 us late
+
   PeriodicLoop(std::int64_t period_ns, std::int64_t spin_ns)
       : period_ns_(period_ns), spin_ns_(spin_ns) {}
 

@@ -127,7 +127,7 @@ void ArmDriver::receive(bool before_commands) noexcept {
         const bool too_soon = frame.timestamp_ns != 0 && frame.timestamp_ns < soonest_ns;
         route(b, frame, before_commands || too_soon);
       }
-      if (frames.empty()) break;
+      if (!buses_[b].more()) break;
     }
   }
 }

@@ -30,9 +30,10 @@ void BusEnd::send() noexcept {
 
 std::span<const CanFrame> BusEnd::receive(std::int64_t until_ns) noexcept {
   std::size_t kept = take_held(until_ns);
-  while (kept == 0) {
+  more_ = true;
+  while (kept == 0 && more_) {
     const auto count = static_cast<std::size_t>(bus_->receive(received_));
-    if (count == 0) break;
+    more_ = count == received_.size();
     for (std::size_t i = 0; i < count; ++i) {
       const std::int64_t early_ns = received_[i].timestamp_ns - until_ns;
       if (early_ns > 0 && early_ns < kOtherClock_ns && num_held_ < held_.size()) {

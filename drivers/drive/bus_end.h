@@ -38,6 +38,8 @@ class BusEnd {
   /// stamped later than `until_ns` wait for a later call (lock step: a simulated wire delivers a
   /// whole period at once); a stamp more than a second later is another clock's and does not count.
   std::span<const CanFrame> receive(std::int64_t until_ns) noexcept;
+  /// False if nothing was left behind the last batch.
+  bool more() const noexcept { return more_; }
   /// See CanBus. Set-up only.
   void set_receive_filters(std::span<const CanFilter> filters) {
     bus_->set_receive_filters(filters);
@@ -79,6 +81,7 @@ class BusEnd {
   std::array<CanFrame, 32> received_;
   std::array<CanFrame, 128> held_;  ///< in order of arrival
   std::size_t num_held_ = 0;
+  bool more_ = false;
   std::int64_t foreign_ = 0;
   std::size_t first_ = 0;  ///< of the batch, in the order of add(), that is sent first
   std::int64_t refused_cycles_ = 0;

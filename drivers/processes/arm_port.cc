@@ -32,15 +32,6 @@ ArmPort::ArmPort(const Robot& robot, const ArmDriverOptions& options, LcmPort* u
   });
 }
 
-bool ArmPort::wait_for_replies(std::int64_t deadline_ns) {
-  driver_->poll();
-  while (!driver_->complete()) {
-    if (!wait_readable(bus_pointers_, deadline_ns)) return false;
-    driver_->poll();
-  }
-  return true;
-}
-
 void ArmPort::publish_state(const joint_state_t& state) {
   published_ = &state;
   published_ns_ = monotonic_ns();

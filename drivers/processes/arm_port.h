@@ -18,6 +18,7 @@
 #include "drivers/can/can_bus.h"
 #include "drivers/processes/cycle_timing.h"
 #include "drivers/processes/state_reporter.h"
+#include "drivers/processes/wait_for_replies.h"
 #include "robots/loader/robot.h"
 
 namespace limber {
@@ -36,7 +37,9 @@ class ArmPort {
 
   /// Reads replies until the cycle is complete (true) or the deadline has come; CLOCK_MONOTONIC,
   /// ns.
-  bool wait_for_replies(std::int64_t deadline_ns);
+  bool wait_for_replies(std::int64_t deadline_ns) {
+    return limber::wait_for_replies(driver_.get(), bus_pointers_, deadline_ns);
+  }
   void publish_state(const joint_state_t& state);
   /// Lock step, a datagram may be lost: the state once more, for the controller alone.
   void repeat_state();

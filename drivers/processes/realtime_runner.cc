@@ -10,7 +10,6 @@
 namespace limber {
 namespace {
 
-constexpr std::int64_t kSpin_ns = 80'000;  // before each deadline; sleeping is 10 to 50 us late
 constexpr std::int64_t kShutDownPatience_ns = 1'000'000'000;
 
 }  // namespace
@@ -20,7 +19,7 @@ RealtimeRunner::RealtimeRunner(ArmPort* port, double rate_hz, int bridged_cycles
     : port_(port),
       length_(length),
       period_ns_(std::llround(1e9 / rate_hz)),
-      loop_(period_ns_, kSpin_ns),
+      loop_(period_ns_, PeriodicLoop::kSpin_ns),
       overruns_(std::llround(std::ceil(rate_hz)), bridged_cycles) {}
 
 void RealtimeRunner::run(const volatile std::sig_atomic_t& stop) {
@@ -46,7 +45,7 @@ void RealtimeRunner::cycle() {
   port_->driver().transmit(start_ns - first_ns_, start_ns);
   port_->wait_for_replies(start_ns + port_->driver().reply_window_ns());
   port_->publish_state(port_->driver().finish_cycle());
-  port_->wait_for_answer(loop_.deadline_ns() - kSpin_ns);
+  port_->wait_for_answer(loop_.deadline_ns() - PeriodicLoop::kSpin_ns);
 
   note_end(lateness_ns);
   if (++cycle_ % channels::kDriverStatusEvery == 0) port_->publish_status();

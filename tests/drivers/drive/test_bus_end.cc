@@ -1,4 +1,5 @@
-// A queue that is too short, or not emptied: who is sent first, and when that counts as lost.
+// A queue that is too short, or not emptied: who is sent first, and when that counts as lost. How
+// often a bus is asked for what has arrived.
 #include <gtest/gtest.h>
 
 #include "drivers/drive/bus_end.h"
@@ -19,11 +20,19 @@ class ShortQueue final : public CanBus {
     }
     return static_cast<int>(taken.size());
   }
-  int receive(std::span<CanFrame> /*frames*/) noexcept override { return 0; }
+  int receive(std::span<CanFrame> frames) noexcept override {
+    ++receive_calls;
+    const std::size_t count = std::min(frames.size(), waiting);
+    waiting -= count;
+    std::fill_n(frames.begin(), count, CanFrame{});
+    return static_cast<int>(count);
+  }
   int descriptor() const noexcept override { return -1; }
   const CanStatistics& statistics() const noexcept override { return statistics_; }
 
   std::size_t room = 100;
+  std::size_t waiting = 0;
+  int receive_calls = 0;
   Ids taken;
   CanStatistics statistics_;
 };
@@ -98,6 +107,20 @@ TEST(BusEnd, FramesThatWaitInTheQueueForThreeCyclesAreALostBus) {
   bus.statistics_.unsent = true;
   for (int i = 0; i < 3; ++i) cycle(&end, bus, 3);
   EXPECT_EQ(end.state(), +driver_status_t::BUS_QUEUE_FULL);
+}
+
+TEST(BusEnd, ABatchThatIsNotFullWasTheLast) {
+  for (const std::size_t arrived : {0U, 7U, 32U, 33U, 71U}) {
+    ShortQueue bus;
+    BusEnd end(&bus, {}, 0.0);
+    bus.waiting = arrived;
+    std::size_t taken = 0;
+    do {
+      taken += end.receive(0).size();
+    } while (end.more());
+    EXPECT_EQ(taken, arrived);
+    EXPECT_EQ(bus.receive_calls, static_cast<int>(arrived / 32 + 1));  // one for seven replies
+  }
 }
 
 }  // namespace

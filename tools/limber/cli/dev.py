@@ -153,8 +153,11 @@ def soak(
 @app.command(epilog="Example: limber bench")
 def bench(
     as_json: Annotated[bool, typer.Option("--json", help="Figures as JSON.")] = False,
+    long: Annotated[
+        bool, typer.Option("--long", help="Ten million cycles watched, the recorder for a minute.")
+    ] = False,
 ) -> None:
     """Build the benchmarks in release mode and run them, each beside a peer."""
     from limber.dev import bench as module
 
-    raise typer.Exit(module.bench(console, as_json))
+    raise typer.Exit(module.bench(console, as_json, long))

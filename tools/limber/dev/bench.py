@@ -5,18 +5,23 @@ order), and the median of the processor's time counts.
 """
 
 import json
-import subprocess
+import os
 import sys
-from dataclasses import dataclass
+import tempfile
+from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
 
+from limber.dev import bench_loop_parts
+from limber.dev.bench_command import released, report, run
+from limber.dev.bench_figure import Figure, table
 from limber.errors import OK, RunError
 from limber.live import network
-from limber.paths import RELEASE, ROOT
 
-MODULES = ("limber.dev.bench_receiver", "limber.dev.bench_page", "limber.dev.bench_viewer")
+MODULES = ("limber.dev.bench_page", "limber.dev.bench_viewer")
+CYCLES = 1_000_000  # watched for calls
+LOADED_s = 10.0  # of the recorder
+LONG_CYCLES, LONG_LOADED_s = 10_000_000, 60.0
 OPTIONS = [
     "--benchmark_format=json",
     "--benchmark_repetitions=9",
@@ -27,40 +32,6 @@ OPTIONS = [
 PEER = "impedance/pinocchio/7"
 JOINTS = range(1, 17)
 Medians = dict[str, float]  # ns, by the benchmark's name
-
-
-@dataclass(frozen=True)
-class Figure:
-    """What was measured and its peer, ns; the ratio must not exceed the goal, if there is one."""
-
-    name: str
-    own_ns: float
-    peer: str
-    peer_ns: float | None
-    goal: float | None = None
-
-    @property
-    def ratio(self) -> float | None:
-        return None if self.peer_ns is None else self.own_ns / self.peer_ns
-
-    @property
-    def verdict(self) -> str:
-        if self.ratio is None:
-            return "peer not installed"
-        if self.goal is None:
-            return ""
-        return "met" if self.ratio <= self.goal else "missed"
-
-    def as_json(self) -> dict[str, object]:
-        return {
-            "name": self.name,
-            "own_ns": self.own_ns,
-            "peer": self.peer,
-            "peer_ns": self.peer_ns,
-            "ratio": self.ratio,
-            "goal": self.goal,
-            "verdict": self.verdict,
-        }
 
 
 def figures(medians: Medians) -> list[Figure]:
@@ -84,80 +55,76 @@ def figures(medians: Medians) -> list[Figure]:
     step = "simulated step of 1 ms, rigid arm, Runge-Kutta"
     found.append(beside(step, "plant_step/reference", "plant_step/bare_ode", 0.2))
     found.append(beside("the same by ODE", "plant_step/ode", "plant_step/bare_ode", 1.1))
+    found.append(
+        beside("the step by Runge-Kutta", "plant_step/reference", "plant_step/mujoco", 0.7)
+    )
+    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
+    lab = medians["lab_cycle/held"]
+    found.append(Figure("lab cycle without a log", lab, "its step and impedance", kernels, 1.5))
     return found
 
 
-def medians_of(report: dict) -> Medians:
+def medians_of(found: dict) -> Medians:
     """From the JSON of limber-bench. A benchmark that could not run is an error."""
-    for row in report["benchmarks"]:
+    for row in found["benchmarks"]:
         if row.get("error_occurred"):
             raise RunError(f"limber-bench: {row['name']}: {row.get('error_message', 'failed')}")
     return {
         row["run_name"]: row["cpu_time"]
-        for row in report["benchmarks"]
+        for row in found["benchmarks"]
         if row.get("aggregate_name") == "median"
     }
 
 
-def bench(console: Console, as_json: bool = False) -> int:
+def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
     """Runs in a private network where that is permitted, away from other messages."""
     quiet = Console(stderr=True) if as_json else console
     for command in (["cmake", "--preset", "release"], ["cmake", "--build", "--preset", "release"]):
-        _run(command, quiet, " ".join(command))
+        run(command, quiet, " ".join(command))
     prefix = network.private_command() or []
-    quiet.rule("limber-bench: some minutes")
-    medians = medians_of(json.loads(_run([str(RELEASE / "limber-bench"), *OPTIONS], None)))
+    quiet.rule("limber-bench and its peers: some minutes")
+    medians = medians_of(_kernels())
     found = figures(medians)
     found.append(_round_trip(prefix))
+    found.append(bench_loop_parts.exchange(prefix))
+    found += bench_loop_parts.lateness()
+    found += bench_loop_parts.calls(LONG_CYCLES if long else CYCLES)
+    found += _of_module(
+        prefix, "limber.dev.bench_recorder", str(LONG_LOADED_s if long else LOADED_s)
+    )
+    found += _of_module(prefix, "limber.dev.bench_receiver")
     if as_json:
         print(json.dumps([figure.as_json() for figure in found], indent=1))
         return OK
-    console.print(_table(found))
+    console.print(table(found))
     for name, ns in medians.items():
         if name.startswith(("BM_LabCycle", "term_")):
             console.print(f"{name:60} {ns / 1000:9.2f} µs")
     for module in MODULES:
-        _run([*prefix, sys.executable, "-m", module], console, module)
+        run([*prefix, sys.executable, "-m", module], console, module)
     return OK
 
 
+def _kernels() -> dict:
+    """What limber-bench reports. MuJoCo, if it is there, reads the arm from a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        arm = Path(folder) / "openarm.xml"
+        export = [sys.executable, "-m", "limber", "export", "mjcf", "openarm", "--out", str(arm)]
+        run(export, None, "limber export mjcf")
+        env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm)}
+        return json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+
+
+def _of_module(prefix: list[str], module: str, *options: str) -> list[Figure]:
+    rows = json.loads(run([*prefix, sys.executable, "-m", module, *options], None, module))
+    return [Figure(**row) for row in rows]
+
+
 def _round_trip(prefix: list[str]) -> Figure:
-    controller = str(RELEASE / "limber-controller")
-    program = [str(RELEASE / "limber-bench-loop"), "--controller", controller]
-    found = json.loads(_run([*prefix, *program], None))
+    found = report(prefix, "limber-bench-loop", "--controller", released("limber-controller"))
     return Figure(
         "round trip through limber-controller",
         1000.0 * found["limber_us"]["p50"],
         "bare UDP multicast",
         1000.0 * found["udp_us"]["p50"],
     )
-
-
-def _table(found: list[Figure]) -> Table:
-    table = Table("figure", "µs", "peer", "its µs", "ratio", "goal", "verdict")
-    for figure in found:
-        table.add_row(
-            figure.name,
-            f"{figure.own_ns / 1000:.2f}",
-            figure.peer,
-            "" if figure.peer_ns is None else f"{figure.peer_ns / 1000:.2f}",
-            "" if figure.ratio is None else f"{figure.ratio:.2f}",
-            "" if figure.goal is None else f"{figure.goal:.2f}",
-            figure.verdict,
-        )
-    return table
-
-
-def _run(command: list[str], console: Console | None, title: str | None = None) -> str:
-    """What the program prints; without a console it is only returned."""
-    title = title or command[0]
-    if console is not None:
-        console.rule(title)
-    to = subprocess.PIPE if console is None else (sys.stderr if console.stderr else None)
-    try:
-        done = subprocess.run(command, cwd=ROOT, check=False, stdout=to, text=True)
-    except FileNotFoundError as error:
-        raise RunError(f"{command[0]} is missing") from error
-    if done.returncode != 0:
-        raise RunError(f"{title} failed (exit code {done.returncode}): see above")
-    return done.stdout or ""
