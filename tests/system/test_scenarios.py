@@ -10,6 +10,7 @@ import pytest
 from stack import ROOT
 
 LIMBER = str(ROOT / ".venv/bin/limber")
+MOST_IN_A_LOG_bytes = 1200  # of a cycle, compressed
 
 
 def limber(*arguments: str, timeout_s: float = 300, unprivileged: bool = False):
@@ -55,12 +56,15 @@ def test_stiffness_without_friction(name, tmp_path):
     """Two per cent of what was asked, in every direction (the scenario's own tolerance)."""
     done = limber("lab", f"scenarios/{name}.yaml", "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stdout + done.stderr
-    judged = [r for n, r in numbers(tmp_path / "out").items() if n.startswith("stiffness")]
+    found = numbers(tmp_path / "out")
+    judged = [r for n, r in found.items() if n.startswith("stiffness")]
     assert len(judged) >= 4
     for result in judged:
         assert result["pass"] is True, result
         if result["expected"]:
             assert abs(result["value"] / result["expected"] - 1) <= 0.02, result
+    size_bytes = (tmp_path / "out" / "run.lcmlog.zst").stat().st_size
+    assert size_bytes <= MOST_IN_A_LOG_bytes * found["cycles"]["value"]
 
 
 @pytest.mark.lockstep

@@ -29,15 +29,19 @@ TRIES = 2
 LOADED_Hz = 20_000
 LOADED_s = 10.0  # by default
 SUBSCRIBED_s = 0.7
-OUT = {"limber-record": ("--out",), "lcm-logger": ("-q",)}
+OWN, PEER = "limber-record", "lcm-logger"
+COMMANDS = {
+    OWN: (bench_command.released(OWN), "--out"),
+    PEER: (str(Path(lcm.__file__).parents[1] / "bin" / PEER), "-q"),  # in LCM's wheel
+}
 
 
 def figures(loaded_s: float) -> list[Figure]:
     own, peers = 0.0, 0.0
     for rate in RATES_Hz:
-        own = max(own, _rate_without_loss("limber-record", rate))
-        peers = max(peers, _rate_without_loss("lcm-logger", rate))
-    lost = _lost("limber-record", LOADED_Hz, loaded_s, loaded=True)[0]
+        own = max(own, _rate_without_loss(OWN, rate))
+        peers = max(peers, _rate_without_loss(PEER, rate))
+    lost = _lost(OWN, LOADED_Hz, loaded_s, loaded=True)[0]
     return [
         interval_figure(own, peers),
         Figure(
@@ -54,7 +58,7 @@ def interval_figure(own_Hz: float, peers_Hz: float) -> Figure:
     """From the highest rates without a loss; ten times lcm-logger's is a tenth of its interval."""
     own_ns, peers_ns = (1e9 / max(rate, 1.0) for rate in (own_Hz, peers_Hz))
     name = "`limber record`: messages without a loss, one every"
-    return Figure(name, own_ns, "lcm-logger", peers_ns, 0.1)
+    return Figure(name, own_ns, PEER, peers_ns, 0.1)
 
 
 def _rate_without_loss(recorder: str, rate: int) -> float:
@@ -70,22 +74,20 @@ def _lost(recorder: str, rate: int, seconds: float, loaded: bool = False) -> tup
     """Messages lost, and the rate at which they were sent."""
     with tempfile.TemporaryDirectory() as folder, _busy(loaded):
         log = Path(folder) / "bench.lcmlog"
-        program = Path(sys.executable).with_name(recorder)
-        command = bench_command.released(recorder) if "limber" in recorder else str(program)
         process = subprocess.Popen(
-            [command, *OUT[recorder], str(log)],
+            [*COMMANDS[recorder], str(log)],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
         time.sleep(SUBSCRIBED_s)
         options = ("--rate", str(rate), "--seconds", str(seconds))
         sent = bench_command.report([], "limber-bench-publisher", *options)
-        if recorder == "lcm-logger":
+        if recorder == PEER:
             time.sleep(1.0)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
         process.wait(timeout=60)
         numbers = _numbers(log)
-    expected = numbers[-1] + 1 if numbers and recorder == "lcm-logger" else sent["sent"]
+    expected = numbers[-1] + 1 if numbers and recorder == PEER else sent["sent"]
     return expected - len(numbers), sent["sent"] / sent["seconds"]
 
 
