@@ -20,6 +20,7 @@ MAX_DATA_BYTES = 1 << 26
 
 # where it begins, where its data begin, their size, time stamp in µs, channel, where it ends
 Event = tuple[int, int, int, int, str, int]
+Names = dict[bytes, str]
 
 
 @dataclass
@@ -68,8 +69,9 @@ def contents(path: Path, damage: Damage) -> mmap.mmap:
 def events(data: mmap.mmap, damage: Damage) -> Iterator[Event]:
     """All whole events; what is left out is added to `damage`."""
     position, end = 0, len(data)
+    names: Names = {}
     while position < end:
-        event = _event_at(data, position, end)
+        event = _event_at(data, position, end, names)
         if event is None:
             position = _skip(data, position, end, damage)
         else:
@@ -80,7 +82,7 @@ def events(data: mmap.mmap, damage: Damage) -> Iterator[Event]:
 def _skip(data: mmap.mmap, position: int, end: int, damage: Damage) -> int:
     """Where the next whole event begins."""
     candidate = data.find(SYNC, position + 1)
-    while candidate != -1 and _event_at(data, candidate, end) is None:
+    while candidate != -1 and _event_at(data, candidate, end, {}) is None:
         candidate = data.find(SYNC, candidate + 1)
     if candidate != -1:
         damage.skipped_bytes += candidate - position
@@ -92,8 +94,8 @@ def _skip(data: mmap.mmap, position: int, end: int, damage: Damage) -> int:
     return end
 
 
-def _event_at(data: mmap.mmap, position: int, end: int) -> Event | None:
-    """The event at `position`, if it is whole.
+def _event_at(data: mmap.mmap, position: int, end: int, names: Names) -> Event | None:
+    """The event at `position`, if it is whole. `names`: channels seen before.
 
     Whole means that the file ends behind it, or another event starts there: bytes lost or added in
     the middle of an event shift what follows, and then nothing can vouch for its contents.
@@ -104,10 +106,18 @@ def _event_at(data: mmap.mmap, position: int, end: int) -> Event | None:
     sync, _, stamp_us, channel_size, size = HEADER.unpack_from(data, position)
     if sync != SYNC or not 0 < channel_size <= MAX_CHANNEL_BYTES or not 0 <= size <= MAX_DATA_BYTES:
         return None
-    after = start + channel_size + size
-    if after > end or (after < end and not SYNC.startswith(data[after : after + 4])):
+    begin = start + channel_size
+    after = begin + size
+    if data[after : after + 4] != SYNC and not _ends(data, after, end):
         return None
-    name = data[start : start + channel_size]
-    if not name.isascii():
-        return None
-    return position, start + channel_size, size, stamp_us, name.decode("ascii"), after
+    name = data[start:begin]
+    if name not in names:
+        if not name.isascii():
+            return None
+        names[name] = name.decode("ascii")
+    return position, begin, size, stamp_us, names[name], after
+
+
+def _ends(data: mmap.mmap, after: int, end: int) -> bool:
+    """The file ends at `after`, or in the sync word that begins there."""
+    return after <= end and SYNC.startswith(data[after : after + 4])

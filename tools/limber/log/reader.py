@@ -40,7 +40,9 @@ class Log:
         self._arrays: dict[str, np.ndarray] = {}
         self._data = contents(self.path, self._damage)
         for _, start, size, stamp_us, channel, _ in events(self._data, self._damage):
-            found = self.channels.setdefault(channel, Events())
+            found = self.channels.get(channel)
+            if found is None:
+                found = self.channels[channel] = Events()
             found.offsets.append(start)
             found.sizes.append(size)
             found.stamps_us.append(stamp_us)

@@ -149,7 +149,8 @@ class ProcessGroup:
         while child.code is None:
             self.check(started=True)
             tick()
-            time.sleep(interval_s)
+            with suppress(subprocess.TimeoutExpired):
+                child.process.wait(interval_s)
         return child.process.returncode
 
 
