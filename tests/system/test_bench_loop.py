@@ -1,7 +1,9 @@
-"""`limber bench` measures the real controller's round trip."""
+"""The programs of `limber bench` do what they measure."""
 
 import json
 import subprocess
+
+import pytest
 
 from stack import BIN
 
@@ -15,3 +17,41 @@ def test_the_controller_answers_in_active():
     found = json.loads(done.stdout)
     assert found["rounds"] == 400
     assert 0 < found["limber_us"]["p50"] <= found["limber_us"]["p99"]
+
+
+def run(program: str, *options: str) -> dict:
+    done = subprocess.run(
+        [BIN / program, *options], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.flaky(reruns=4)  # a pause of this machine is a late reply, and many of them a trip
+def test_the_drives_answer_over_the_virtual_bus():
+    found = run("limber-bench-exchange", "--rounds", "400")
+    assert found["rounds"] == 400
+    assert found["late"] < 200
+    assert 0 < found["own_ns"]["p50"] <= found["own_ns"]["p99"]
+    assert 0 < found["bare_ns"]["p50"] <= found["bare_ns"]["p99"]
+
+
+def test_a_cycle_asks_nothing_of_heap_and_kernel():
+    cycles = 20_000
+    found = run("limber-bench-calls", "--cycles", str(cycles))
+    assert found.pop("cycles") == cycles
+    assert found == {"heap_requests": 0, "page_faults": 0, "futex_calls": 0}
+
+
+@pytest.mark.parametrize("options", [(), ("--plain",)])
+def test_each_cycle_is_timed(options):
+    found = run("limber-bench-lateness", "--seconds", "0.2", *options)
+    assert found["cycles"] == 200
+    assert 0 <= found["p50_ns"] <= found["p99_ns"]
+    assert 0 <= found["overruns"] <= 200
+
+
+def test_the_publisher_sends_what_is_due():
+    found = run("limber-bench-publisher", "--rate", "5000", "--seconds", "0.2")
+    assert found["sent"] == 1000
+    assert found["seconds"] > 0.19

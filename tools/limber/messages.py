@@ -9,6 +9,7 @@ import os
 import struct
 from dataclasses import dataclass
 from functools import cache
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -143,6 +144,16 @@ def native_dtype_of(type_name: str) -> np.dtype:
     return np.dtype([(name, wire[name].newbyteorder("=")) for name in wire.names])
 
 
+@cache
+def _runs_of(type_name: str) -> np.dtype:
+    """The wire layout with neighbours of one kind as one field: numpy converts field by field."""
+    wire = dtype_of(type_name)
+    assert wire is not None
+    runs = groupby((wire[name] for name in wire.names), key=lambda kind: kind.base)
+    sizes = [(kind, sum(field.itemsize for field in run) // kind.itemsize) for kind, run in runs]
+    return np.dtype([(f"run{i}", kind, (size,)) for i, (kind, size) in enumerate(sizes)])
+
+
 def view(type_name: str, data: bytes) -> np.void:
     """One message as a numpy record, in the machine's byte order."""
     wire = dtype_of(type_name)
@@ -156,7 +167,8 @@ def view(type_name: str, data: bytes) -> np.void:
 
 def views(type_name: str, parts: list[bytes]) -> np.ndarray:
     """Messages of one type as records, in the machine's byte order; all must be of this version."""
-    wire = dtype_of(type_name)
-    if wire is None:
+    if dtype_of(type_name) is None:
         raise ValueError(f"{type_name} has no fixed size")
-    return np.frombuffer(b"".join(parts), wire).astype(native_dtype_of(type_name))
+    runs = _runs_of(type_name)
+    converted = np.frombuffer(b"".join(parts), runs).astype(runs.newbyteorder("="))
+    return converted.view(native_dtype_of(type_name))

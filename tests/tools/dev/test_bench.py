@@ -2,10 +2,11 @@
 
 import pytest
 
+from conftest import records
+from limber.dev import bench_receiver
 from limber.dev.bench import figures, medians_of
 from limber.dev.bench_figure import Figure, table
 from limber.dev.bench_loop_parts import Window, lateness_figures, window_of
-from limber.dev.bench_receiver import figure as reading_figure
 from limber.dev.bench_recorder import interval_figure
 from limber.errors import RunError
 
@@ -122,9 +123,24 @@ def test_ten_times_the_rate_is_a_tenth_of_the_interval():
     assert interval_figure(100_000.0, 20_000.0).verdict == "missed"
 
 
-def test_what_lcm_itself_costs_counts_for_neither_reader():
-    assert reading_figure(own_us=10.5, peer_us=20.0, bare_us=10.0).ratio == pytest.approx(0.05)
-    assert reading_figure(own_us=9.0, peer_us=20.0, bare_us=10.0).own == 0.0
+def test_every_reader_reads_every_message():
+    rows = {name: records(f"{name.lower()}_t", 25) for name in ("JOINT_STATE", "SIM_TRUTH")}
+    found = {name: [row.tobytes() for row in made] for name, made in rows.items()}
+    assert bench_receiver.live(found) == bench_receiver.decoded(found) == 50
+
+
+def test_readers_take_turns():
+    calls = []
+    ns = bench_receiver.least_ns(dict.fromkeys("ab", lambda: calls.append(1) or 10))
+    assert len(calls) == 2 * bench_receiver.TURNS
+    assert set(ns) == {"a", "b"}
+
+
+def test_readers_are_compared_with_lcm_gens_decode():
+    live, log = bench_receiver.figures({"live": 900.0, "log": 1100.0, "decode": 10_000.0})
+    assert live.ratio == pytest.approx(0.09)
+    assert live.verdict == "met"
+    assert log.verdict == "missed"
 
 
 def test_a_benchmark_that_failed_is_an_error():

@@ -17,8 +17,10 @@ from limber.dev.bench_command import released, report, run
 from limber.dev.bench_figure import Figure, table
 from limber.errors import OK, RunError
 from limber.live import network
+from limber.paths import ROOT
 
 MODULES = ("limber.dev.bench_page", "limber.dev.bench_viewer")
+READ_SCENARIO = Path("scenarios") / "quick.yaml"
 CYCLES = 1_000_000  # watched for calls
 LOADED_s = 10.0  # of the recorder
 LONG_CYCLES, LONG_LOADED_s = 10_000_000, 60.0
@@ -92,7 +94,7 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
     found += _of_module(
         prefix, "limber.dev.bench_recorder", str(LONG_LOADED_s if long else LOADED_s)
     )
-    found += _of_module(prefix, "limber.dev.bench_receiver")
+    found += _reading()
     if as_json:
         print(json.dumps([figure.as_json() for figure in found], indent=1))
         return OK
@@ -113,6 +115,13 @@ def _kernels() -> dict:
         run(export, None, "limber export mjcf")
         env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm)}
         return json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+
+
+def _reading() -> list[Figure]:
+    with tempfile.TemporaryDirectory() as folder:
+        log = str(Path(folder) / "run.lcmlog")
+        run([released("limber-lab"), str(ROOT / READ_SCENARIO), "--log", log], None)
+        return _of_module([], "limber.dev.bench_receiver", log)
 
 
 def _of_module(prefix: list[str], module: str, *options: str) -> list[Figure]:

@@ -1,110 +1,85 @@
-"""Cost of a message in Python: read in batches by numpy, beside lcm-gen's class for each.
+"""Cost of a message in Python, beside lcm-gen's decode() of the same bytes.
 
-    python -m limber.dev.bench_receiver      # prints figures as JSON
+    python -m limber.dev.bench_receiver LOG      # prints figures as JSON
 
-Five channels at 2 kHz each, 10,000 messages a second, from another process; all of
-them are read, fifty times a second. Processor time of the reading process, not wall time.
+The messages of a log, those of fixed size that come at a rate. Live: what `Receiver` does with each
+and the reading of batches. From the log: opening it, and all these channels. The readers take
+turns; processor time, the least of all turns.
 """
 
 import json
-import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
-from contextlib import closing
-
-import lcm
+from pathlib import Path
 
 from limber import messages
 from limber.dev.bench_figure import Figure
-from limber.live.receiver import Receiver
+from limber.live.receiver import ChannelState, Stream
+from limber.log.reader import Log
 
-# Those of fixed size that come at a rate.
-CHANNELS = ("JOINT_STATE", "JOINT_TORQUE", "CONTROLLER_STATUS", "DRIVER_STATUS", "SIM_TRUTH")
-RATE_HZ = 2000  # of each channel
-SECONDS = 4.0
-READ_S = 0.02
-
-
-def publish() -> None:
-    """For ever: numbered messages of each channel, a burst each millisecond."""
-    line = lcm.LCM(messages.user_plane_url())
-    types = {name: messages.channels()[name].type_name for name in CHANNELS}
-    blank = {name: bytearray(messages.message_class(t)().encode()) for name, t in types.items()}
-    seq, due = 0, time.monotonic()
-    while True:
-        for _ in range(RATE_HZ // 1000):
-            seq += 1
-            for name, data in blank.items():
-                data[8:16] = seq.to_bytes(8, "big")
-                line.publish(name, bytes(data))
-        due += 1e-3
-        time.sleep(max(0.0, due - time.monotonic()))
+CHANNELS = ("JOINT_STATE", "JOINT_TORQUE", "CONTROLLER_STATUS", "SIM_TRUTH")
+BATCH = 16  # messages of a channel: what comes at 1 kHz between two looks of a Receiver
+TURNS = 5
+Messages = dict[str, list[bytes]]  # by channel
 
 
-def batches() -> tuple[int, int]:
-    """Messages read and lost."""
-    read = 0
-    with closing(Receiver(*CHANNELS)) as receiver:
-        streams = {name: receiver.stream(name) for name in CHANNELS}
-        end = time.monotonic() + SECONDS
-        while time.monotonic() < end:
-            time.sleep(READ_S)
-            read += sum(len(stream.read()) for stream in streams.values())
-        return read, sum(state.lost for state in receiver.channels.values())
+def live(found: Messages) -> int:
+    """Messages read; the same below."""
+    table, count = messages.channels(), 0
+    for name, parts in found.items():
+        state = ChannelState(table[name].type_name, table[name].numbered)
+        stream = Stream(state, threading.Condition())
+        for start in range(0, len(parts), BATCH):
+            for data in parts[start : start + BATCH]:
+                state.take(data)
+            count += len(stream.read())
+    return count
 
 
-def classes(decoded: bool) -> tuple[int, int]:
-    """The same with a subscription and lcm-gen's decode() in each callback."""
-    line = lcm.LCM(messages.user_plane_url())
-    seen = dict.fromkeys(CHANNELS, 0)
-    types = {n: messages.message_class(messages.channels()[n].type_name) for n in CHANNELS}
-
-    def take(channel: str, data: bytes) -> None:
-        if decoded:
-            types[channel].decode(data)
-        seen[channel] += 1
-
-    subscriptions = [line.subscribe(name, take) for name in CHANNELS]
-    for subscription in subscriptions:
-        subscription.set_queue_capacity(0)
-    end = time.monotonic() + SECONDS
-    while time.monotonic() < end:
-        line.handle_timeout(100)
-    for subscription in subscriptions:
-        line.unsubscribe(subscription)
-    return sum(seen.values()), 0
+def from_log(path: Path) -> int:
+    log = Log(path)
+    return sum(len(log.read(name)) for name in CHANNELS)
 
 
-def _cost_us(read: Callable[[], tuple[int, int]]) -> tuple[float, int, int]:
-    """Processor time a message, messages, messages lost."""
-    before = time.process_time()
-    count, lost = read()
-    return 1e6 * (time.process_time() - before) / max(count, 1), count, lost
+def decoded(found: Messages) -> int:
+    for name, parts in found.items():
+        decode = messages.message_class(messages.channels()[name].type_name).decode
+        for data in parts:
+            decode(data)
+    return sum(map(len, found.values()))
 
 
-def main() -> None:
-    publisher = subprocess.Popen([sys.executable, "-m", "limber.dev.bench_receiver", "publish"])
-    try:
-        time.sleep(1.0)
-        bare, _, _ = _cost_us(lambda: classes(decoded=False))
-        own, count, lost = _cost_us(batches)
-        peer, _, _ = _cost_us(lambda: classes(decoded=True))
-    finally:
-        publisher.terminate()
-        publisher.wait()
-    print(json.dumps([figure(own, peer, bare).as_row(), lost_figure(count, lost).as_row()]))
+def least_ns(turns: dict[str, Callable[[], int]]) -> dict[str, float]:
+    """Of each reader, for a message."""
+    least = dict.fromkeys(turns, float("inf"))
+    for _ in range(TURNS):
+        for name, read in turns.items():
+            begun = time.process_time_ns()
+            count = read()
+            least[name] = min(least[name], (time.process_time_ns() - begun) / count)
+    return least
 
 
-def figure(own_us: float, peer_us: float, bare_us: float) -> Figure:
-    """`bare_us`: LCM's part, which both have."""
-    own_ns, peer_ns = (1000.0 * max(cost - bare_us, 0.0) for cost in (own_us, peer_us))
-    return Figure("reading a message in Python, live", own_ns, "lcm-gen's decode()", peer_ns, 0.1)
+def figures(ns: dict[str, float]) -> list[Figure]:
+    names = {"live": "a message read in Python, live", "log": "the same, from a log"}
+    return [
+        Figure(name, ns[key], "lcm-gen's decode()", ns["decode"], 0.1)
+        for key, name in names.items()
+    ]
 
 
-def lost_figure(count: int, lost: int) -> Figure:
-    return Figure(f"of {count} messages read so, lost", lost, goal=0.0, unit="messages")
+def main(path: Path) -> None:
+    log = Log(path)
+    found = {name: log.raw(name) for name in CHANNELS}
+    turns = {
+        "live": lambda: live(found),
+        "log": lambda: from_log(path),
+        "decode": lambda: decoded(found),
+    }
+    print(json.dumps([figure.as_row() for figure in figures(least_ns(turns))]))
 
 
 if __name__ == "__main__":
-    publish() if sys.argv[1:] == ["publish"] else main()
+    main(Path(sys.argv[1]))

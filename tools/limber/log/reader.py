@@ -16,6 +16,7 @@ from limber.paths import existing_file
 
 LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
 PIECE = 1 << 14  # messages read at a time where only some fields count
+IN_CACHE = 100  # messages that are copied at a time
 
 
 @dataclass
@@ -117,11 +118,14 @@ class Log:
         events = self.channels.get(channel, Events())
         fits = np.asarray(events.sizes[first:last]) == wire.itemsize
         offsets = np.asarray(events.offsets[first:last], np.int64)[fits].tolist()
-        parts = (self._data[offset : offset + wire.itemsize] for offset in offsets)
-        records = np.frombuffer(b"".join(parts), wire)
+        records = np.empty(len(offsets), messages.native_dtype_of(type_name))
+        for at in range(0, len(offsets), IN_CACHE):
+            places = offsets[at : at + IN_CACHE]
+            parts = [self._data[place : place + wire.itemsize] for place in places]
+            records[at : at + IN_CACHE] = messages.views(type_name, parts)
         known = records[messages.FINGERPRINT] == messages.fingerprint_of(type_name)
-        stamps_us = np.asarray(events.stamps_us[first:last], np.int64)[fits][known]
-        return stamps_us, records[known].astype(messages.native_dtype_of(type_name))
+        stamps_us = np.asarray(events.stamps_us[first:last], np.int64)[fits]
+        return (stamps_us, records) if known.all() else (stamps_us[known], records[known])
 
     def decode(self, channel: str) -> list[Any]:
         """Messages of any limber channel as objects, one by one (slow; for events with strings)."""
