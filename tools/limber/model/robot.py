@@ -15,6 +15,8 @@ from limber.model.urdf import Chain
 from limber.paths import robot_folder
 
 EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
+# libyaml reads several times faster; a PyYAML built from source may lack it.
+SAFE_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ class Robot:
 def read_yaml(path: Path) -> dict[str, Any]:
     try:
         with open(path, encoding="utf-8") as file:
-            content = yaml.safe_load(file)
+            content = yaml.load(file, SAFE_LOADER)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
