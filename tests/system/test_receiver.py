@@ -9,16 +9,15 @@ from contextlib import closing
 import numpy as np
 import pytest
 
+import numbered_messages
 from limber import messages
-from limber.dev.bench_receiver import CHANNELS
 from limber.live.receiver import Receiver
+from numbered_messages import CHANNELS
 
 
 @pytest.fixture
 def publisher():
-    """Five channels at 2 kHz each."""
-    command = [sys.executable, "-m", "limber.dev.bench_receiver", "publish"]
-    with subprocess.Popen(command) as process:
+    with subprocess.Popen([sys.executable, numbered_messages.__file__]) as process:
         yield process
         process.terminate()
 
