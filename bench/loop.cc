@@ -119,9 +119,7 @@ class FakeDriver {
     answered_ = false;
     const std::int64_t start = monotonic_ns();
     arm_.publish(channels::kJointState, state_);
-    const int descriptor = arm_.descriptor();
-    while (!answered_ && wait_readable(std::span(&descriptor, 1), start + 1'000'000'000))
-      arm_.handle_waiting();
+    while (!answered_ && arm_.wait(start + 1'000'000'000)) arm_.handle_waiting();
     const std::int64_t taken = monotonic_ns() - start;
     if (!answered_) return -1;
     ++state_.seq;
