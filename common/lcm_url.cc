@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "common/config_error.h"
-#include "common/multicast_socket.h"
 #include "common/local_address.h"
+#include "common/multicast_socket.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {

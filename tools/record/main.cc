@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/clock.h"
-#include "common/lcm_port.h"
+#include "common/open_lcm.h"
 #include "common/lcm_url.h"
 #include "common/program.h"
 #include "common/wait_readable.h"
