@@ -56,6 +56,7 @@ class FakeDriver {
   /// One cycle; returns the round trip in ns, or -1 if no answer came within a second.
   std::int64_t round() {
     answered_ = false;
+    bench::pause_between_rounds();
     const std::int64_t start = monotonic_ns();
     arm_.publish(channels::kJointState, state_);
     while (!answered_ && arm_.wait(start + 1'000'000'000)) arm_.handle_waiting();

@@ -21,6 +21,13 @@ namespace limber::bench {
 
 inline constexpr int kPriority = 40;
 
+/// Before each round trip, as in use: the other process has finished what it does after an answer.
+inline void pause_between_rounds() {
+  const std::int64_t end_ns = monotonic_ns() + 60'000;
+  while (monotonic_ns() < end_ns) {
+  }
+}
+
 /// Starts a child that dies with this process.
 template <typename Body>
 pid_t spawn(Body body) {
@@ -59,6 +66,7 @@ class UdpPing {
 
   /// Of one round trip, ns.
   std::int64_t round() {
+    pause_between_rounds();
     const std::int64_t start = monotonic_ns();
     send(socket_.get(), message_.data(), message_.size(), 0);
     recv(socket_.get(), answer_.data(), answer_.size(), 0);

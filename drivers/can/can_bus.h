@@ -42,8 +42,8 @@ class CanBus {
   virtual int send(std::span<const CanFrame> frames) noexcept = 0;
   int send(const CanFrame& frame) noexcept { return send(std::span(&frame, 1)); }
 
-  /// Takes frames that have arrived (not our own), at most frames.size(); returns the number, 0
-  /// when none wait.
+  /// Takes frames that have arrived (not our own), at most frames.size(); returns the number. Fewer
+  /// than frames.size(): none is left.
   virtual int receive(std::span<CanFrame> frames) noexcept = 0;
 
   /// Descriptor that polls readable when receive() may return something; -1 where there is none

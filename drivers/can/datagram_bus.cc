@@ -1,5 +1,7 @@
 #include "drivers/can/datagram_bus.h"
 
+#include <algorithm>
+
 #include "drivers/can/error_frame.h"
 
 namespace limber {
@@ -30,14 +32,15 @@ int DatagramBus::receive(std::span<CanFrame> frames) noexcept {
   std::size_t taken = 0;
   bool failed = false;
   while (taken < frames.size()) {
-    const int count = incoming_.receive(receiver_.get(), static_cast<int>(frames.size() - taken));
-    if (count == 0) break;
+    const int wanted = std::min(static_cast<int>(frames.size() - taken), kBatch);
+    const int count = incoming_.receive(receiver_.get(), wanted);
     if (count < 0) {
       if (!note_receive_error() || failed) break;
       failed = true;
       continue;
     }
     for (int i = 0; i < count; ++i) taken += accept(i, &frames[taken]) ? 1U : 0U;
+    if (count < wanted) break;  // nothing is left: no call of its own to learn that
   }
   statistics_.received += static_cast<std::int64_t>(taken);
   statistics_.overflow = incoming_.lost();
