@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.table import Table
 
+from limber.dev import bench_round_trips
 from limber.errors import OK, RunError
 from limber.live import network
 from limber.paths import RELEASE, ROOT
@@ -108,7 +109,7 @@ def bench(console: Console, as_json: bool = False) -> int:
     quiet.rule("limber-bench: some minutes")
     medians = medians_of(json.loads(_run([str(RELEASE / "limber-bench"), *OPTIONS], None)))
     found = figures(medians)
-    found.append(_round_trip(prefix))
+    found += [Figure(*row) for row in bench_round_trips.rows(prefix)]
     if as_json:
         print(json.dumps([figure.as_json() for figure in found], indent=1))
         return OK
@@ -119,18 +120,6 @@ def bench(console: Console, as_json: bool = False) -> int:
     for module in MODULES:
         _run([*prefix, sys.executable, "-m", module], console, module)
     return OK
-
-
-def _round_trip(prefix: list[str]) -> Figure:
-    controller = str(RELEASE / "limber-controller")
-    program = [str(RELEASE / "limber-bench-loop"), "--controller", controller]
-    found = json.loads(_run([*prefix, *program], None))
-    return Figure(
-        "round trip through limber-controller",
-        1000.0 * found["limber_us"]["p50"],
-        "bare UDP multicast",
-        1000.0 * found["udp_us"]["p50"],
-    )
 
 
 def _table(found: list[Figure]) -> Table:
