@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/open_files.h"
+
 namespace limber {
 
 namespace {
@@ -17,6 +19,7 @@ LcmPort::LcmPort(const std::string& url, Use use)
     : url_(url),
       address_(parse_lcm_url(url)),
       sockets_(open_multicast("user plane " + url, address_.group, address_.ttl)) {
+  require_open_files();
   if (use == Use::kPublishOnly) {
     sockets_.receiver = FileDescriptor();
     return;

@@ -52,7 +52,6 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       options_(options),
       black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.lockstep)),
       log_(options.joints, black_box_.get()),
-      // LCM starts a thread for the user plane, which anybody may flood: it keeps normal priority.
       user_(user_plane_url()),
       grant_(request_realtime(options)),
       arm_(arm_plane_url(), ArmPlaneEnd::kController) {
