@@ -1,26 +1,22 @@
 // JOINT_STATE published -> JOINT_TORQUE received, through the real controller process, beside a
-// bare UDP multicast ping-pong of the same sizes between two processes, in alternating batches of
-// the same run. Prints one JSON line; the figure that travels between machines is the ratio.
+// bare UDP unicast ping-pong of the same sizes between two processes, in alternating batches of the
+// same run. LIMBER_ARM_URL chooses the arm plane. Prints one JSON line; the figure that travels
+// between machines is the ratio.
 //
 //   limber-bench-loop --controller build/release/bin/limber-controller [--rounds 20000]
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
 #include <signal.h>
-#include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstring>
 #include <limber/controller_status_t.hpp>
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <stdexcept>
-#include <vector>
 
+#include "bench/udp_ping.h"
 #include "common/arm_plane/arm_plane.h"
 #include "common/clock.h"
 #include "common/latency_histogram.h"
@@ -33,63 +29,6 @@
 using namespace limber;
 
 namespace {
-
-constexpr int kPriority = 40;
-
-/// Starts a child that dies with this process.
-template <typename Body>
-pid_t spawn(Body body) {
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    body();
-    _exit(3);
-  }
-  return child;
-}
-
-/// A multicast socket that hears `port` and can send to any port of the group, on this machine
-/// only.
-int multicast_socket(int port) {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
-  const int on = 1;
-  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = inet_addr("239.255.76.69");
-  ip_mreq group{address.sin_addr, {}};
-  const unsigned char ttl = 0;
-  setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
-  if (bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
-      setsockopt(descriptor, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) {
-    throw std::runtime_error("no multicast on this machine; see `limber doctor`");
-  }
-  return descriptor;
-}
-
-void send_to(int descriptor, int port, const void* data, std::size_t size) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = inet_addr("239.255.76.69");
-  sendto(descriptor, data, size, 0, reinterpret_cast<sockaddr*>(&address), sizeof address);
-}
-
-constexpr int kPingPort = 7701;
-constexpr int kPongPort = 7702;
-
-[[noreturn]] void echo(std::size_t reply_bytes) {
-  ask_for_realtime(kPriority);
-  const int descriptor = multicast_socket(kPingPort);
-  std::vector<char> buffer(2048);
-  while (true) {
-    if (recv(descriptor, buffer.data(), buffer.size(), 0) > 0) {
-      send_to(descriptor, kPongPort, buffer.data(), reply_bytes);
-    }
-  }
-}
 
 /// Plays the driver for one controller: answers every request at once, the arm never moves.
 class FakeDriver {
@@ -117,11 +56,10 @@ class FakeDriver {
   /// One cycle; returns the round trip in ns, or -1 if no answer came within a second.
   std::int64_t round() {
     answered_ = false;
+    bench::pause_between_rounds();
     const std::int64_t start = monotonic_ns();
     arm_.publish(channels::kJointState, state_);
-    const int descriptor = arm_.descriptor();
-    while (!answered_ && wait_readable(std::span(&descriptor, 1), start + 1'000'000'000))
-      arm_.handle_waiting();
+    while (!answered_ && arm_.wait(start + 1'000'000'000)) arm_.handle_waiting();
     const std::int64_t taken = monotonic_ns() - start;
     if (!answered_) return -1;
     ++state_.seq;
@@ -162,13 +100,6 @@ class FakeDriver {
   std::int64_t controller_ = 0;
 };
 
-std::int64_t ping(int descriptor, const std::vector<char>& message, std::vector<char>& buffer) {
-  const std::int64_t start = monotonic_ns();
-  send_to(descriptor, kPingPort, message.data(), message.size());
-  recv(descriptor, buffer.data(), buffer.size(), 0);
-  return monotonic_ns() - start;
-}
-
 int run(const std::string& controller, std::int64_t rounds) {
   const LoadedRobot robot = load_robot("openarm");
   const pid_t child = spawn([&] {
@@ -177,11 +108,8 @@ int run(const std::string& controller, std::int64_t rounds) {
   });
   const std::size_t state_bytes = static_cast<std::size_t>(joint_state_t().getEncodedSize());
   const std::size_t torque_bytes = static_cast<std::size_t>(joint_command_t().getEncodedSize());
-  const pid_t peer = spawn([&] { echo(torque_bytes); });
-  const int descriptor = multicast_socket(kPongPort);
-  const RealtimeGrant grant = ask_for_realtime(kPriority);
-  std::vector<char> message(state_bytes);
-  std::vector<char> buffer(2048);
+  bench::UdpPing udp(state_bytes, torque_bytes, true);
+  const RealtimeGrant grant = ask_for_realtime(bench::kPriority);
 
   FakeDriver driver(robot);
   while (driver.round() < 0) {
@@ -192,19 +120,18 @@ int run(const std::string& controller, std::int64_t rounds) {
   constexpr int kBatch = 200;
   for (std::int64_t done = 0; done < rounds; done += kBatch) {
     for (int i = 0; i < kBatch; ++i) limber_time.add(driver.round());
-    for (int i = 0; i < kBatch; ++i) udp_time.add(ping(descriptor, message, buffer));
+    for (int i = 0; i < kBatch; ++i) udp_time.add(udp.round());
   }
   kill(child, SIGTERM);  // it closes its black box
-  kill(peer, SIGKILL);
-  while (wait(nullptr) > 0) {
-  }
+  waitpid(child, nullptr, 0);
   const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
   fmt::print(
-      "{{\"rounds\": {}, \"fifo\": {}, \"state_bytes\": {}, \"torque_bytes\": {},\n"
+      "{{\"arm_plane\": \"{}\", \"rounds\": {}, \"fifo\": {}, \"state_bytes\": {}, "
+      "\"torque_bytes\": {},\n"
       " \"limber_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
       " \"udp_us\": {{\"p50\": {:.1f}, \"p99\": {:.1f}, \"p999\": {:.1f}}},\n"
-      " \"ratio_p50\": {:.2f}, \"ratio_p99\": {:.2f}}}\n",
-      rounds, grant.fifo, state_bytes, torque_bytes, us(limber_time.quantile(0.5)),
+      " \"ratio_p50\": {:.3f}, \"ratio_p99\": {:.3f}}}\n",
+      arm_plane_url(), rounds, grant.fifo, state_bytes, torque_bytes, us(limber_time.quantile(0.5)),
       us(limber_time.quantile(0.99)), us(limber_time.quantile(0.999)), us(udp_time.quantile(0.5)),
       us(udp_time.quantile(0.99)), us(udp_time.quantile(0.999)),
       static_cast<double>(limber_time.quantile(0.5)) / static_cast<double>(udp_time.quantile(0.5)),
@@ -217,7 +144,7 @@ int run(const std::string& controller, std::int64_t rounds) {
 
 int main(int argc, char** argv) {
   CommandLine line("limber-bench-loop",
-                   "Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP multicast ping-pong.");
+                   "Round trip JOINT_STATE -> JOINT_TORQUE beside a bare UDP unicast ping-pong.");
   std::string controller;
   std::int64_t rounds = 20'000;
   line.text("--controller", &controller, "limber-controller to measure").required();

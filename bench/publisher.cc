@@ -8,7 +8,8 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/clock.h"
-#include "common/lcm_port.h"
+#include "common/lcm_url.h"
+#include "common/open_lcm.h"
 #include "common/program.h"
 #include "common/realtime.h"
 

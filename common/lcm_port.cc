@@ -1,59 +1,96 @@
 #include "common/lcm_port.h"
 
-#include <sys/resource.h>
+#include <sys/socket.h>
 
-#include <string>
+#include <algorithm>
 
-#include "common/config_error.h"
-#include "common/multicast_socket.h"
+#include "common/open_files.h"
 
 namespace limber {
 
 namespace {
 
-/// LCM ends the process when it finds no descriptor for a pipe.
-void require_descriptors() {
-  constexpr rlim_t kEnough = 64;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kEnough) return;
-  throw ConfigError("this process may have " + std::to_string(limit.rlim_cur) +
-                    " open files, it needs " + std::to_string(kEnough) + "; set ulimit -n");
-}
+/// In one call: a flood must not keep the loop here.
+constexpr int kMostTaken = 128;
 
 }  // namespace
 
-std::unique_ptr<lcm::LCM> open_lcm(const std::string& url) {
-  require_descriptors();
-  auto lcm = std::make_unique<lcm::LCM>(checked_lcm_url(url));
-  if (lcm->good()) return lcm;
-  throw ConfigError(url +
-                    ": LCM could not start. Without a network it needs a multicast route on this "
-                    "machine:\n  " +
-                    kMulticastRouteCommands);
+LcmPort::LcmPort(const std::string& url, Use use)
+    : url_(url),
+      address_(parse_lcm_url(url)),
+      sockets_(open_multicast("user plane " + url, address_.group, address_.ttl)) {
+  require_open_files();
+  if (use == Use::kPublishOnly) {
+    sockets_.receiver = FileDescriptor();
+    return;
+  }
+  hear_only(url_, sockets_, {});
+  setsockopt(descriptor(), SOL_SOCKET, SO_RCVBUF, &address_.receive_buffer_bytes,
+             sizeof address_.receive_buffer_bytes);
 }
 
-LcmPort::LcmPort(const std::string& url, Use use) : lcm_(open_lcm(url)) {
-  if (use == Use::kBothWays) descriptor_ = lcm_->getFileno();
+bool LcmPort::send(Bytes datagram) noexcept {
+  const auto sent =
+      sendto(sockets_.sender.get(), datagram.data(), datagram.size(), 0,
+             reinterpret_cast<const sockaddr*>(&address_.group), sizeof address_.group);
+  return sent == static_cast<ssize_t>(datagram.size());
 }
 
-bool LcmPort::publish_bytes(const char* channel, int size) noexcept {
-  return lcm_publish(lcm_->getUnderlyingLCM(), channel, buffer_.data(),
-                     static_cast<unsigned>(size)) == 0;
-}
-
-void LcmPort::subscribe_bytes(const char* channel, int queue, BytesHandler handler) {
-  handlers_.push_back(std::make_unique<BytesHandler>(std::move(handler)));
-  auto call = [](const lcm::ReceiveBuffer* buffer, const std::string&, BytesHandler* function) {
-    (*function)(buffer->data, buffer->data_size);
-  };
-  void (*plain)(const lcm::ReceiveBuffer*, const std::string&, BytesHandler*) = call;
-  lcm_->subscribeFunction(channel, plain, handlers_.back().get())->setQueueCapacity(queue);
+void LcmPort::subscribe_bytes(std::string_view channel, int queue,
+                              std::function<void(Bytes)> handler) {
+  // What waits refers to the subscriptions, which move.
+  first_ = count_ = 0;
+  subscriptions_.push_back({channel, queue, std::move(handler)});
+  waiting_.resize(waiting_.size() + static_cast<std::size_t>(queue));
+  std::vector<std::string_view> channels;
+  for (const Subscription& subscription : subscriptions_) channels.push_back(subscription.channel);
+  hear_only(url_, sockets_, channels);
 }
 
 void LcmPort::handle_waiting(int most) noexcept {
-  if (descriptor_ < 0) return;
-  for (int handled = 0; handled < most && lcm_->handleTimeout(0) > 0; ++handled) {
+  take_arrived();
+  for (; most > 0 && count_ > 0; --most) {
+    const Waiting& next = waiting_[first_];
+    Subscription& subscription = *next.subscription;
+    first_ = (first_ + 1) % waiting_.size();
+    --count_;
+    ++subscription.room;
+    const Bytes message = std::span(next.bytes).first(next.size);
+    keep(subscription.channel, message);
+    subscription.handler(message);
   }
+}
+
+void LcmPort::take_arrived() noexcept {
+  if (descriptor() < 0) return;
+  for (int taken = 0; taken < kMostTaken; ++taken) {
+    const auto size = recv(descriptor(), received_.data(), received_.size(), MSG_TRUNC);
+    if (size < 0) return;
+    const auto bytes = static_cast<std::size_t>(size);
+    if (bytes <= received_.size()) {
+      take(std::span(received_).first(bytes));
+    } else {
+      ++undecodable_;
+    }
+  }
+}
+
+void LcmPort::take(Bytes datagram) noexcept {
+  const auto read = read_lcm_datagram(datagram);
+  if (!read) return;
+  const auto subscription =
+      std::ranges::find(subscriptions_, read->channel, &Subscription::channel);
+  if (subscription == subscriptions_.end()) return;
+  if (read->message.size() > kMaxMessageBytes) {
+    ++undecodable_;
+    return;
+  }
+  if (subscription->room == 0) return;
+  --subscription->room;
+  Waiting& last = waiting_[(first_ + count_++) % waiting_.size()];
+  last.subscription = &*subscription;
+  last.size = read->message.size();
+  std::ranges::copy(read->message, last.bytes.begin());
 }
 
 }  // namespace limber

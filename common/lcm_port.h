@@ -1,93 +1,110 @@
-// One LCM plane for one process: checked start, allocation-free publishing, waiting with nanosecond
-// deadlines.
+// One LCM plane for one process, in LCM's wire format: read in the thread that handles the
+// messages. What nobody here subscribes to, the kernel drops.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <lcm/lcm-cpp.hpp>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/arm_plane/lcm_datagram.h"
 #include "common/black_box/black_box.h"
 #include "common/decode_message.h"
 #include "common/lcm_url.h"
+#include "common/multicast_socket.h"
 #include "common/wait_readable.h"
 
 namespace limber {
 
-/// Opens `url`, see checked_lcm_url(). Throws ConfigError: too few descriptors (LCM would end the
-/// process), no multicast route. Set-up only.
-std::unique_ptr<lcm::LCM> open_lcm(const std::string& url);
-
+/// Messages that LCM would send in fragments, longer than all of limber's, are not received. After
+/// the last subscribe(), messages without strings or lists allocate nothing.
 class LcmPort {
  public:
   enum class Use { kBothWays, kPublishOnly };
-  /// See open_lcm(). LCM's receiving thread starts here, with the priority of the caller; a
-  /// port for publishing alone has none, and must not subscribe.
+  /// See parse_lcm_url(). A port for publishing alone must not subscribe. Throws ConfigError.
   explicit LcmPort(const std::string& url, Use use = Use::kBothWays);
 
-  /// Encodes into a buffer of its own and sends. False if the message is too long or LCM could not
-  /// send it.
+  /// Encodes into a buffer of its own and sends. False if the message is too long or could not be
+  /// sent.
   template <typename Message>
-  bool publish(const char* channel, const Message& message) noexcept {
-    const int size = message.encode(buffer_.data(), 0, kMaxMessageBytes);
+  bool publish(std::string_view channel, const Message& message) noexcept {
+    const std::size_t header = write_lcm_header(channel, sequence_++, sent_);
+    const int size = message.encode(sent_.data(), static_cast<int>(header), kMaxMessageBytes);
     if (size < 0) return false;
-    keep(channel, std::span(buffer_).first(static_cast<std::size_t>(size)));
-    return publish_bytes(channel, size);
+    const std::span datagram = std::span(sent_).first(header + static_cast<unsigned>(size));
+    keep(channel, datagram.subspan(header));
+    return send(datagram);
   }
 
-  /// Calls `handler(message)` for each message on the channel that decodes whole and is not too
-  /// long; others are dropped. `queue` messages are kept while the process is busy.
+  /// Calls `handler(message)` for each message on `channel`, a literal, that decodes whole and is
+  /// not too long; others are dropped. `queue` messages are kept while the process is busy, the
+  /// rest is lost. Throws ConfigError.
   template <typename Message, typename Handler>
-  void subscribe(const char* channel, int queue, Handler handler);
+  void subscribe(std::string_view channel, int queue, Handler handler);
 
-  /// Handles what has arrived, at most so many messages, without waiting. LCM's own receive path
-  /// may allocate.
+  /// Handles what has arrived, in order, at most so many messages, without waiting.
   void handle_waiting(int most = kEverything) noexcept;
 
   /// Keeps what is published and what is handled from now on; outlives this. Set-up only.
   void set_black_box(BlackBox* box) { black_box_ = box; }
 
-  /// -1 of a port for publishing alone.
-  int descriptor() const noexcept { return descriptor_; }
+  /// Readable when something has arrived; -1 of a port for publishing alone.
+  int descriptor() const noexcept { return sockets_.receiver.get(); }
   /// Messages of subscribed channels that were dropped: too long, or of another version of their
   /// type.
   std::int64_t undecodable() const noexcept { return undecodable_; }
 
  private:
   static constexpr int kEverything = std::numeric_limits<int>::max();
-  using BytesHandler = std::function<void(const void* data, unsigned size)>;
-  void keep(std::string_view channel, std::span<const std::uint8_t> message) noexcept {
+  static constexpr std::size_t kLongest = kLcmHeaderBytes + kLongestChannel + 1 + kMaxMessageBytes;
+  using Bytes = std::span<const std::uint8_t>;
+
+  struct Subscription {
+    std::string_view channel;
+    int room;  ///< for so many more that wait
+    std::function<void(Bytes)> handler;
+  };
+  struct Waiting {
+    Subscription* subscription;
+    std::size_t size;
+    std::array<std::uint8_t, kMaxMessageBytes> bytes;
+  };
+
+  void keep(std::string_view channel, Bytes message) noexcept {
     if (black_box_ != nullptr) black_box_->write(channel, message);
   }
-  bool publish_bytes(const char* channel, int size) noexcept;
-  void subscribe_bytes(const char* channel, int queue, BytesHandler handler);
+  bool send(Bytes datagram) noexcept;
+  void subscribe_bytes(std::string_view channel, int queue, std::function<void(Bytes)> handler);
+  void take_arrived() noexcept;
+  void take(Bytes datagram) noexcept;
 
-  std::vector<std::unique_ptr<BytesHandler>>
-      handlers_;  // outlive lcm_, which holds pointers to them
-  std::unique_ptr<lcm::LCM> lcm_;
+  std::string url_;
+  LcmAddress address_;
+  MulticastSockets sockets_;
+  std::vector<Subscription> subscriptions_;
+  std::vector<Waiting> waiting_;  ///< a ring, as long as all queues together
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
   BlackBox* black_box_ = nullptr;
-  int descriptor_ = -1;
+  std::uint32_t sequence_ = 0;
   std::int64_t undecodable_ = 0;
-  std::array<std::uint8_t, kMaxMessageBytes> buffer_{};
+  std::array<std::uint8_t, kLongest> sent_{};
+  std::array<std::uint8_t, kLongest> received_{};
 };
 
 template <typename Message, typename Handler>
-void LcmPort::subscribe(const char* channel, int queue, Handler handler) {
-  subscribe_bytes(
-      channel, queue,
-      [this, channel, handler, message = Message()](const void* data, unsigned size) mutable {
-        if (size <= kMaxMessageBytes) keep(channel, {static_cast<const std::uint8_t*>(data), size});
-        if (decode_message(data, size, &message)) {
-          handler(message);
-        } else {
-          ++undecodable_;
-        }
-      });
+void LcmPort::subscribe(std::string_view channel, int queue, Handler handler) {
+  subscribe_bytes(channel, queue, [this, handler, message = Message()](Bytes bytes) mutable {
+    if (decode_message(bytes.data(), bytes.size(), &message)) {
+      handler(message);
+    } else {
+      ++undecodable_;
+    }
+  });
 }
 
 }  // namespace limber

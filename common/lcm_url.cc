@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "common/config_error.h"
+#include "common/local_address.h"
 #include "common/multicast_socket.h"
-#include "common/unix_address.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -118,7 +118,7 @@ std::string user_plane_url() {
 }
 
 void require_local(const std::string& url, bool moves_motors) {
-  if (remote_allowed() || is_unix_address(url)) return;
+  if (remote_allowed() || is_unix_address(url) || is_shared_memory_address(url)) return;
   const std::string interface = network_interface_of(parse_lcm_url(url).group.sin_addr);
   if (interface.empty()) return;
   const std::string problem =

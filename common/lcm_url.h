@@ -28,7 +28,7 @@ std::string user_plane_url();
 /// A ttl of 0 bounds what goes out, not what comes in: a multicast group is joined on the interface
 /// to which this machine routes it. If that is a network's, others can send to `url`: throws
 /// ConfigError with the command that prevents it if `moves_motors`, else notes it in the log.
-/// Nothing with LIMBER_ALLOW_REMOTE=1, or for a Unix socket. Set-up only.
+/// Nothing with LIMBER_ALLOW_REMOTE=1, for a Unix socket or shared memory. Set-up only.
 void require_local(const std::string& url, bool moves_motors);
 
 }  // namespace limber

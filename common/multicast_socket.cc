@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "common/config_error.h"
 
@@ -71,22 +72,42 @@ FileDescriptor open_sender(const std::string& name, int ttl) {
   return socket;
 }
 
+// Filters are classic BPF; they see the UDP header first. A load beyond the datagram drops it.
+using Filter = std::vector<sock_filter>;
+constexpr sock_filter kDrop = BPF_STMT(BPF_RET | BPF_K, 0);
+constexpr sock_filter kPass = BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFFU);
+
 /// Multicast brings a sender's datagrams back to its own host, where a port has one owner. The
 /// kernel drops ours here, before they wake anybody up.
-void drop_own(const std::string& name, int receiver, int sender) {
+Filter drop_own(const std::string& name, int sender) {
   sockaddr_in own{};
   socklen_t size = sizeof(own);
   if (getsockname(sender, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
     refuse_with_errno(name, "cannot read the port to send from");
   }
-  constexpr std::uint32_t kSourcePort = 0;  // a UDP socket's filter sees the UDP header first
-  std::array<sock_filter, 4> program = {{
-      BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohs(own.sin_port), 0, 1),
-      BPF_STMT(BPF_RET | BPF_K, 0),
-      BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFFU),
-  }};
-  set(name, receiver, SOL_SOCKET, SO_ATTACH_FILTER, sock_fprog{program.size(), program.data()});
+  constexpr std::uint32_t kSourcePort = 0;
+  return {BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
+          BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohs(own.sin_port), 0, 1), kDrop};
+}
+
+/// Passes a short message of LCM's on this channel: its name stands behind the UDP header and eight
+/// bytes, with a terminating zero. Byte by byte; the first that differs ends the comparison.
+void pass_channel(std::string_view channel, Filter* filter) {
+  constexpr std::uint32_t kChannel = 16;
+  const auto length = static_cast<std::uint32_t>(channel.size() + 1);
+  for (std::uint32_t i = 0; i < length; ++i) {
+    const auto wanted = static_cast<std::uint8_t>(i < channel.size() ? channel[i] : 0);
+    // To the instruction behind kPass.
+    const auto past = static_cast<std::uint8_t>(2 * (length - i - 1) + 1);
+    filter->push_back(BPF_STMT(BPF_LD | BPF_B | BPF_ABS, kChannel + i));
+    filter->push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, wanted, 0, past));
+  }
+  filter->push_back(kPass);
+}
+
+void attach(const std::string& name, int receiver, Filter* filter) {
+  set(name, receiver, SOL_SOCKET, SO_ATTACH_FILTER,
+      sock_fprog{static_cast<unsigned short>(filter->size()), filter->data()});
 }
 
 /// The interface to which the kernel routes an address; 0 if there is none. That is also where it
@@ -139,8 +160,18 @@ bool is_loopback(const std::string& interface) {
 
 MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl) {
   MulticastSockets sockets{open_receiver(name, group), open_sender(name, ttl)};
-  drop_own(name, sockets.receiver.get(), sockets.sender.get());
+  Filter filter = drop_own(name, sockets.sender.get());
+  filter.push_back(kPass);
+  attach(name, sockets.receiver.get(), &filter);
   return sockets;
+}
+
+void hear_only(const std::string& name, const MulticastSockets& sockets,
+               std::span<const std::string_view> channels) {
+  Filter filter = drop_own(name, sockets.sender.get());
+  for (const std::string_view channel : channels) pass_channel(channel, &filter);
+  filter.push_back(kDrop);
+  attach(name, sockets.receiver.get(), &filter);
 }
 
 std::string network_interface_of(const in_addr& group) {

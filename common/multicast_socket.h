@@ -3,7 +3,9 @@
 
 #include <netinet/in.h>
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "common/file_descriptor.h"
 
@@ -23,6 +25,12 @@ struct MulticastSockets {
 /// most `ttl` hops far. Throws ConfigError that begins with `name`, without a route with
 /// kMulticastRouteCommands. Set-up only.
 MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl);
+
+/// From here on `receiver` hears LCM's short messages on these channels alone; the kernel drops all
+/// others before they wake anybody up. `sender`'s it still does not hear. Throws ConfigError that
+/// begins with `name`. Set-up only.
+void hear_only(const std::string& name, const MulticastSockets& sockets,
+               std::span<const std::string_view> channels);
 
 /// The network interface to which this machine routes `group`, and where sockets join it. "" if it
 /// is the loopback interface, or if there is no route. Set-up only.

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <array>
 #include <limits>
 
 #include "common/clock.h"
@@ -15,6 +14,8 @@ namespace {
 constexpr int kRequestQueue = 32;
 // Then the next state is looked for: no flood of requests keeps it waiting.
 constexpr int kRequestsAtOnce = 2;
+// Without states requests are looked for so often.
+constexpr std::int64_t kRequestWait_ns = 5'000'000;
 constexpr std::int64_t kLogInterval_ns = 200'000'000;
 
 Refusal decide(ArmController* controller, const mode_request_t& request) noexcept {
@@ -51,7 +52,6 @@ ControllerProcess::ControllerProcess(ArmController* controller,
       options_(options),
       black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.lockstep)),
       log_(options.joints, black_box_.get()),
-      // LCM starts a thread for the user plane, which anybody may flood: it keeps normal priority.
       user_(user_plane_url()),
       grant_(request_realtime(options)),
       arm_(arm_plane_url(), ArmPlaneEnd::kController) {
@@ -78,9 +78,8 @@ void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
           ? monotonic_ns() + static_cast<std::int64_t>(options_.duration_s * 1e9)
           : std::numeric_limits<std::int64_t>::max();
   last_state_ns_ = monotonic_ns();
-  const std::array descriptors{arm_.descriptor(), user_.descriptor()};
   while (stop == 0 && monotonic_ns() < end_ns) {
-    wait_readable(descriptors, monotonic_ns() + kSilence_ns);
+    arm_.wait(monotonic_ns() + kRequestWait_ns);
     handle_waiting();
     if (!options_.lockstep) check_silence();
   }

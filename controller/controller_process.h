@@ -61,7 +61,7 @@ class ControllerProcess {
   std::unique_ptr<BlackBox> black_box_;
   ControllerLog log_;
   LcmPort user_;
-  RealtimeGrant grant_;  // after the user plane, see the constructor
+  RealtimeGrant grant_;
   ArmPlane arm_;
   joint_state_t newest_{};
   bool waiting_ = false;

@@ -54,7 +54,7 @@ void run_sim(const LoadedRobot& robot, const std::vector<TimedMessage>& timeline
              const SimProcessOptions& options, const volatile std::sig_atomic_t& stop) {
   const auto black_box =
       open_black_box("sim-" + robot.robot.name, robot.robot.rate_hz, options.simulator.lockstep);
-  const std::string scheduling = schedule(options);  // LCM's thread inherits it
+  const std::string scheduling = schedule(options);
   sim::SimPort port(robot, &timeline, options.simulator);
   port.set_black_box(black_box.get());
   spdlog::info("{}, {} at {:g} us, {}", robot.robot.name,

@@ -51,6 +51,16 @@ Simulator::Simulator(const LoadedRobot& robot, std::vector<CanBus*> buses,
 // --- time ----------------------------------------------------------------------------------------
 
 bool Simulator::poll() noexcept {
+  const bool advanced = handle_frames();
+  deliver();
+  return advanced;
+}
+
+void Simulator::deliver() noexcept {
+  for (sim::BusSide& side : buses_) side.deliver();
+}
+
+bool Simulator::handle_frames() noexcept {
   int left = kMostFrames;
   for (int bus = 0; bus < static_cast<int>(buses_.size()); ++bus) {
     while (const CanFrame* frame = buses_[bus].next()) {
@@ -99,7 +109,7 @@ bool Simulator::on_tick(int bus, std::int64_t number) noexcept {
   clock_.set_arm_time_ns(std::clamp<std::int64_t>(number, 0, kLongest_ns / period_ns) * period_ns);
   apply_timeline();
   for (std::int64_t i = 0; i < clock_.steps_per_period(); ++i) step();
-  for (const sim::BusSide& side : buses_) side.send_directly(lockstep::tock(number));
+  for (sim::BusSide& side : buses_) side.send_directly(lockstep::tock(number));
   return true;
 }
 
@@ -108,6 +118,7 @@ void Simulator::advance_to(std::int64_t sim_time_ns) noexcept {
     if (clock_.arm_time_known()) apply_timeline();
     step();
   }
+  deliver();
 }
 
 void Simulator::step() noexcept {

@@ -104,6 +104,8 @@ class Simulator {
   std::int64_t diverged() const noexcept { return arm_.diverged(); }
 
  private:
+  bool handle_frames() noexcept;
+  void deliver() noexcept;
   bool on_tick(int bus, std::int64_t number) noexcept;
   void flush(int bus) noexcept;
   void carry_frames() noexcept;

@@ -1,11 +1,19 @@
 #include "common/arm_plane/arm_plane.h"
 
-#include "common/unix_address.h"
+#include "common/local_address.h"
 
 namespace limber {
 
-ArmPlane::ArmPlane(const std::string& url, ArmPlaneEnd end)
-    : port_(is_unix_address(url) ? open_unix_port(url, end) : open_multicast_port(url)) {}
+namespace {
+
+std::unique_ptr<DatagramPort> open_port(const std::string& url, ArmPlaneEnd end) {
+  if (is_shared_memory_address(url)) return open_shared_memory_port(url, end);
+  return is_unix_address(url) ? open_unix_port(url, end) : open_multicast_port(url);
+}
+
+}  // namespace
+
+ArmPlane::ArmPlane(const std::string& url, ArmPlaneEnd end) : port_(open_port(url, end)) {}
 
 void ArmPlane::handle_waiting() noexcept {
   for (int handled = 0; handled < kMost; ++handled) {

@@ -20,8 +20,8 @@ namespace limber {
 /// blocks.
 class ArmPlane {
  public:
-  /// udpm://GROUP:PORT, LCM's own wire format, or unix:PATH for two processes whose users the
-  /// kernel vouches for; see datagram_port.h. Throws ConfigError.
+  /// udpm://GROUP:PORT, LCM's own wire format; unix:PATH for two processes whose users the kernel
+  /// vouches for; shm:NAME, shared memory; see datagram_port.h. Throws ConfigError.
   ArmPlane(const std::string& url, ArmPlaneEnd end);
 
   /// False if the message could not be sent.
@@ -52,10 +52,11 @@ class ArmPlane {
   /// Keeps what is sent and what is handled from now on; outlives this. Set-up only.
   void set_black_box(BlackBox* box) { black_box_ = box; }
 
-  int descriptor() const noexcept { return port_->descriptor(); }
+  /// Until something waits to be handled (true), or the absolute CLOCK_MONOTONIC time has come; ns.
+  bool wait(std::int64_t deadline_ns) noexcept { return port_->wait(deadline_ns); }
   /// Datagrams on the subscribed channel that were dropped: too long, of another version of their
-  /// type, or of a user who may not send here.
-  std::int64_t undecodable() const noexcept { return undecodable_ + port_->refused(); }
+  /// type, of a user who may not send here, or overwritten.
+  std::int64_t undecodable() const noexcept { return undecodable_ + port_->dropped(); }
 
  private:
   /// A flood must not keep the loop here.

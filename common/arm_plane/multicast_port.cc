@@ -3,6 +3,7 @@
 #include "common/arm_plane/datagram_port.h"
 #include "common/lcm_url.h"
 #include "common/multicast_socket.h"
+#include "common/wait_readable.h"
 
 namespace limber {
 namespace {
@@ -24,7 +25,9 @@ class MulticastPort final : public DatagramPort {
   int receive(std::span<std::uint8_t> room) noexcept override {
     return static_cast<int>(recv(sockets_.receiver.get(), room.data(), room.size(), MSG_TRUNC));
   }
-  int descriptor() const noexcept override { return sockets_.receiver.get(); }
+  bool wait(std::int64_t deadline_ns) noexcept override {
+    return wait_readable(sockets_.receiver.get(), deadline_ns);
+  }
 
  private:
   sockaddr_in group_;

@@ -12,8 +12,9 @@
 #include "common/arm_plane/datagram_port.h"
 #include "common/config_error.h"
 #include "common/file_descriptor.h"
+#include "common/local_address.h"
 #include "common/run_lock.h"
-#include "common/unix_address.h"
+#include "common/wait_readable.h"
 
 namespace limber {
 namespace {
@@ -86,11 +87,13 @@ class UnixPort final : public DatagramPort {
       message.msg_controllen = control.size();
       const auto size = recvmsg(socket_.get(), &message, MSG_TRUNC);
       if (size < 0 || may_send(sender_of(message))) return static_cast<int>(size);
-      ++refused_;
+      ++dropped_;
     }
   }
-  int descriptor() const noexcept override { return socket_.get(); }
-  std::int64_t refused() const noexcept override { return refused_; }
+  bool wait(std::int64_t deadline_ns) noexcept override {
+    return wait_readable(socket_.get(), deadline_ns);
+  }
+  std::int64_t dropped() const noexcept override { return dropped_; }
 
  private:
   static std::optional<ucred> sender_of(msghdr& message) noexcept {
@@ -110,7 +113,7 @@ class UnixPort final : public DatagramPort {
   sockaddr_un peer_;
   RunLock lock_;
   FileDescriptor socket_;
-  std::int64_t refused_ = 0;
+  std::int64_t dropped_ = 0;
 };
 
 }  // namespace

@@ -2,10 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <array>
-
 #include "common/clock.h"
-#include "common/wait_readable.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -47,10 +44,10 @@ void ArmPort::publish_state(const joint_state_t& state) {
 void ArmPort::repeat_state() { arm_plane_.publish(channels::kJointState, *published_); }
 
 bool ArmPort::wait_for_answer(std::int64_t deadline_ns) {
-  const std::array<int, 1> arm{arm_plane_.descriptor()};
+  // The clock as well: whoever floods the plane must not keep the loop here.
   do {
     read_commands();
-  } while (!answered_ && wait_readable(arm, deadline_ns));
+  } while (!answered_ && monotonic_ns() < deadline_ns && arm_plane_.wait(deadline_ns));
   return answered_;
 }
 

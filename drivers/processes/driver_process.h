@@ -57,8 +57,7 @@ class DriverProcess {
   int bridged_cycles_;
   std::vector<RunLock> locks_;  ///< on the arm plane and every bus: nobody else may drive them
   std::unique_ptr<BlackBox> black_box_;
-  // In this order: LCM starts a thread for each port. The user plane's, which anybody may flood,
-  // and the reporter's keep normal priority; the arm plane's inherits the one requested.
+  // In this order: the reporter's thread keeps normal priority.
   StateReporter reporter_;
   LcmPort user_plane_;
   RealtimeGrant grant_;

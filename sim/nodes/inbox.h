@@ -18,12 +18,8 @@ class Inbox {
     if (next_ == count_) {
       next_ = 0;
       count_ = bus_->receive(frames_);
-      if (count_ <= 0) {
-        count_ = 0;
-        return nullptr;
-      }
     }
-    return &frames_[next_++];
+    return next_ < count_ ? &frames_[next_++] : nullptr;
   }
 
   CanBus* bus() const noexcept { return bus_; }

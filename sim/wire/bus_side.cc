@@ -34,6 +34,16 @@ void BusSide::send(int node, const CanFrame& frame, std::int64_t now_ns) noexcep
   }
 }
 
+void BusSide::send_directly(const CanFrame& frame) noexcept {
+  outgoing_[num_outgoing_++] = frame;
+  if (num_outgoing_ == outgoing_.size()) deliver();
+}
+
+void BusSide::deliver() noexcept {
+  if (num_outgoing_ > 0) inbox_.bus()->send(std::span(outgoing_).first(num_outgoing_));
+  num_outgoing_ = 0;
+}
+
 bool BusSide::carry(std::int64_t until_ns, std::int64_t offset_ns, CanFrame* frame,
                     std::int64_t* at_ns) noexcept {
   WireEvent event;

@@ -1,6 +1,7 @@
 // The nodes' side of one bus of the arm: straight, or through an adapter and a wire that take time.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <random>
 
@@ -31,8 +32,10 @@ class BusSide {
   void send(int node, const CanFrame& frame, std::int64_t now_ns) noexcept;
   /// Until the next call, what nodes send goes to the driver directly.
   void set_direct(bool direct) noexcept { direct_ = direct; }
-  /// To the driver, at once and without a stamp.
-  void send_directly(const CanFrame& frame) const noexcept { inbox_.bus()->send(frame); }
+  /// To the driver with the next deliver(), without a stamp.
+  void send_directly(const CanFrame& frame) noexcept;
+  /// Sends what waits for the driver, many frames in one system call.
+  void deliver() noexcept;
 
   /// The next frame that reaches the nodes not later than until_ns, and when. False: none, and the
   /// driver has been sent all that has left the wire until then. Stamps are simulated time plus
@@ -53,6 +56,8 @@ class BusSide {
   std::int64_t jitter_ns() noexcept;
 
   Inbox inbox_;
+  std::array<CanFrame, 32> outgoing_;
+  std::size_t num_outgoing_ = 0;
   AdapterTiming adapter_;
   std::optional<Wire> wire_;
   bool direct_ = false;

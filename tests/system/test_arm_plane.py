@@ -1,4 +1,7 @@
-"""The arm plane over Unix sockets: the same bytes as over multicast, and the same recoveries."""
+"""The arm plane between two processes only: the same bytes as over multicast, and recoveries."""
+
+import os
+from pathlib import Path
 
 import pytest
 
@@ -7,24 +10,35 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from same_bytes import expect_equal, of_the_lab, of_three_processes
 from stack import ROOT
 
-
-@pytest.fixture
-def unix_arm_plane(tmp_path, monkeypatch):
-    folder = tmp_path / "arm"
-    folder.mkdir(mode=0o700)
-    monkeypatch.setenv("LIMBER_ARM_URL", f"unix:{folder}/arm")
-    return folder
+KINDS = ("unix", "shm", "shm, polled")
 
 
-def test_the_bytes_are_those_of_the_lab(unix_arm_plane, tmp_path):
+@pytest.fixture(params=KINDS)
+def arm_plane(request, tmp_path, monkeypatch):
+    """The folder of its sockets, or None."""
+    if request.param == "unix":
+        folder = tmp_path / "arm"
+        folder.mkdir(mode=0o700)
+        monkeypatch.setenv("LIMBER_ARM_URL", f"unix:{folder}/arm")
+        yield folder
+        return
+    name = f"system-test-{os.getpid()}"
+    monkeypatch.setenv("LIMBER_ARM_URL", f"shm:{name}{'?poll' * ('polled' in request.param)}")
+    yield None
+    Path(f"/dev/shm/limber-arm-{name}").unlink(missing_ok=True)
+
+
+def test_the_bytes_are_those_of_the_lab(arm_plane, tmp_path):
     scenario = ROOT / "scenarios" / "quick.yaml"
     run = of_three_processes(scenario, tmp_path / "run")
-    expect_equal(run, of_the_lab(scenario, tmp_path), "unix sockets")
-    assert list(unix_arm_plane.iterdir()) == []
+    expect_equal(run, of_the_lab(scenario, tmp_path), os.environ["LIMBER_ARM_URL"])
+    if arm_plane is not None:
+        assert list(arm_plane.iterdir()) == []
 
 
 @pytest.mark.flaky(reruns=2)
-def test_a_killed_controller_is_replaced(unix_arm_plane, stack):
+@pytest.mark.parametrize("arm_plane", KINDS[:2], indirect=True)
+def test_a_killed_controller_is_replaced(arm_plane, stack):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
     stack.kill("controller")
@@ -35,7 +49,23 @@ def test_a_killed_controller_is_replaced(unix_arm_plane, stack):
     stack.bring_to(Status.MODE_ACTIVE)
 
 
-def test_a_second_controller_is_refused(unix_arm_plane, stack):
+@pytest.mark.flaky(reruns=2)
+@pytest.mark.parametrize("arm_plane", KINDS[:2], indirect=True)
+def test_a_killed_driver_is_replaced(arm_plane, stack):
+    """What it has left in the memory is not taken for a state of the new one."""
+    stack.start_all()
+    stack.bring_to(Status.MODE_ACTIVE)
+    session = stack.state.session
+    stack.kill("driver")
+    stack.until(lambda: stack.mode == Status.MODE_FAULT, 10, "the controller to miss it")
+    stack.start("driver")
+    stack.until(lambda: stack.state.session != session, 20, "the new one")
+    stack.acknowledge()
+    stack.bring_to(Status.MODE_ACTIVE)
+
+
+@pytest.mark.parametrize("arm_plane", KINDS[:2], indirect=True)
+def test_a_second_controller_is_refused(arm_plane, stack):
     stack.start_all()
     stack.bring_to(Status.MODE_HOLD)
     second = stack.start("controller", tag="second")

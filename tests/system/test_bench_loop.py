@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from stack import BIN
+from stack import BIN, ROOT
 
 
 def test_the_controller_answers_in_active():
@@ -55,3 +55,9 @@ def test_the_publisher_sends_what_is_due():
     found = run("limber-bench-publisher", "--rate", "5000", "--seconds", "0.2")
     assert found["sent"] == 1000
     assert found["seconds"] > 0.19
+
+
+def test_the_three_processes_are_timed():
+    scenario = str(ROOT / "bench" / "whole_loop.yaml")
+    options = ("--bin", str(BIN), "--scenario", scenario, "--turns", "1")
+    assert run("limber-bench-whole-loop", *options)["ratio"] > 0

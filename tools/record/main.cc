@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/clock.h"
-#include "common/lcm_port.h"
 #include "common/lcm_url.h"
+#include "common/open_lcm.h"
 #include "common/program.h"
 #include "common/wait_readable.h"
 #include "tools/record/recorder.h"

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from limber.dev import bench_loop_parts
-from limber.dev.bench_command import released, report, run
+from limber.dev import bench_loop_parts, bench_round_trips
+from limber.dev.bench_command import released, run
 from limber.dev.bench_figure import Figure, table
 from limber.errors import OK, RunError
 from limber.live import network
@@ -87,7 +87,7 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
     quiet.rule("limber-bench and its peers: some minutes")
     medians = medians_of(_kernels())
     found = figures(medians)
-    found.append(_round_trip(prefix))
+    found += bench_round_trips.figures(prefix)
     found.append(bench_loop_parts.exchange(prefix))
     found += bench_loop_parts.lateness()
     found += bench_loop_parts.calls(LONG_CYCLES if long else CYCLES)
@@ -127,13 +127,3 @@ def _reading() -> list[Figure]:
 def _of_module(prefix: list[str], module: str, *options: str) -> list[Figure]:
     rows = json.loads(run([*prefix, sys.executable, "-m", module, *options], None, module))
     return [Figure(**row) for row in rows]
-
-
-def _round_trip(prefix: list[str]) -> Figure:
-    found = report(prefix, "limber-bench-loop", "--controller", released("limber-controller"))
-    return Figure(
-        "round trip through limber-controller",
-        1000.0 * found["limber_us"]["p50"],
-        "bare UDP multicast",
-        1000.0 * found["udp_us"]["p50"],
-    )

@@ -113,6 +113,9 @@ def _commands(
     if lockstep:
         commands["limber-driver"].append("--lockstep")
     started = {name: [str(program(name)), *words] for name, words in commands.items()}
+    if lockstep:  # as fast as the processors allow, but whoever records comes first
+        for name in started.keys() - {"limber-record", "limber-can"}:
+            started[name] = ["nice", "-n", "10", *started[name]]
     if options.page:
         started = {MONITOR: _monitor(path, robot, options.with_simulator), **started}
     return started

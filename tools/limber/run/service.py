@@ -40,6 +40,7 @@ LimitMEMLOCK=infinity
 NoNewPrivileges=yes
 CapabilityBoundingSet=
 ProtectSystem=strict
+ReadWritePaths=/run/limber-{robot}
 ProtectHome=read-only
 PrivateDevices=yes
 RestrictAddressFamilies=AF_UNIX AF_INET AF_NETLINK{families}

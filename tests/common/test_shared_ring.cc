@@ -1,0 +1,172 @@
+// The ring of the shared-memory arm plane: order, wrap-around, what is overwritten or torn,
+// garbage.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "common/arm_plane/shared_ring.h"
+
+namespace limber::test_shared_ring {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A message whose bytes all follow from its number.
+Bytes message(std::uint32_t number) {
+  return Bytes(1 + number % kLongestInRing, static_cast<std::uint8_t>(number));
+}
+
+class SharedRingTest : public testing::Test {
+ protected:
+  /// The next message; empty if none waits.
+  static Bytes read(RingReader& reader) {
+    Bytes room(kLongestInRing, 0xEE);
+    const int size = reader.read(room);
+    room.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
+    return room;
+  }
+  SharedRing& ring() { return *memory_; }
+
+ private:
+  std::unique_ptr<SharedRing> memory_ = std::make_unique<SharedRing>();
+};
+
+TEST_F(SharedRingTest, MessagesOfAnyLengthComeInOrder) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  EXPECT_FALSE(reader.something_waits());
+  EXPECT_EQ(read(reader), Bytes());
+  for (std::uint32_t number = 0; number < 3 * kLongestInRing; ++number) {
+    ASSERT_TRUE(writer.write(message(number)));
+    ASSERT_TRUE(reader.something_waits());
+    ASSERT_EQ(read(reader), message(number)) << number;
+  }
+  EXPECT_EQ(read(reader), Bytes());
+  EXPECT_EQ(reader.dropped(), 0);
+  EXPECT_FALSE(writer.write(Bytes(kLongestInRing + 1)));
+  EXPECT_FALSE(reader.something_waits());
+}
+
+TEST_F(SharedRingTest, NumbersMayWrapAround) {
+  ring().newest = 0U - 5;
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  for (std::uint32_t number = 0; number < 10; ++number) writer.write(message(number));
+  for (std::uint32_t number = 0; number < 10; ++number) EXPECT_EQ(read(reader), message(number));
+  EXPECT_EQ(reader.dropped(), 0);
+}
+
+TEST_F(SharedRingTest, WhatWasOverwrittenIsCounted) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  for (std::uint32_t number = 0; number < kRingSlots + 7; ++number) writer.write(message(number));
+  for (std::uint32_t number = 7; number < kRingSlots + 7; ++number)
+    EXPECT_EQ(read(reader), message(number));
+  EXPECT_EQ(read(reader), Bytes());
+  EXPECT_EQ(reader.dropped(), 7);
+}
+
+TEST_F(SharedRingTest, AMessageThatIsBeingWrittenIsNone) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  writer.write(message(1));
+  writer.write(message(2));
+  ring().slots[1].number = kRingSlots;  // as write() has it while message kRingSlots + 1 is written
+  EXPECT_EQ(read(reader), message(2));
+  EXPECT_EQ(reader.dropped(), 1);
+}
+
+TEST_F(SharedRingTest, AWriterThatDiedIsFollowedByTheNext) {
+  RingReader reader(&ring());
+  RingWriter(&ring()).write(message(1));
+  ring().slots[2].number = 1;  // it died while it wrote the second
+  RingWriter(&ring()).write(message(2));
+  EXPECT_EQ(read(reader), message(1));
+  EXPECT_EQ(read(reader), message(2));
+  EXPECT_EQ(reader.dropped(), 0);
+}
+
+TEST_F(SharedRingTest, AReaderBeginsWithWhatComesAfterIt) {
+  RingWriter writer(&ring());
+  writer.write(message(1));
+  RingReader reader(&ring());
+  EXPECT_EQ(read(reader), Bytes());
+  writer.write(message(2));
+  EXPECT_EQ(read(reader), message(2));
+}
+
+TEST_F(SharedRingTest, TheSizeIsToldOfWhatDoesNotFit) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  writer.write(message(100));
+  Bytes room(11, 0xEE);
+  EXPECT_EQ(reader.read(std::span(room).first(10)), 101);
+  EXPECT_EQ(room[9], 100);
+  EXPECT_EQ(room[10], 0xEE);
+}
+
+/// Whatever stands in the memory: each call ends, no size above what a slot holds, nothing beyond
+/// the room (address sanitizer), and after it messages come through again.
+TEST_F(SharedRingTest, GarbageIsNoMessageThatDoesNotFitAndPasses) {
+  std::mt19937_64 random(1);
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  for (int round = 0; round < 3000; ++round) {
+    ring().newest = static_cast<std::uint32_t>(random());
+    const bool near = round % 2 == 0;  // numbers that fit, with sizes that do not
+    for (SharedRing::Slot& slot : ring().slots) {
+      const auto offset = static_cast<std::uint32_t>(&slot - ring().slots.data());
+      slot.number = near ? ring().newest / kRingSlots * kRingSlots + offset
+                         : static_cast<std::uint32_t>(random());
+      slot.bytes = static_cast<std::uint32_t>(random() >> (32 + random() % 32));
+    }
+    Bytes room(kLongestInRing);
+    std::uint32_t found = 0;
+    for (int size = 0; (size = reader.read(room)) >= 0; ++found)
+      ASSERT_LE(static_cast<std::size_t>(size), kLongestInRing);
+    ASSERT_LE(found, kRingSlots);
+    writer.write(message(1));  // goes on with its own number
+    RingReader next(&ring());
+    writer.write(message(2));
+    ASSERT_EQ(read(next), message(2));
+    while (reader.read(room) >= 0) {
+    }
+    writer.write(message(3));
+    ASSERT_EQ(read(reader), message(3));
+  }
+}
+
+/// A writer that is faster than the reader: the ring is overtaken all the time. Also under thread
+/// sanitizer.
+TEST_F(SharedRingTest, NoTornMessageIsReadWhileTheWriterOvertakes) {
+  constexpr std::uint32_t kMessages = 200'000;
+  RingReader reader(&ring());
+  std::jthread thread([this] {
+    RingWriter writer(&ring());
+    Bytes bytes(400);
+    for (std::uint32_t number = 1; number <= kMessages; ++number) {
+      for (std::size_t i = 0; i < bytes.size(); i += 4) std::memcpy(&bytes[i], &number, 4);
+      writer.write(bytes);
+    }
+  });
+  std::uint32_t last = 0;
+  std::int64_t received = 0;
+  Bytes room(kLongestInRing);
+  while (last < kMessages) {
+    if (reader.read(room) < 0) continue;
+    std::uint32_t number = 0;
+    std::memcpy(&number, room.data(), 4);
+    ASSERT_GT(number, last);
+    for (std::size_t i = 0; i < 400; i += 4) ASSERT_EQ(std::memcmp(&room[i], &number, 4), 0);
+    last = number;
+    ++received;
+  }
+  EXPECT_EQ(received + reader.dropped(), kMessages);
+}
+
+}  // namespace
+}  // namespace limber::test_shared_ring
