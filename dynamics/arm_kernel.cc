@@ -3,6 +3,19 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+// The members below that run over rows of joints are compiled for each kind of processor, and
+// chosen when the program is loaded. All give the same bits: nothing is fused (-ffp-contract=off),
+// and each lane's numbers are added in one order. Sanitizers are not ready when that choice is
+// made.
+#ifndef LIMBER_EACH_PROCESSOR
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define LIMBER_EACH_PROCESSOR [[gnu::target_clones("avx512f", "avx2", "default")]]
+#else
+#define LIMBER_EACH_PROCESSOR
+#endif
+#endif
+
 namespace limber::dynamics {
 namespace {
 
@@ -79,11 +92,16 @@ void ArmKernel<N>::place(const VectorJ& q) noexcept {
     }
     R_x_.set(i, R.col(0)), R_y_.set(i, R.col(1)), R_z_.set(i, R.col(2)), p_.set(i, p);
   }
-  const Row3<N> moment = cross(p_, R_z_);
-  S_ = {slides_ * R_z_ + turns_ * moment, turns_ * R_z_};
   const FixedFrame& tip = chain_.frames.back();
   R_tip_ = R * tip.R;
   p_tip_ = p + R * tip.p;
+  spread();
+}
+
+template <int N>
+[[gnu::always_inline]] inline void ArmKernel<N>::spread_rows() noexcept {
+  const Row3<N> moment = cross(p_, R_z_);
+  S_ = {slides_ * R_z_ + turns_ * moment, turns_ * R_z_};
   c_ = p_ + com_.x * R_x_ + com_.y * R_y_ + com_.z * R_z_;
   h_ = m_ * c_;
   carried_h_ = from_tip<N>(h_);
@@ -98,7 +116,7 @@ Matrix3d ArmKernel<N>::rotation(int body) const noexcept {
 
 // I_O = R I_C R^T + m (c.c 1 - c c^T).
 template <int N>
-void ArmKernel<N>::weigh() noexcept {
+[[gnu::always_inline]] inline void ArmKernel<N>::weigh_rows() noexcept {
   const Row3<N> a = I_C_.xx * R_x_ + I_C_.xy * R_y_ + I_C_.xz * R_z_;
   const Row3<N> b = I_C_.xy * R_x_ + I_C_.yy * R_y_ + I_C_.yz * R_z_;
   const Row3<N> c = I_C_.xz * R_x_ + I_C_.yz * R_y_ + I_C_.zz * R_z_;
@@ -114,7 +132,8 @@ void ArmKernel<N>::weigh() noexcept {
 }
 
 template <int N>
-void ArmKernel<N>::move(const VectorJ& v, const VectorJ& a) noexcept {
+[[gnu::always_inline]] inline void ArmKernel<N>::move_rows(const VectorJ& v,
+                                                           const VectorJ& a) noexcept {
   const Row<N> rate = padded<N>(v);
   V_ = from_base<N>(rate * S_);
   V_x_S_ = turn_twist(V_, S_);
@@ -159,12 +178,12 @@ Vector6 ArmKernel<N>::tip_acceleration(const Vector6& V_BT) const noexcept {
 }
 
 template <int N>
-Row3<N> ArmKernel<N>::linear_momentum() const noexcept {
+[[gnu::always_inline]] inline Row3<N> ArmKernel<N>::linear_momentum() const noexcept {
   return carried_m_ * S_.lin + cross(S_.ang, carried_h_);
 }
 
 template <int N>
-void ArmKernel<N>::gravity(VectorJ* g) const noexcept {
+[[gnu::always_inline]] inline void ArmKernel<N>::gravity_rows(VectorJ* g) const noexcept {
   const Row3<N> l = linear_momentum();
   const Row<N> torque = gravity_.x() * l.x + gravity_.y() * l.y + gravity_.z() * l.z;
   for (int i = 0; i < size_; ++i) (*g)[i] = -torque[i];
@@ -180,7 +199,7 @@ void ArmKernel<N>::gravity_gradient(MatrixJ* slope) const noexcept {
 }
 
 template <int N>
-void ArmKernel<N>::mass(MatrixJ* M) const noexcept {
+[[gnu::always_inline]] inline void ArmKernel<N>::mass_rows(MatrixJ* M) const noexcept {
   const Row6<N> P = momentum_of<N>(carried_m_, carried_h_, from_tip<N>(I_O_), S_);
   for (int j = 0; j < size_; ++j) {
     const Row<N> column = P.lin.x[j] * S_.lin.x + P.lin.y[j] * S_.lin.y + P.lin.z[j] * S_.lin.z +
@@ -190,7 +209,8 @@ void ArmKernel<N>::mass(MatrixJ* M) const noexcept {
 }
 
 template <int N>
-void ArmKernel<N>::torque(VectorJ* tau, VectorJ* CTv) const noexcept {
+[[gnu::always_inline]] inline void ArmKernel<N>::torque_rows(VectorJ* tau,
+                                                             VectorJ* CTv) const noexcept {
   const Row6<N> H = momentum_of<N>(m_, h_, I_O_, V_);
   const Row6<N> F = momentum_of<N>(m_, h_, I_O_, A_) + turn_momentum(V_, H);
   const Row<N> Ma_Cv = dot(S_, from_tip<N>(F));
@@ -199,6 +219,36 @@ void ArmKernel<N>::torque(VectorJ* tau, VectorJ* CTv) const noexcept {
   const Row<N> C_transposed_v = dot(V_x_S_, from_tip<N>(H));
   for (int i = 0; i < size_; ++i) (*CTv)[i] = C_transposed_v[i];
 }
+
+// Templates themselves cannot be compiled so, their specialisations can.
+#define LIMBER_ROWS_OF(N)                                                                      \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::spread() noexcept {                                 \
+    spread_rows();                                                                             \
+  }                                                                                            \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::weigh() noexcept {                                  \
+    weigh_rows();                                                                              \
+  }                                                                                            \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::move(const VectorJ& v, const VectorJ& a) noexcept { \
+    move_rows(v, a);                                                                           \
+  }                                                                                            \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::gravity(VectorJ* g) const noexcept {                \
+    gravity_rows(g);                                                                           \
+  }                                                                                            \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::mass(MatrixJ* M) const noexcept {                   \
+    mass_rows(M);                                                                              \
+  }                                                                                            \
+  template <>                                                                                  \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::torque(VectorJ* tau, VectorJ* CTv) const noexcept { \
+    torque_rows(tau, CTv);                                                                     \
+  }
+LIMBER_ROWS_OF(8)
+LIMBER_ROWS_OF(16)
+#undef LIMBER_ROWS_OF
 
 template class ArmKernel<8>;
 template class ArmKernel<16>;

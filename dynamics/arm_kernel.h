@@ -73,6 +73,15 @@ class ArmKernel {
   void torque(VectorJ* tau, VectorJ* CTv) const noexcept;
 
  private:
+  // What the members of these names do, over rows; compiled for each kind of processor.
+  void spread_rows() noexcept;
+  void weigh_rows() noexcept;
+  void move_rows(const VectorJ& v, const VectorJ& a) noexcept;
+  void gravity_rows(VectorJ* g) const noexcept;
+  void mass_rows(MatrixJ* M) const noexcept;
+  void torque_rows(VectorJ* tau, VectorJ* CTv) const noexcept;
+  /// S, c and h from the poses.
+  void spread() noexcept;
   Row3<N> linear_momentum() const noexcept;
 
   // Of the chain.
@@ -93,9 +102,6 @@ class ArmKernel {
   Eigen::Matrix3d R_tip_;
   Eigen::Vector3d p_tip_;
 };
-
-extern template class ArmKernel<8>;
-extern template class ArmKernel<16>;
 
 /// The smaller one that has room for the chain.
 using AnyArmKernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
