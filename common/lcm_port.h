@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/arm_plane/lcm_datagram.h"
+#include "common/arm_plane/datagram_writer.h"
 #include "common/black_box/black_box.h"
 #include "common/decode_message.h"
 #include "common/lcm_url.h"
@@ -32,12 +32,10 @@ class LcmPort {
   /// sent.
   template <typename Message>
   bool publish(std::string_view channel, const Message& message) noexcept {
-    const std::size_t header = write_lcm_header(channel, sequence_++, sent_);
-    const int size = message.encode(sent_.data(), static_cast<int>(header), kMaxMessageBytes);
-    if (size < 0) return false;
-    const std::span datagram = std::span(sent_).first(header + static_cast<unsigned>(size));
-    keep(channel, datagram.subspan(header));
-    return send(datagram);
+    const auto written = writer_.write(channel, message);
+    if (!written) return false;
+    keep(channel, written->message);
+    return send(written->datagram);
   }
 
   /// Calls `handler(message)` for each message on `channel`, a literal, that decodes whole and is
@@ -60,7 +58,6 @@ class LcmPort {
 
  private:
   static constexpr int kEverything = std::numeric_limits<int>::max();
-  static constexpr std::size_t kLongest = kLcmHeaderBytes + kLongestChannel + 1 + kMaxMessageBytes;
   using Bytes = std::span<const std::uint8_t>;
 
   struct Subscription {
@@ -90,10 +87,9 @@ class LcmPort {
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   BlackBox* black_box_ = nullptr;
-  std::uint32_t sequence_ = 0;
   std::int64_t undecodable_ = 0;
-  std::array<std::uint8_t, kLongest> sent_{};
-  std::array<std::uint8_t, kLongest> received_{};
+  DatagramWriter writer_;
+  DatagramBuffer received_{};
 };
 
 template <typename Message, typename Handler>

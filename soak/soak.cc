@@ -108,11 +108,12 @@ std::string Soak::trip_text() {
   const std::string joint =
       state.fault_joint < 0 ? ""
                             : robot_.robot.joints[static_cast<std::size_t>(state.fault_joint)].name;
-  return drives_text(
-             state.drive_state, fault, joint,
-             lab_.driver().fault_text(fault, state.fault_joint, lab_.driver().fault_detail())) +
-         "; controller: " +
-         problem_text(problems::kController, lab_.controller_status().reason, "", "");
+  const std::string drives =
+      drives_text(state.drive_state, fault, joint,
+                  lab_.driver().fault_text(fault, state.fault_joint, lab_.driver().fault_detail()));
+  const int reason = lab_.controller_status().reason;
+  if (find_problem(problems::kController, reason) == nullptr) return drives;
+  return drives + "; controller: " + problem_text(problems::kController, reason, "", "");
 }
 
 void Soak::judge_trip() {

@@ -2,7 +2,6 @@
 // received in the loop's thread.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,7 +9,7 @@
 #include <string_view>
 
 #include "common/arm_plane/datagram_port.h"
-#include "common/arm_plane/lcm_datagram.h"
+#include "common/arm_plane/datagram_writer.h"
 #include "common/black_box/black_box.h"
 #include "common/decode_message.h"
 
@@ -27,12 +26,10 @@ class ArmPlane {
   /// False if the message could not be sent.
   template <typename Message>
   bool publish(std::string_view channel, const Message& message) noexcept {
-    const std::size_t header = write_lcm_header(channel, sequence_++, sent_);
-    const int size = message.encode(sent_.data(), static_cast<int>(header), kMaxMessageBytes);
-    if (size < 0) return false;
-    const std::span datagram = std::span(sent_).first(header + static_cast<unsigned>(size));
-    if (black_box_ != nullptr) black_box_->write(channel, datagram.subspan(header));
-    return port_->send(datagram);
+    const auto written = writer_.write(channel, message);
+    if (!written) return false;
+    if (black_box_ != nullptr) black_box_->write(channel, written->message);
+    return port_->send(written->datagram);
   }
 
   /// Calls `handler(message)` for each message on `channel`, a literal; others are dropped. Once.
@@ -61,16 +58,14 @@ class ArmPlane {
  private:
   /// A flood must not keep the loop here.
   static constexpr int kMost = 1000;
-  static constexpr std::size_t kLongest = kLcmHeaderBytes + kLongestChannel + 1 + kMaxMessageBytes;
 
   std::unique_ptr<DatagramPort> port_;
   std::string_view channel_;
   std::function<bool(std::span<const std::uint8_t>)> handler_;
   BlackBox* black_box_ = nullptr;
-  std::uint32_t sequence_ = 0;
   std::int64_t undecodable_ = 0;
-  std::array<std::uint8_t, kLongest> sent_{};
-  std::array<std::uint8_t, kLongest> received_{};
+  DatagramWriter writer_;
+  DatagramBuffer received_{};
 };
 
 }  // namespace limber

@@ -26,7 +26,7 @@ inline BodyChain random_chain(int joints, std::mt19937* random) {
 }
 
 /// 50 states of a chain of each length from 1 to 16 joints, all numbers in one row.
-inline std::vector<double> terms_of_random_chains() {
+std::vector<double> terms_of_random_chains() {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<double> numbers;
