@@ -1,8 +1,6 @@
 """Reads LCM event logs: whole channels at once, damaged files as far as they are good."""
 
-from array import array
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +10,7 @@ from numpy.lib import recfunctions
 from limber import messages
 from limber.errors import InputError
 from limber.log.event_file import Damage, contents, events
+from limber.log.event_index import NO_EVENTS, index
 from limber.paths import existing_file
 
 LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
@@ -19,34 +18,15 @@ PIECE = 1 << 14  # messages read at a time where only some fields count
 IN_CACHE = 100  # messages that are copied at a time
 
 
-@dataclass
-class Events:
-    """Where one channel's events lie in the file."""
-
-    offsets: array = field(default_factory=lambda: array("q"))
-    sizes: array = field(default_factory=lambda: array("q"))
-    stamps_us: array = field(default_factory=lambda: array("q"))
-
-    def __len__(self) -> int:
-        return len(self.offsets)
-
-
 class Log:
     """An event log. `skipped_bytes`: damaged; `truncated_bytes`: an unfinished event at the end."""
 
     def __init__(self, path: Path | str) -> None:
         self.path = log_file(Path(path))
-        self.channels: dict[str, Events] = {}
         self._damage = Damage()
         self._arrays: dict[str, np.ndarray] = {}
         self._data = contents(self.path, self._damage)
-        for _, start, size, stamp_us, channel, _ in events(self._data, self._damage):
-            found = self.channels.get(channel)
-            if found is None:
-                found = self.channels[channel] = Events()
-            found.offsets.append(start)
-            found.sizes.append(size)
-            found.stamps_us.append(stamp_us)
+        self.channels = index(self._data, self._damage)
         if not self.channels:
             raise InputError(f"{self.path} is no LCM event log: it holds no event")
 
@@ -69,9 +49,10 @@ class Log:
 
     def raw(self, channel: str, first: int = 0, last: int | None = None) -> list[bytes]:
         """The bytes of the messages first to last (not included)."""
-        events = self.channels.get(channel, Events())
-        places = zip(events.offsets[first:last], events.sizes[first:last], strict=True)
-        return [self._data[offset : offset + size] for offset, size in places]
+        events = self.channels.get(channel, NO_EVENTS)
+        places = events.offsets[first:last].tolist()
+        sizes = events.sizes[first:last].tolist()
+        return [self._data[place : place + size] for place, size in zip(places, sizes, strict=True)]
 
     def read(self, channel: str) -> np.ndarray:
         """All messages of a fixed-size channel as one structured array; empty if there are none."""
@@ -115,16 +96,16 @@ class Log:
                 f"channel '{channel}' has no fixed-size limber type; this log has: "
                 + ", ".join(sorted(self.channels))
             )
-        events = self.channels.get(channel, Events())
-        fits = np.asarray(events.sizes[first:last]) == wire.itemsize
-        offsets = np.asarray(events.offsets[first:last], np.int64)[fits].tolist()
+        events = self.channels.get(channel, NO_EVENTS)
+        fits = events.sizes[first:last] == wire.itemsize
+        offsets = events.offsets[first:last][fits].tolist()
         records = np.empty(len(offsets), messages.native_dtype_of(type_name))
         for at in range(0, len(offsets), IN_CACHE):
             places = offsets[at : at + IN_CACHE]
             parts = [self._data[place : place + wire.itemsize] for place in places]
             records[at : at + IN_CACHE] = messages.views(type_name, parts)
         known = records[messages.FINGERPRINT] == messages.fingerprint_of(type_name)
-        stamps_us = np.asarray(events.stamps_us[first:last], np.int64)[fits]
+        stamps_us = events.stamps_us[first:last][fits]
         return (stamps_us, records) if known.all() else (stamps_us[known], records[known])
 
     def decode(self, channel: str) -> list[Any]:
@@ -140,10 +121,10 @@ class Log:
             raise InputError(
                 f"channel '{channel}' is not one of limber's: " + ", ".join(messages.channels())
             )
-        events = self.channels.get(channel, Events())
+        events = self.channels.get(channel, NO_EVENTS)
         decoded = []
         for data, stamp_us in zip(
-            self.raw(channel, first, last), events.stamps_us[first:last], strict=True
+            self.raw(channel, first, last), events.stamps_us[first:last].tolist(), strict=True
         ):
             try:
                 decoded.append((stamp_us, messages.decode(type_name, data)))
@@ -156,7 +137,8 @@ class Log:
         if type_name is None:
             return len(self.channels[channel])
         fingerprint = messages.fingerprint_of(type_name).to_bytes(8, "big")
-        starts = (self._data[offset : offset + 8] for offset in self.channels[channel].offsets)
+        offsets = self.channels[channel].offsets.tolist()
+        starts = (self._data[offset : offset + 8] for offset in offsets)
         return sum(start != fingerprint for start in starts)
 
     def lost(self, channel: str) -> int:
@@ -177,18 +159,18 @@ class Log:
         return sum(count_gaps(numbers[records[sender] == s]) for s in np.unique(records[sender]))
 
     def stamps_s(self, channel: str) -> np.ndarray:
-        return np.asarray(self.channels[channel].stamps_us) * 1e-6
+        return self.channels[channel].stamps_us * 1e-6
 
     @property
     def first_us(self) -> int:
         """Time stamp of the first message."""
-        return min(min(found.stamps_us) for found in self.channels.values())
+        return int(min(found.stamps_us.min() for found in self.channels.values()))
 
     @property
     def length_s(self) -> float:
         """From the first message to the last."""
-        last_us = max(max(found.stamps_us) for found in self.channels.values())
-        return (last_us - self.first_us) * 1e-6
+        last_us = max(found.stamps_us.max() for found in self.channels.values())
+        return float((last_us - self.first_us) * 1e-6)
 
     def chosen(self, wanted: Sequence[str]) -> list[str]:
         """These channels, or all if none is named; InputError for one that is not there."""
