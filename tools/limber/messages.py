@@ -165,10 +165,14 @@ def view(type_name: str, data: bytes) -> np.void:
     return record.astype(native_dtype_of(type_name))[0]
 
 
-def views(type_name: str, parts: list[bytes]) -> np.ndarray:
-    """Messages of one type as records, in the machine's byte order; all must be of this version."""
+def views(type_name: str, parts: list[bytes] | np.ndarray) -> np.ndarray:
+    """Messages of one type as records, in the machine's byte order; all must be of this version.
+
+    `parts`: the bytes of each, or uint8, a row each.
+    """
     if dtype_of(type_name) is None:
         raise ValueError(f"{type_name} has no fixed size")
     runs = _runs_of(type_name)
-    converted = np.frombuffer(b"".join(parts), runs).astype(runs.newbyteorder("="))
+    data = parts if isinstance(parts, np.ndarray) else b"".join(parts)
+    converted = np.frombuffer(data, runs).astype(runs.newbyteorder("="))
     return converted.view(native_dtype_of(type_name))

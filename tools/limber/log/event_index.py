@@ -9,7 +9,6 @@ import mmap
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from limber.log.event_file import (
     HEADER,
@@ -61,7 +60,7 @@ def _all_at_once(data: np.ndarray) -> dict[str, Events] | None:
     begins = _sync_words(data)
     if len(begins) == 0 or begins[0] != 0 or begins[-1] + HEADER.size > len(data):
         return None
-    headers = _gathered(data, begins, HEADER.size).view(FIELDS)[:, 0]
+    headers = bytes_of(data, begins, HEADER.size).view(FIELDS)[:, 0]
     names, sizes = (headers[key].astype(np.int64) for key in ("channel", "data"))
     sane = (names > 0) & (names <= MAX_CHANNEL_BYTES) & (sizes >= 0) & (sizes <= MAX_DATA_BYTES)
     starts = begins + HEADER.size + names
@@ -71,7 +70,7 @@ def _all_at_once(data: np.ndarray) -> dict[str, Events] | None:
     found = {}
     for length in np.unique(names):
         rows = np.flatnonzero(names == length)
-        texts = _gathered(data, begins[rows] + HEADER.size, int(length))
+        texts = bytes_of(data, begins[rows] + HEADER.size, int(length))
         while len(rows):
             if (texts[0] > 127).any():
                 return None
@@ -95,6 +94,7 @@ def _sync_words(data: np.ndarray) -> np.ndarray:
     return np.concatenate(pieces) if pieces else np.empty(0, np.int64)
 
 
-def _gathered(data: np.ndarray, begins: np.ndarray, size: int) -> np.ndarray:
-    """The bytes from each of these places on, one row a place."""
-    return sliding_window_view(data, size)[begins]
+def bytes_of(data: mmap.mmap | np.ndarray, begins: np.ndarray, size: int) -> np.ndarray:
+    """The `size` bytes from each of these places on, uint8, one row a place."""
+    overlapping = np.ndarray(max(len(data) - size + 1, 0), f"V{size}", data, strides=(1,))
+    return overlapping[begins].view(np.uint8).reshape(len(begins), size)

@@ -10,12 +10,12 @@ from numpy.lib import recfunctions
 from limber import messages
 from limber.errors import InputError
 from limber.log.event_file import Damage, contents, events
-from limber.log.event_index import NO_EVENTS, index
+from limber.log.event_index import NO_EVENTS, bytes_of, index
 from limber.paths import existing_file
 
 LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
 PIECE = 1 << 14  # messages read at a time where only some fields count
-IN_CACHE = 100  # messages that are copied at a time
+IN_CACHE = 200  # messages that are copied at a time
 
 
 class Log:
@@ -98,11 +98,10 @@ class Log:
             )
         events = self.channels.get(channel, NO_EVENTS)
         fits = events.sizes[first:last] == wire.itemsize
-        offsets = events.offsets[first:last][fits].tolist()
+        offsets = events.offsets[first:last][fits]
         records = np.empty(len(offsets), messages.native_dtype_of(type_name))
         for at in range(0, len(offsets), IN_CACHE):
-            places = offsets[at : at + IN_CACHE]
-            parts = [self._data[place : place + wire.itemsize] for place in places]
+            parts = bytes_of(self._data, offsets[at : at + IN_CACHE], wire.itemsize)
             records[at : at + IN_CACHE] = messages.views(type_name, parts)
         known = records[messages.FINGERPRINT] == messages.fingerprint_of(type_name)
         stamps_us = events.stamps_us[first:last][fits]
