@@ -55,7 +55,8 @@ robot_info_t info_of(const Robot& robot, std::int64_t controller, bool simulated
 
 ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOptions& options)
     : options_(options),
-      supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot)),
+      supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot),
+                  PreloadWatch(robot.robot)),
       cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
       start_watch_(robot.robot),
       load_watch_(robot.robot),

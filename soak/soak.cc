@@ -49,9 +49,9 @@ Message from_user(Message message) {
 }  // namespace
 
 Soak::Soak(const LoadedRobot& robot, std::uint64_t seed)
-    : robot_(robot), scenario_(empty_scenario()), lab_(robot, scenario_), user_(robot, seed) {}
+    : robot_(robot), scenario_(empty_scenario()), lab_(std::in_place, robot, scenario_), user_(robot, seed) {}
 
-double Soak::time_s() const { return 1e-9 * static_cast<double>(lab_.time_ns()); }
+double Soak::time_s() const { return 1e-9 * static_cast<double>(lab_->time_ns()); }
 
 const SoakResult& Soak::run(double arm_time_s, const std::function<bool()>& go_on) {
   const auto a_second = static_cast<std::int64_t>(robot_.robot.rate_hz);
@@ -65,7 +65,7 @@ const SoakResult& Soak::run(double arm_time_s, const std::function<bool()>& go_o
 }
 
 void Soak::cycle() {
-  lab_.step();
+  lab_->step();
   ++result_.cycles;
   judge();
   if (phase_ == Phase::kWorking) {
@@ -78,18 +78,36 @@ void Soak::cycle() {
 void Soak::judge() {
   judge_numbers();
   judge_trip();
-  if (phase_ != Phase::kWorking &&
-      time_s() > std::max(phase_since_s_, fault_end_s_) + kRecovery_s) {
-    violated(fmt::format("the arm did not come back within {:g} s: mode {}, drives {}, fault {}",
-                         kRecovery_s, lab_.controller_status().mode, lab_.state().drive_state,
-                         lab_.state().fault));
-  }
+  if (phase_ == Phase::kWorking ||
+      time_s() <= std::max(phase_since_s_, fault_end_s_) + kRecovery_s)
+    return;
+  if (phase_ == Phase::kFaulty && cause_ != 0 && out_of_range()) return put_back();
+  violated(fmt::format("the arm did not come back within {:g} s: mode {}, drives {}, fault {}",
+                       kRecovery_s, lab_->controller_status().mode, lab_->state().drive_state,
+                       lab_->state().fault));
+}
+
+bool Soak::out_of_range() const {
+  const joint_state_t& state = lab_->state();
+  return std::any_of(state.joint_flags, state.joint_flags + robot_.robot.size(), [](int flags) {
+    return (flags & joint_state_t::JOINT_OUT_OF_RANGE) != 0;
+  });
+}
+
+/// An arm that fell so far that its drives may not be enabled is moved home by hand, without power.
+void Soak::put_back() {
+  ++result_.put_back;
+  LabOptions options;
+  options.first_cycle = result_.cycles;
+  lab_.emplace(robot_, scenario_, options);
+  phase_ = Phase::kStarting;
+  phase_since_s_ = time_s();
 }
 
 void Soak::judge_numbers() {
-  const joint_state_t& state = lab_.state();
-  const joint_command_t& torque = lab_.torque();
-  const sim_truth_t& truth = lab_.truth();
+  const joint_state_t& state = lab_->state();
+  const joint_command_t& torque = lab_->torque();
+  const sim_truth_t& truth = lab_->truth();
   for (int i = 0; i < robot_.robot.size(); ++i) {
     const double limit = robot_.robot.joints[static_cast<std::size_t>(i)].torque_limit_Nm;
     for (const double number : {state.q[i], state.v[i], state.tau[i], state.tau_applied[i],
@@ -98,26 +116,26 @@ void Soak::judge_numbers() {
     }
     if (!(std::abs(torque.tau[i]) <= limit)) violated("a torque is beyond its limit");
   }
-  if (lab_.simulator().diverged() != 0) violated("the simulation diverged");
+  if (lab_->simulator().diverged() != 0) violated("the simulation diverged");
   if (state.seq != result_.cycles - 1) violated("a cycle was left out");
 }
 
 std::string Soak::trip_text() {
-  const joint_state_t& state = lab_.state();
+  const joint_state_t& state = lab_->state();
   const int fault = state.fault;
   const std::string joint =
       state.fault_joint < 0 ? ""
                             : robot_.robot.joints[static_cast<std::size_t>(state.fault_joint)].name;
   const std::string drives =
       drives_text(state.drive_state, fault, joint,
-                  lab_.driver().fault_text(fault, state.fault_joint, lab_.driver().fault_detail()));
-  const int reason = lab_.controller_status().reason;
+                  lab_->driver().fault_text(fault, state.fault_joint, lab_->driver().fault_detail()));
+  const int reason = lab_->controller_status().reason;
   if (find_problem(problems::kController, reason) == nullptr) return drives;
   return drives + "; controller: " + problem_text(problems::kController, reason, "", "");
 }
 
 void Soak::judge_trip() {
-  const joint_state_t& state = lab_.state();
+  const joint_state_t& state = lab_->state();
   const int fault = state.fault;
   if (phase_ == Phase::kFaulty) {
     if (cause_ != 0 || fault == 0) return;
@@ -137,13 +155,13 @@ void Soak::act() {
   const char* refusal = nullptr;
   switch (action) {
     case Action::kGoal:
-      refusal = lab_.controller().on_goal(from_user(user_.goal()));
+      refusal = lab_->controller().on_goal(from_user(user_.goal()));
       break;
     case Action::kGains:
-      refusal = lab_.controller().on_gains(from_user(user_.gains()));
+      refusal = lab_->controller().on_gains(from_user(user_.gains()));
       break;
     case Action::kPush:
-      lab_.simulator().push(user_.push());
+      lab_->simulator().push(user_.push());
       break;
     case Action::kStop:
       request(mode_request_t::REQUEST_STOP);
@@ -159,7 +177,7 @@ void Soak::act() {
 
 void Soak::inject() {
   const scenario_event_t event = user_.fault();
-  if (!lab_.simulator().event(event)) return violated("the simulator refused a fault");
+  if (!lab_->simulator().event(event)) return violated("the simulator refused a fault");
   injected_ = event.fault;
   cause_ = 0;
   phase_ = Phase::kFaulty;
@@ -171,7 +189,7 @@ void Soak::inject() {
 void Soak::recover() {
   using Status = controller_status_t;
   if (phase_ == Phase::kFaulty && cause_ == 0) return end_fault();  // bridged
-  switch (lab_.controller_status().mode) {
+  switch (lab_->controller_status().mode) {
     case Status::MODE_FAULT:
       return request(mode_request_t::REQUEST_ACKNOWLEDGE);
     case Status::MODE_IDLE:
@@ -188,7 +206,7 @@ void Soak::recover() {
 
 /// A drive that gave up while the others hold is enabled again from the beginning, with all.
 bool Soak::must_restart_drives() const {
-  const joint_state_t& state = lab_.state();
+  const joint_state_t& state = lab_->state();
   if (state.drive_state != joint_state_t::DRIVE_HOLD &&
       state.drive_state != joint_state_t::DRIVE_DAMP)
     return false;
@@ -213,7 +231,7 @@ void Soak::request(std::int8_t what) {
   request.seq = ++requests_;
   request.client = kUser;
   request.request = what;
-  lab_.controller().on_mode(request);
+  lab_->controller().on_mode(request);
 }
 
 void Soak::violated(const std::string& what) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct SoakResult {
   /// joint_state_t; 0: bridged, or not noticed).
   std::map<std::pair<int, int>, std::int64_t> trips;
   std::int64_t recoveries = 0;
-  double longest_recovery_s = 0.0;
+  double longest_recovery_s = 0.0;  ///< of those that were not put back
+  std::int64_t put_back = 0;        ///< fell out of its range, and was moved home by hand
   std::vector<std::string> violations;  ///< what must not be: empty if all is well
   ProcessSize size_begin;               ///< after the first minute of arm time
   ProcessSize size_end;
@@ -55,6 +57,8 @@ class Soak {
   void inject();
   void recover();
   bool must_restart_drives() const;
+  bool out_of_range() const;
+  void put_back();
   void end_fault();
   void request(std::int8_t what);
   void violated(const std::string& what);
@@ -62,7 +66,7 @@ class Soak {
 
   const LoadedRobot& robot_;
   Scenario scenario_;
-  Lab lab_;
+  std::optional<Lab> lab_;
   RandomUser user_;
   SoakResult result_;
   Phase phase_ = Phase::kStarting;

@@ -39,6 +39,7 @@ std::string report_json(const SoakResult& result, const Robot& robot, std::uint6
     json["reactions"][name_in(kInjected, pair.first)][name_in(kCauses, pair.second)] = count;
   json["recoveries"] = result.recoveries;
   json["longest_recovery_s"] = result.longest_recovery_s;
+  json["put_back"] = result.put_back;
   json["process"] = {{"after_a_minute", json_of(result.size_begin)},
                      {"at_the_end", json_of(result.size_end)},
                      {"most", json_of(result.size_most)}};

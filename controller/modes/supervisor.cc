@@ -35,6 +35,7 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   time_ns_ = state.time_ns;
   drive_state_ = state.drive_state;
   stop_pressed_ = state.emergency_stop >= joint_state_t::STOP_PRESSED;
+  slack_ = preload_.slack(state);
   if (stop_pressed_) raise(Event::kEstopPressed);
   if (judgement.silent) raise(Event::kStateLost);
   if (drive_state_ != joint_state_t::DRIVE_FAULT) acknowledged_ = false;
@@ -87,6 +88,10 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
             "the emergency stop is pressed, or its input is silent"};
   if (event == Event::kRequestActive && !engaged_)
     return {request_answer_t::REFUSED_MODE, "ACTIVE is entered from HOLD, drives on"};
+  if (event == Event::kRequestActive && mode_ == Mode::kHold && slack_)
+    return {request_answer_t::REFUSED_PRELOAD,
+            "the springs between two motors are slack: HOLD winds them up (`preload` of JOINT_STATE, "
+            "to preload_rad of robot.yaml); ask again when that is done"};
   if (!raise(*event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
   if (event == Event::kRequestAcknowledge) {
     reason_ = controller_status_t::REASON_NONE;
@@ -102,7 +107,8 @@ bool Supervisor::not_yet(const mode_request_t& request) const noexcept {
   if (request.request == mode_request_t::REQUEST_HOLD) {
     return mode_ == Mode::kBoot || mode_ == Mode::kInit;
   }
-  return request.request == mode_request_t::REQUEST_ACTIVE && mode_ == Mode::kHold && !engaged_;
+  return request.request == mode_request_t::REQUEST_ACTIVE && mode_ == Mode::kHold &&
+         (!engaged_ || slack_);
 }
 
 Refusal Supervisor::check_client(std::int64_t client) const noexcept {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "controller/modes/mode_table.h"
+#include "controller/modes/preload_watch.h"
 #include "controller/modes/state_judge.h"
 #include "controller/refusal.h"
 
@@ -22,8 +23,9 @@ class Supervisor {
   /// Outside ACTIVE and SOFT_STOP the lease of a client ends so long after its last request.
   static constexpr std::int64_t kLease_ns = 10'000'000'000;
 
-  Supervisor(int joints, int bridged_cycles, const JointFlags& flags = {})
-      : judge_(joints, bridged_cycles, flags) {}
+  Supervisor(int joints, int bridged_cycles, const JointFlags& flags = {},
+             const PreloadWatch& preload = {})
+      : judge_(joints, bridged_cycles, flags), preload_(preload) {}
 
   /// Each state once, before anything else. Nothing happens if the state is a repetition.
   StateJudgement on_state(const joint_state_t& state) noexcept;
@@ -31,7 +33,8 @@ class Supervisor {
   void forget_sequence() noexcept { judge_.forget_sequence(); }
   /// Nothing: obeyed, else why not.
   Refusal on_mode(const mode_request_t& request) noexcept;
-  /// Too early: the request would be refused because controller or drives are still starting.
+  /// Too early: the request would be refused because controller or drives are still starting, or
+  /// springs still slack.
   bool not_yet(const mode_request_t& request) const noexcept;
   /// Nothing if the client may send goals and gains: it holds the lease, or nobody does.
   Refusal check_client(std::int64_t client) const noexcept;
@@ -76,6 +79,7 @@ class Supervisor {
   bool lease_is_over() const noexcept;
 
   StateJudge judge_;
+  PreloadWatch preload_;
   Mode mode_ = Mode::kBoot;
   std::int8_t reason_ = controller_status_t::REASON_NONE;
   int reason_joint_ = -1;
@@ -88,6 +92,7 @@ class Supervisor {
   bool idle_requested_ = false;
   std::int8_t drive_state_ = joint_state_t::DRIVE_CONFIGURING;
   bool stop_pressed_ = false;
+  bool slack_ = false;
   std::int64_t time_ns_ = 0;
   std::int64_t entered_ns_ = 0;
 };

@@ -73,7 +73,8 @@ bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept
 bool JointLink::plausible(const DriveReport& report) const noexcept {
   if (!angle_known_) return finite(report);
   const double most = std::clamp(age_cycles_, 1, longest_gap_) * jump_per_cycle_;
-  const double winding = joint_.has_antagonist ? 2.0 : 1.0;
+  // While it winds up its spring a motor is faster than its link.
+  const double winding = joint_.rigid() ? 1.0 : 2.0;
   return std::abs(angle(report) - theta()) <= winding * most + jump_resolution_ &&
          (!has_link_encoder() ||
           std::abs(report.link_angle_rad - seen_.link_angle_rad) <= most + link_jump_resolution_);

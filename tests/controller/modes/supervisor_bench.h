@@ -54,6 +54,7 @@ class SupervisorBench : public ::testing::Test {
     if (reason.empty()) return Answer::REFUSED_NOTHING;
     if (reason.starts_with("the request is none")) return Answer::REFUSED_MALFORMED;
     if (reason.starts_with("client")) return Answer::REFUSED_CLIENT;
+    if (reason.starts_with("the springs")) return Answer::REFUSED_PRELOAD;
     if (reason.find("lease") != std::string::npos) return Answer::REFUSED_LEASE;
     const bool cause = reason.starts_with("the cause") || reason.starts_with("the emergency stop");
     return cause ? Answer::REFUSED_CAUSE_REMAINS : Answer::REFUSED_MODE;

@@ -72,6 +72,26 @@ TEST(JointLinkTest, SignAndOffsetLiveAtTheBusEdge) {
   EXPECT_NEAR(raw_command(link.command({0.2, 50.0, 1.0, 0.0})).p, count_of_angle(0.1), 1);
 }
 
+// 5 rad/s and 1 ms: a rigid joint's angle steps by 7.5 mrad at most. Behind a spring the motor may
+// wind it up as fast again.
+TEST(JointLinkTest, AMotorThatWindsUpASpringIsFasterThanItsLink) {
+  for (const auto& [kind, most] : {std::pair{TransmissionKind::kRigid, 7.5e-3},
+                                   std::pair{TransmissionKind::kElastic, 15e-3},
+                                   std::pair{TransmissionKind::kAntagonistic, 15e-3}}) {
+    JointConfig joint = plain_joint();
+    joint.transmission.kind = kind;
+    for (const bool beyond : {false, true}) {
+      JointLink link(joint, true, 1e-3, kBridged);
+      link.begin_cycle();
+      ASSERT_TRUE(link.receive(state_reply(1, 1, count_of_angle(1.0), 2047, 2047)));
+      link.begin_cycle();
+      const double step = most + (beyond ? 4.0 : 0.0) * kAngleCount;
+      EXPECT_EQ(link.receive(state_reply(1, 1, count_of_angle(1.0 + step), 2047, 2047)), !beyond)
+          << static_cast<int>(kind);
+    }
+  }
+}
+
 TEST(JointLinkTest, HalfACountMakesTruncatedRepliesRightOnAverage) {
   JointLink link(plain_joint(), true, 1e-3, kBridged);
   double error = 0.0;

@@ -3,7 +3,7 @@
 from typing import Any
 
 from limber.live.arm_base import POWER_S, ArmBase, check_fault
-from limber.live.arm_errors import StackLostError
+from limber.live.arm_errors import RefusedError, StackLostError
 from limber.messages import message_class
 
 
@@ -17,7 +17,18 @@ class Modes(ArmBase):
         """
         if self.mode != "active":
             self.hold(timeout_s)
-        self._mode("ACTIVE")
+        asked_s = float("-inf")
+        for state in self._link.statuses(timeout_s, "springs to be wound up"):
+            check_fault(state)
+            if state.time_s <= asked_s + 0.1:
+                continue
+            asked_s = state.time_s
+            try:
+                self._mode("ACTIVE")
+                break
+            except RefusedError as refused:
+                if refused.code != "request.PRELOAD":
+                    raise
         self.wait(mode="active", timeout_s=timeout_s)
 
     def hold(self, timeout_s: float = POWER_S) -> None:
