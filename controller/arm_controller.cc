@@ -14,6 +14,8 @@ namespace {
 
 using namespace controller;
 
+// Steps of the torque that tau_gravity may make in a cycle; the gate lets three pass.
+constexpr double kGravitySteps = 2.0;
 constexpr std::int64_t kLongestStep = 3;  // periods
 constexpr std::int64_t kStartPatience_ns = 5'000'000'000;
 
@@ -64,6 +66,9 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       energy_watch_(robot.robot),
       info_(info_of(robot.robot, options.controller,
                     options.simulated || robot.robot.on_virtual_buses())) {
+  torque_rate_.resize(robot.robot.size());
+  for (int i = 0; i < robot.robot.size(); ++i)
+    torque_rate_[i] = robot.robot.joints[static_cast<std::size_t>(i)].torque_rate_limit_Nm_per_s;
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -167,7 +172,20 @@ Standby ArmController::standby() const noexcept {
   return {Torque::kZero, on, PreloadAtRest::kReleased};
 }
 
+// Where the arm's weight is reckoned at another point from one cycle to the next, as by a law that
+// loses the links' static equilibrium, it jumps; the gate refuses jumps.
+void ArmController::write_gravity() noexcept {
+  const VectorJ wanted = load_watch_.carrying(cycle_.gravity());
+  Eigen::Map<VectorJ> sent(answer_.tau_gravity, answer_.num_joints);
+  const bool first = answer_.session == 0;
+  const VectorJ most =
+      first ? wanted.cwiseAbs() : VectorJ(kGravitySteps * period_s_ * torque_rate_);
+  const VectorJ before = sent;
+  sent = wanted.cwiseMax(before - most).cwiseMin(before + most);
+}
+
 void ArmController::write_answer(const joint_state_t& state) noexcept {
+  write_gravity();
   answer_.state_seq = state.seq;
   answer_.time_ns = state.time_ns;
   answer_.session = state.session;
@@ -176,7 +194,6 @@ void ArmController::write_answer(const joint_state_t& state) noexcept {
   const int n = answer_.num_joints;
   Eigen::Map<VectorJ>(answer_.tau, n) = cycle_.torque();
   Eigen::Map<VectorJ>(answer_.tau_preload, n) = cycle_.preload_torque();
-  Eigen::Map<VectorJ>(answer_.tau_gravity, n) = load_watch_.carrying(cycle_.gravity());
 }
 
 void ArmController::write_status(std::int64_t started_ns) noexcept {

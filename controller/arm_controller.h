@@ -80,6 +80,7 @@ class ArmController {
   void watch_motion(const joint_state_t& state, double dt_s) noexcept;
   controller::Standby standby() const noexcept;
   void write_answer(const joint_state_t& state) noexcept;
+  void write_gravity() noexcept;
   void write_status(std::int64_t started_ns) noexcept;
   Refusal counted(Refusal refusal) noexcept;
 
@@ -93,6 +94,7 @@ class ArmController {
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline
+  VectorJ torque_rate_;                   ///< N m/s
   double period_s_ = 0.0;
   joint_command_t answer_{};
   controller_status_t status_{};

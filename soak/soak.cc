@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t kUser = 7;
 constexpr double kRecovery_s = 10.0;  // from the end of a fault until the arm works again
 constexpr double kQuiet_s = 0.3;      // after a fault, before it is acknowledged
+constexpr double kAtRest = 0.05;      // of the velocity limit: the arm may be used again
 constexpr int kAskEvery_cycles = 50;
 constexpr double kWarm_s = 60.0;  // after this the process holds all that it needs
 constexpr std::int64_t kGrowth_kB = 1024;
@@ -49,7 +50,10 @@ Message from_user(Message message) {
 }  // namespace
 
 Soak::Soak(const LoadedRobot& robot, std::uint64_t seed)
-    : robot_(robot), scenario_(empty_scenario()), lab_(std::in_place, robot, scenario_), user_(robot, seed) {}
+    : robot_(robot),
+      scenario_(empty_scenario()),
+      lab_(std::in_place, robot, scenario_),
+      user_(robot, seed) {}
 
 double Soak::time_s() const { return 1e-9 * static_cast<double>(lab_->time_ns()); }
 
@@ -78,8 +82,7 @@ void Soak::cycle() {
 void Soak::judge() {
   judge_numbers();
   judge_trip();
-  if (phase_ == Phase::kWorking ||
-      time_s() <= std::max(phase_since_s_, fault_end_s_) + kRecovery_s)
+  if (phase_ == Phase::kWorking || time_s() <= std::max(phase_since_s_, fault_end_s_) + kRecovery_s)
     return;
   if (phase_ == Phase::kFaulty && cause_ != 0 && out_of_range()) return put_back();
   violated(fmt::format("the arm did not come back within {:g} s: mode {}, drives {}, fault {}",
@@ -87,11 +90,20 @@ void Soak::judge() {
                        lab_->state().fault));
 }
 
+/// An arm that fell swings on its springs for a while.
+bool Soak::at_rest() const {
+  const joint_state_t& state = lab_->state();
+  for (int i = 0; i < robot_.robot.size(); ++i) {
+    const double most = kAtRest * robot_.robot.joints[static_cast<std::size_t>(i)].velocity_limit;
+    if (!(std::abs(state.v[i]) <= most && std::abs(state.theta_dot[i]) <= most)) return false;
+  }
+  return true;
+}
+
 bool Soak::out_of_range() const {
   const joint_state_t& state = lab_->state();
-  return std::any_of(state.joint_flags, state.joint_flags + robot_.robot.size(), [](int flags) {
-    return (flags & joint_state_t::JOINT_OUT_OF_RANGE) != 0;
-  });
+  return std::any_of(state.joint_flags, state.joint_flags + robot_.robot.size(),
+                     [](int flags) { return (flags & joint_state_t::JOINT_OUT_OF_RANGE) != 0; });
 }
 
 /// An arm that fell so far that its drives may not be enabled is moved home by hand, without power.
@@ -126,9 +138,9 @@ std::string Soak::trip_text() {
   const std::string joint =
       state.fault_joint < 0 ? ""
                             : robot_.robot.joints[static_cast<std::size_t>(state.fault_joint)].name;
-  const std::string drives =
-      drives_text(state.drive_state, fault, joint,
-                  lab_->driver().fault_text(fault, state.fault_joint, lab_->driver().fault_detail()));
+  const std::string drives = drives_text(
+      state.drive_state, fault, joint,
+      lab_->driver().fault_text(fault, state.fault_joint, lab_->driver().fault_detail()));
   const int reason = lab_->controller_status().reason;
   if (find_problem(problems::kController, reason) == nullptr) return drives;
   return drives + "; controller: " + problem_text(problems::kController, reason, "", "");
@@ -196,7 +208,8 @@ void Soak::recover() {
       return request(must_restart_drives() ? mode_request_t::REQUEST_IDLE
                                            : mode_request_t::REQUEST_HOLD);
     case Status::MODE_HOLD:
-      return request(mode_request_t::REQUEST_ACTIVE);
+      if (at_rest()) request(mode_request_t::REQUEST_ACTIVE);
+      return;
     case Status::MODE_ACTIVE:
       return end_fault();
     default:

@@ -24,8 +24,8 @@ struct SoakResult {
   /// joint_state_t; 0: bridged, or not noticed).
   std::map<std::pair<int, int>, std::int64_t> trips;
   std::int64_t recoveries = 0;
-  double longest_recovery_s = 0.0;  ///< of those that were not put back
-  std::int64_t put_back = 0;        ///< fell out of its range, and was moved home by hand
+  double longest_recovery_s = 0.0;      ///< of those that were not put back
+  std::int64_t put_back = 0;            ///< fell out of its range, and was moved home by hand
   std::vector<std::string> violations;  ///< what must not be: empty if all is well
   ProcessSize size_begin;               ///< after the first minute of arm time
   ProcessSize size_end;
@@ -57,6 +57,7 @@ class Soak {
   void inject();
   void recover();
   bool must_restart_drives() const;
+  bool at_rest() const;
   bool out_of_range() const;
   void put_back();
   void end_fault();

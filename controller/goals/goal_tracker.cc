@@ -43,6 +43,8 @@ void GoalTracker::hand_over(GoalType from, GoalType to, const TaskRows& rows,
     inverse_kinematics_.reset(q);
     inverse_kinematics_.approach(rows, generator_.goal().X_BD);
   } else if (!generator_.at_tip()) {
+    // A motion of the joints ends here for both, or a law for the joints would find its end later.
+    generator_.follow_joints(goal_.q_d);
     generator_.follow_tip(goal_.X_BD);
   }
 }

@@ -89,9 +89,10 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
   if (event == Event::kRequestActive && !engaged_)
     return {request_answer_t::REFUSED_MODE, "ACTIVE is entered from HOLD, drives on"};
   if (event == Event::kRequestActive && mode_ == Mode::kHold && slack_)
-    return {request_answer_t::REFUSED_PRELOAD,
-            "the springs between two motors are slack: HOLD winds them up (`preload` of JOINT_STATE, "
-            "to preload_rad of robot.yaml); ask again when that is done"};
+    return {
+        request_answer_t::REFUSED_PRELOAD,
+        "the springs between two motors are slack: HOLD winds them up (`preload` of JOINT_STATE, "
+        "to preload_rad of robot.yaml); ask again when that is done"};
   if (!raise(*event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
   if (event == Event::kRequestAcknowledge) {
     reason_ = controller_status_t::REASON_NONE;

@@ -7,6 +7,16 @@
 namespace limber {
 namespace {
 
+/// A motor that winds up its spring is faster than its link: by what the torque grows, over the
+/// spring's stiffness at rest; of two motors, by as much again as the link.
+double winding_speed(const JointConfig& joint) noexcept {
+  if (joint.has_antagonist) return joint.velocity_limit;
+  if (joint.rigid()) return 0.0;
+  const SpringConfig& spring = joint.transmission.spring;
+  const double stiffness = spring.stiffness_Nm_per_rad + spring.force_Nm * spring.rate_per_rad;
+  return joint.torque_rate_limit_Nm_per_s / stiffness;
+}
+
 bool finite(const DriveReport& report) noexcept {
   return std::isfinite(report.angle_rad) && std::isfinite(report.link_angle_rad);
 }
@@ -17,7 +27,8 @@ JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bri
     : joint_(joint),
       family_(make_drive_family(joint, fd, period_s)),
       longest_gap_(bridged_cycles + 1),
-      jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
+      jump_per_cycle_(1.5 * (joint.velocity_limit + winding_speed(joint)) * period_s),
+      link_jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
       jump_resolution_(2.0 * family_->angle_resolution()),
       link_jump_resolution_(2.0 * std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)) {
   seen_.angle_rad = joint.drive.offset_rad;
@@ -72,12 +83,10 @@ bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept
 
 bool JointLink::plausible(const DriveReport& report) const noexcept {
   if (!angle_known_) return finite(report);
-  const double most = std::clamp(age_cycles_, 1, longest_gap_) * jump_per_cycle_;
-  // While it winds up its spring a motor is faster than its link.
-  const double winding = joint_.rigid() ? 1.0 : 2.0;
-  return std::abs(angle(report) - theta()) <= winding * most + jump_resolution_ &&
-         (!has_link_encoder() ||
-          std::abs(report.link_angle_rad - seen_.link_angle_rad) <= most + link_jump_resolution_);
+  const int cycles = std::clamp(age_cycles_, 1, longest_gap_);
+  return std::abs(angle(report) - theta()) <= cycles * jump_per_cycle_ + jump_resolution_ &&
+         (!has_link_encoder() || std::abs(report.link_angle_rad - seen_.link_angle_rad) <=
+                                     cycles * link_jump_per_cycle_ + link_jump_resolution_);
 }
 
 void JointLink::begin_cycle() noexcept {

@@ -134,7 +134,8 @@ class JointLink {
   JointConfig joint_;
   std::unique_ptr<DriveFamily> family_;
   int longest_gap_;              ///< cycles
-  double jump_per_cycle_;        ///< rad, of the link
+  double jump_per_cycle_;        ///< rad, of the motor
+  double link_jump_per_cycle_;   ///< rad
   double jump_resolution_;       ///< rad, of the motor
   double link_jump_resolution_;  ///< rad
   DriveCommand sent_;            ///< as the drive understands it

@@ -52,6 +52,27 @@ TEST(ArmController, IdleGivesNoTorqueButSaysWhatGravityNeeds) {
   EXPECT_GT(terms.g.norm(), 1.0);
 }
 
+// The gate lets three steps of the torque pass.
+TEST(ArmController, WhatGravityNeedsChangesByTwoStepsACycle) {
+  Rig rig(arm());
+  rig.run(0.2);
+  rig.plant.q[1] += 1.0;  // as where a law looks at the arm at another point all at once
+  double most = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const joint_command_t before = rig.answer;
+    rig.step();
+    for (int i = 0; i < 7; ++i) {
+      const JointConfig& joint = rig.robot.robot.joints[static_cast<std::size_t>(i)];
+      const double steps = std::abs(rig.answer.tau_gravity[i] - before.tau_gravity[i]) /
+                           (1e-3 * joint.torque_rate_limit_Nm_per_s);
+      most = std::max(most, steps);
+    }
+  }
+  EXPECT_NEAR(most, 2.0, 1e-9);
+  const VectorJ g = rig.plant.model.gravity(rig.plant.q);
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(rig.answer.tau_gravity[i], g[i], 1e-9);
+}
+
 TEST(ArmController, HoldStartsFromTheTorquePresentAndKeepsTheArm) {
   Rig rig(arm());
   rig.run(0.12);

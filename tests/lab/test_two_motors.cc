@@ -2,6 +2,7 @@
 // with the preload torque that the drives apply.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -67,6 +68,43 @@ TEST(TwoMotors, AreTakenOverWithoutAStep) {
   }
   EXPECT_EQ(takeovers, 1);
   EXPECT_LT(slowest, 0.5) << "the preload is not let go";
+}
+
+// One of the shoulder's motors fails, the arm falls, and all drives are off for a while. ACTIVE,
+// asked for as soon as the arm is held again, comes when the springs are wound up, and no sooner.
+const char* const kSlack = R"(format: limber-scenario/1
+name: slack_springs
+description: a motor fails for a moment, and the springs unwind
+robot: antagonist2r
+duration_s: 9
+timeline:
+  - {at_s: 0.3, mode: hold}
+  - {at_s: 2.0, fault: {joint: shoulder, kind: drive_error, for_s: 0.06}}
+  - {at_s: 2.4, mode: acknowledge}
+  - {at_s: 2.5, mode: idle}
+  - {at_s: 3.5, mode: hold}
+  - {at_s: 3.6, mode: active}
+)";
+
+TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write("scenario.yaml", kSlack);
+  const LoadedRobot robot = load_robot("antagonist2r");
+  const Scenario scenario = load_scenario(file, robot, &controller::law_catalog());
+  Lab lab(robot, scenario);
+  double least = 1.0;
+  bool active = false;
+  while (!active && lab.time_ns() < 9'000'000'000) {
+    lab.step();
+    if (lab.time_ns() < 3'500'000'000) continue;
+    for (int i = 0; i < 2; ++i) least = std::min<double>(least, lab.state().preload[i]);
+    active = lab.controller_status().mode == controller_status_t::MODE_ACTIVE;
+    if (!active) continue;
+    for (int i = 0; i < 2; ++i) EXPECT_GE(lab.state().preload[i], 0.175) << i;
+  }
+  EXPECT_LT(least, 0.0) << "the springs were slack";
+  EXPECT_TRUE(active) << "mode " << int{lab.controller_status().mode} << ", fault "
+                      << int{lab.state().fault};
 }
 
 }  // namespace

@@ -51,5 +51,27 @@ TEST(GoalAcrossLaws, TheCircleGoesOn) {
   }
 }
 
+// A goal at the joints that is under way when a law for the tip takes over ends there, for good.
+TEST(GoalAcrossLaws, AMotionOfTheJointsDoesNotGoOnUnseen) {
+  Rig rig(limber::testing::seven_joint_arm(), "joint_pd");
+  rig.plant.q << 0.4, -0.8, 0.5, 1.2, -0.6, 0.9, 0.7;
+  rig.to_active();
+  compliance_goal_t away = rig.goal();
+  away.kind = compliance_goal_t::GOAL_JOINT;
+  away.num_joints = 7;
+  for (int i = 0; i < 7; ++i) away.q[i] = rig.plant.q[i] + 0.2;
+  away.duration_s = 2.0;
+  ASSERT_EQ(rig.controller.on_goal(away), nullptr);
+  rig.run(1.0);
+  const Eigen::Vector3d half_way = goal_of(rig);
+  for (const std::string law : {"cartesian_impedance", "joint_pd"}) {
+    Gains gains = rig.gains();
+    gains.law = law;
+    ASSERT_EQ(rig.controller.on_gains(gains), nullptr) << law;
+    rig.run(2.0);
+    EXPECT_LT((goal_of(rig) - half_way).norm(), 2e-3) << law;
+  }
+}
+
 }  // namespace
 }  // namespace limber::test_goal_across_laws

@@ -72,14 +72,20 @@ TEST(JointLinkTest, SignAndOffsetLiveAtTheBusEdge) {
   EXPECT_NEAR(raw_command(link.command({0.2, 50.0, 1.0, 0.0})).p, count_of_angle(0.1), 1);
 }
 
-// 5 rad/s and 1 ms: a rigid joint's angle steps by 7.5 mrad at most. Behind a spring the motor may
-// wind it up as fast again.
+// 5 rad/s and 1 ms: a rigid joint's angle steps by 7.5 mrad at most. A torque that grows by 500 N
+// m/s winds up a spring of 200 N m/rad at 2.5 rad/s more; two motors may be twice as fast as the
+// link.
 TEST(JointLinkTest, AMotorThatWindsUpASpringIsFasterThanItsLink) {
-  for (const auto& [kind, most] : {std::pair{TransmissionKind::kRigid, 7.5e-3},
-                                   std::pair{TransmissionKind::kElastic, 15e-3},
-                                   std::pair{TransmissionKind::kAntagonistic, 15e-3}}) {
-    JointConfig joint = plain_joint();
-    joint.transmission.kind = kind;
+  JointConfig elastic = plain_joint();
+  elastic.transmission.kind = TransmissionKind::kElastic;
+  elastic.transmission.spring.stiffness_Nm_per_rad = 200.0;
+  JointConfig sinh = elastic;
+  sinh.transmission.spring = {.law = SpringLaw::kSinh, .force_Nm = 20.0, .rate_per_rad = 10.0};
+  JointConfig pair = plain_joint();
+  pair.transmission.kind = TransmissionKind::kAntagonistic;
+  pair.has_antagonist = true;
+  for (const auto& [joint, most] : {std::pair{plain_joint(), 7.5e-3}, std::pair{elastic, 11.25e-3},
+                                    std::pair{sinh, 11.25e-3}, std::pair{pair, 15e-3}}) {
     for (const bool beyond : {false, true}) {
       JointLink link(joint, true, 1e-3, kBridged);
       link.begin_cycle();
@@ -87,7 +93,7 @@ TEST(JointLinkTest, AMotorThatWindsUpASpringIsFasterThanItsLink) {
       link.begin_cycle();
       const double step = most + (beyond ? 4.0 : 0.0) * kAngleCount;
       EXPECT_EQ(link.receive(state_reply(1, 1, count_of_angle(1.0 + step), 2047, 2047)), !beyond)
-          << static_cast<int>(kind);
+          << most;
     }
   }
 }

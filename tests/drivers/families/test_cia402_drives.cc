@@ -258,10 +258,11 @@ TEST(Cia402State, ATpdoThatComesTwiceOrTooShortIsInvalid) {
   EXPECT_EQ(arm.read_status().frames_foreign[0], 0);
 }
 
-// 5 rad/s for 1 ms, half as much again: 7.5 mrad = 78.2 motor counts, 312.9 link counts, and two.
+// The link: 5 rad/s for 1 ms, half as much again: 7.5 mrad = 312.9 counts, and two. The motor winds
+// up its spring besides, by 14000 N m/s over 5000 N m/rad: 11.7 mrad = 122.0 counts, and two.
 TEST(Cia402State, JumpsOfEitherSideAreRefused) {
   for (const auto& [motor_counts, link_counts, taken] :
-       {std::tuple{80, 0, true}, {81, 0, false}, {0, -314, true}, {0, -315, false}}) {
+       {std::tuple{124, 0, true}, {125, 0, false}, {0, -314, true}, {0, -315, false}}) {
     Cia402Arm arm;
     ASSERT_TRUE(arm.switch_on());
     arm.motors[1].position += motor_counts;

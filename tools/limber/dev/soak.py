@@ -40,6 +40,7 @@ def _table(report: dict[str, Any]) -> Any:
         table.add_row(f"{fault} led to", text)
     table.add_row("recoveries", str(report["recoveries"]))
     table.add_row("longest recovery", f"{report['longest_recovery_s']:.2f} s")
+    table.add_row("put back by hand", str(report["put_back"]))
     begin, end = (report["process"][when] for when in ("after_a_minute", "at_the_end"))
     table.add_row("memory", f"{begin['resident_kB']} to {end['resident_kB']} kB")
     table.add_row("descriptors", f"{begin['descriptors']} to {end['descriptors']}")
