@@ -70,20 +70,18 @@ TEST(TwoMotors, AreTakenOverWithoutAStep) {
   EXPECT_LT(slowest, 0.5) << "the preload is not let go";
 }
 
-// One of the shoulder's motors fails, the arm falls, and all drives are off for a while. ACTIVE,
-// asked for as soon as the arm is held again, comes when the springs are wound up, and no sooner.
+// The drives are off for 40 ms: the springs unwind. ACTIVE, asked for as soon as the arm is held
+// again, comes when they are wound up.
 const char* const kSlack = R"(format: limber-scenario/1
 name: slack_springs
-description: a motor fails for a moment, and the springs unwind
+description: the springs unwind while the drives are off
 robot: antagonist2r
-duration_s: 9
+duration_s: 5
 timeline:
   - {at_s: 0.3, mode: hold}
-  - {at_s: 2.0, fault: {joint: shoulder, kind: drive_error, for_s: 0.06}}
-  - {at_s: 2.4, mode: acknowledge}
-  - {at_s: 2.5, mode: idle}
-  - {at_s: 3.5, mode: hold}
-  - {at_s: 3.6, mode: active}
+  - {at_s: 2.0, mode: idle}
+  - {at_s: 2.04, mode: hold}
+  - {at_s: 2.04, mode: active}
 )";
 
 TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {
@@ -94,15 +92,15 @@ TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {
   Lab lab(robot, scenario);
   double least = 1.0;
   bool active = false;
-  while (!active && lab.time_ns() < 9'000'000'000) {
+  while (!active && lab.time_ns() < 5'000'000'000) {
     lab.step();
-    if (lab.time_ns() < 3'500'000'000) continue;
+    if (lab.time_ns() < 2'010'000'000) continue;
     for (int i = 0; i < 2; ++i) least = std::min<double>(least, lab.state().preload[i]);
     active = lab.controller_status().mode == controller_status_t::MODE_ACTIVE;
     if (!active) continue;
     for (int i = 0; i < 2; ++i) EXPECT_GE(lab.state().preload[i], 0.175) << i;
   }
-  EXPECT_LT(least, 0.0) << "the springs were slack";
+  EXPECT_LT(least, -0.2) << "the springs were slack";
   EXPECT_TRUE(active) << "mode " << int{lab.controller_status().mode} << ", fault "
                       << int{lab.state().fault};
 }
