@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limber/joint_state_t.hpp>
+#include <limits>
 
 #include "common/joints.h"
 #include "robots/loader/robot.h"
@@ -19,32 +20,27 @@ class PreloadWatch {
   static constexpr double kMissing = 0.1;
 
   /// No joint with two motors.
-  PreloadWatch() = default;
+  PreloadWatch() { least_rad_.fill(-std::numeric_limits<double>::infinity()); }
   /// For set-up.
-  explicit PreloadWatch(const Robot& robot) {
+  explicit PreloadWatch(const Robot& robot) : PreloadWatch() {
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
       const JointConfig& joint = robot.joints[i];
-      if (!joint.has_antagonist) continue;
       const TransmissionConfig& springs = joint.transmission;
-      pairs_[i] = {true, springs.preload_rad - kMissing * springs.preload_max_rad};
+      if (joint.has_antagonist)
+        least_rad_[i] = springs.preload_rad - kMissing * springs.preload_max_rad;
     }
   }
 
   /// May be called in the cycle.
   bool slack(const joint_state_t& state) const noexcept {
     for (int i = 0; i < state.num_joints; ++i) {
-      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      if (pair.two_motors && !(state.preload[i] >= pair.least_rad)) return true;
+      if (!(state.preload[i] >= least_rad_[static_cast<std::size_t>(i)])) return true;
     }
     return false;
   }
 
  private:
-  struct Pair {
-    bool two_motors = false;
-    double least_rad = 0.0;
-  };
-  std::array<Pair, kMaxJoints> pairs_{};
+  std::array<double, kMaxJoints> least_rad_;
 };
 
 }  // namespace limber::controller

@@ -50,6 +50,14 @@ TEST(PreloadWatch, SpringsThatPullWithoutPreloadMayRestAtNone) {
   EXPECT_TRUE(PreloadWatch(linear).slack(state));
 }
 
+TEST(PreloadWatch, ThatMuchIsEnough) {
+  Robot none = robot();
+  none.joints[1].transmission.preload_rad = none.joints[1].transmission.preload_max_rad = 0.0;
+  joint_state_t state{};
+  state.num_joints = 2;
+  EXPECT_FALSE(PreloadWatch(none).slack(state));
+}
+
 class ActiveWaits : public SupervisorBench {
  protected:
   ActiveWaits() {
@@ -85,6 +93,15 @@ TEST_F(ActiveWaits, ForThePreloadInHoldAndNowhereElse) {
   on(0.1);
   EXPECT_EQ(supervisor_.mode(), Mode::kActive) << "a law may choose less";
   EXPECT_EQ(ask(Request::REQUEST_ACTIVE), "");
+}
+
+TEST_F(ActiveWaits, OtherRequestsDoNot) {
+  for (int i = 0; i < Supervisor::kSteadyStates; ++i) on(-1.0, State::DRIVE_OFF);
+  ASSERT_EQ(ask(Request::REQUEST_HOLD), "");
+  on(-1.0);
+  ASSERT_EQ(supervisor_.mode(), Mode::kHold);
+  EXPECT_EQ(ask(Request::REQUEST_IDLE), "");
+  EXPECT_EQ(supervisor_.mode(), Mode::kIdle);
 }
 
 }  // namespace
