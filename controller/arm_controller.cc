@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "common/clock.h"
 #include "common/config_error.h"
@@ -40,6 +41,13 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
   return robot;
 }
 
+TorqueLimiter gravity_limiter(const Robot& robot) {
+  VectorJ rate(robot.size());
+  for (int i = 0; i < robot.size(); ++i)
+    rate[i] = kGravitySteps * robot.joints[static_cast<std::size_t>(i)].torque_rate_limit_Nm_per_s;
+  return {VectorJ::Constant(rate.size(), std::numeric_limits<double>::infinity()), rate};
+}
+
 robot_info_t info_of(const Robot& robot, std::int64_t controller, bool simulated) {
   robot_info_t info{};
   info.controller = controller;
@@ -64,11 +72,9 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       load_watch_(robot.robot),
       encoder_watch_(robot.robot),
       energy_watch_(robot.robot),
+      gravity_limiter_(gravity_limiter(robot.robot)),
       info_(info_of(robot.robot, options.controller,
                     options.simulated || robot.robot.on_virtual_buses())) {
-  torque_rate_.resize(robot.robot.size());
-  for (int i = 0; i < robot.robot.size(); ++i)
-    torque_rate_[i] = robot.robot.joints[static_cast<std::size_t>(i)].torque_rate_limit_Nm_per_s;
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -175,13 +181,11 @@ Standby ArmController::standby() const noexcept {
 // Where the arm's weight is reckoned at another point from one cycle to the next, as by a law that
 // loses the links' static equilibrium, it jumps; the gate refuses jumps.
 void ArmController::write_gravity() noexcept {
-  const VectorJ wanted = load_watch_.carrying(cycle_.gravity());
-  Eigen::Map<VectorJ> sent(answer_.tau_gravity, answer_.num_joints);
+  VectorJ tau = load_watch_.carrying(cycle_.gravity());
   const bool first = answer_.session == 0;
-  const VectorJ most =
-      first ? wanted.cwiseAbs() : VectorJ(kGravitySteps * period_s_ * torque_rate_);
-  const VectorJ before = sent;
-  sent = wanted.cwiseMax(before - most).cwiseMin(before + most);
+  if (first) gravity_limiter_.set_previous(tau);
+  gravity_limiter_.limit(period_s_, &tau);
+  Eigen::Map<VectorJ>(answer_.tau_gravity, answer_.num_joints) = tau;
 }
 
 void ArmController::write_answer(const joint_state_t& state) noexcept {

@@ -20,6 +20,7 @@
 #include "controller/modes/load_watch.h"
 #include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
+#include "controller/output/torque_limiter.h"
 #include "controller/request_outcome.h"
 #include "controller/torque_cycle.h"
 #include "robots/loader/load_robot.h"
@@ -91,10 +92,10 @@ class ArmController {
   controller::LoadWatch load_watch_;
   controller::EncoderWatch encoder_watch_;
   controller::EnergyWatch energy_watch_;
+  controller::TorqueLimiter gravity_limiter_;
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline
-  VectorJ torque_rate_;                   ///< N m/s
   double period_s_ = 0.0;
   joint_command_t answer_{};
   controller_status_t status_{};

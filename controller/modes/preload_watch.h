@@ -20,9 +20,9 @@ class PreloadWatch {
   static constexpr double kMissing = 0.1;
 
   /// No joint with two motors.
-  PreloadWatch() { least_rad_.fill(-std::numeric_limits<double>::infinity()); }
+  PreloadWatch() = default;
   /// For set-up.
-  explicit PreloadWatch(const Robot& robot) : PreloadWatch() {
+  explicit PreloadWatch(const Robot& robot) {
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
       const JointConfig& joint = robot.joints[i];
       const TransmissionConfig& springs = joint.transmission;
@@ -40,7 +40,12 @@ class PreloadWatch {
   }
 
  private:
-  std::array<double, kMaxJoints> least_rad_;
+  static constexpr auto kNone = [] {
+    std::array<double, kMaxJoints> least{};
+    least.fill(-std::numeric_limits<double>::infinity());
+    return least;
+  }();
+  std::array<double, kMaxJoints> least_rad_ = kNone;
 };
 
 }  // namespace limber::controller

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "controller/laws/registry.h"
 #include "lab/lab.h"
@@ -29,12 +28,20 @@ timeline:
   - {at_s: 3.2, mode: hold}
 )";
 
+struct TwoMotorLab {
+  explicit TwoMotorLab(const char* text)
+      : scenario(
+            load_scenario(folder.write("scenario.yaml", text), robot, &controller::law_catalog())),
+        lab(robot, scenario) {}
+  testing::TemporaryFolder folder;
+  LoadedRobot robot = load_robot("antagonist2r");
+  Scenario scenario;
+  Lab lab;
+};
+
 TEST(TwoMotors, AreTakenOverWithoutAStep) {
-  const testing::TemporaryFolder folder;
-  const std::string file = folder.write("scenario.yaml", kScenario);
-  const LoadedRobot robot = load_robot("antagonist2r");
-  const Scenario scenario = load_scenario(file, robot, &controller::law_catalog());
-  Lab lab(robot, scenario);
+  TwoMotorLab run(kScenario);
+  Lab& lab = run.lab;
   const auto run_to = [&lab](double time_s) {
     while (lab.time_ns() < std::llround(time_s * 1e9)) lab.step();
   };
@@ -85,11 +92,8 @@ timeline:
 )";
 
 TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {
-  const testing::TemporaryFolder folder;
-  const std::string file = folder.write("scenario.yaml", kSlack);
-  const LoadedRobot robot = load_robot("antagonist2r");
-  const Scenario scenario = load_scenario(file, robot, &controller::law_catalog());
-  Lab lab(robot, scenario);
+  TwoMotorLab run(kSlack);
+  Lab& lab = run.lab;
   double least = 1.0;
   bool active = false;
   while (!active && lab.time_ns() < 5'000'000'000) {
