@@ -9,6 +9,8 @@ namespace {
 constexpr int kStepsPerCycle = 3;
 constexpr int kStepsToApproach = 20;
 constexpr double kLongestStep_rad = 0.1;
+// After a step this small, the next would be one of rounding: Gauss-Newton squares what is left.
+constexpr double kConverged_rad = 1e-9;
 constexpr double kPostureRate_per_s = 1.0;
 
 }  // namespace
@@ -24,7 +26,7 @@ void InverseKinematics::reset(const VectorJ& q) noexcept {
   drift_.setZero();
 }
 
-void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept {
+double InverseKinematics::step(const TaskRows& rows, const Pose& X_BD) noexcept {
   model_.evaluate_statics(q_, &terms_);
   const PoseError error = pose_error(terms_.X_BT, X_BD, Orientation::kLog);
   const Matrix6J J = rows.of(Matrix6J(error.A * terms_.J));
@@ -32,15 +34,22 @@ void InverseKinematics::correct(const TaskRows& rows, const Pose& X_BD) noexcept
   const double longest = step.cwiseAbs().maxCoeff();
   if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
   if (step.allFinite()) q_ += step;
+  return longest;
+}
+
+void InverseKinematics::correct(int steps, const TaskRows& rows, const Pose& X_BD) noexcept {
+  for (int i = 0; i < steps; ++i) {
+    if (step(rows, X_BD) < kConverged_rad) return;
+  }
 }
 
 void InverseKinematics::approach(const TaskRows& rows, const Pose& X_BD) noexcept {
-  for (int i = 0; i < kStepsToApproach; ++i) correct(rows, X_BD);
+  correct(kStepsToApproach, rows, X_BD);
 }
 
 void InverseKinematics::track(const TaskRows& rows, double dt_s, Goal* goal) noexcept {
   q_ += dt_s * drift_;
-  for (int i = 0; i < kStepsPerCycle; ++i) correct(rows, goal->X_BD);
+  correct(kStepsPerCycle, rows, goal->X_BD);
   const Matrix6J J = rows.of(model_.jacobian(q_));
   const MatrixJ6 inverse = damped_pseudo_inverse(J);
   const VectorJ posture = kPostureRate_per_s * (goal->q_null - q_);

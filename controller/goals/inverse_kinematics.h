@@ -7,8 +7,8 @@
 
 namespace limber::controller {
 
-/// Follows the goal at the tip with q_d, by a few damped Gauss-Newton steps a cycle from where it
-/// was (the goal moves smoothly, so it keeps up to rounding), and its rates:
+/// Follows the goal at the tip with q_d, by damped Gauss-Newton steps from where it was, up to
+/// three a cycle (the goal moves smoothly, so it keeps up to rounding), and its rates:
 ///   v_d = J^+ (V_BD) + (I - J^+ J) v_0,   a_d = J^+ (A_BD - Jdot v_d),   J = J(q_d)
 /// over the task's rows only (a_d without the rate of v_0), J^+ damped near singularities. v_0
 /// pulls a redundant arm towards the posture q_null. Where the goal is out of reach q_d stays as
@@ -26,7 +26,10 @@ class InverseKinematics {
   void track(const TaskRows& rows, double dt_s, Goal* goal) noexcept;
 
  private:
-  void correct(const TaskRows& rows, const Pose& X_BD) noexcept;
+  /// At most so many steps, until one no longer moves a joint.
+  void correct(int steps, const TaskRows& rows, const Pose& X_BD) noexcept;
+  /// Returns the way of the joint that moves most, rad or m.
+  double step(const TaskRows& rows, const Pose& X_BD) noexcept;
 
   ArmModel model_;
   ArmTerms terms_;

@@ -26,7 +26,10 @@ OUT = ROOT / "out" / "fuzz"
 # Mutations that `limber test` tries; files go through a folder and a whole loader.
 MUTATIONS = 20_000
 FILE_MUTATIONS = 2_000
-SLOW = ("joint_command", "joint_state", "robot_yaml", "scenario", "urdf")
+TEXTS = ("robot_yaml", "scenario", "urdf")
+SLOW = ("joint_command", "joint_state", *TEXTS)
+# libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
+LONGEST = {"black_box": 256, "joint_command": 256, "joint_state": 256} | dict.fromkeys(TEXTS, 1024)
 WHAT = {
     "black_box": "messages of any length in a black box of any size",
     "candump_log": "lines and files of a candump log",
@@ -112,6 +115,7 @@ def search(names: list[str], console: Console, inputs: int, minutes: float) -> b
         command += ["-seed=1", "-timeout=10", f"-artifact_prefix={OUT}/{target}-"]
         command += [f"-runs={inputs}"] if inputs else []
         command += [f"-max_total_time={round(60 * minutes)}"] if minutes else []
+        command += [f"-max_len={LONGEST[target]}"] if target in LONGEST else []
         done = _run(command)
         executed = re.search(r"number_of_executed_units: (\d+)", done.stderr)
         count = int(executed[1]) if executed else 0
