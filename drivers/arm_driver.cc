@@ -79,6 +79,7 @@ void ArmDriver::transmit(std::int64_t time_ns, std::int64_t stamp_ns) noexcept {
 
   for (BusEnd& bus : buses_) bus.clear();
   drives_.add_commands(&buses_);
+  drives_.ask_for_settings(&buses_);
   if (tip_sensor_) {
     buses_[tip_sensor_->bus()].add(tip_sensor_->next_frame());
   }
@@ -215,7 +216,7 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
 
 std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) const {
   if (fault == joint_state_t::FAULT_DRIVE_ERROR && joint >= 0)
-    return drives_.status_text(static_cast<std::size_t>(joint), detail);
+    return drives_.error_text(static_cast<std::size_t>(joint), detail);
   if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
   if (fault == joint_state_t::FAULT_COMMAND_REFUSED) {

@@ -6,6 +6,7 @@
 
 #include "drivers/driver_setup.h"
 #include "drivers/protocols/canopen.h"
+#include "drivers/protocols/cycle_frames.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
@@ -32,6 +33,9 @@ std::string out_of_range_line(const ArmJoint& joint) {
 ArmDrives::ArmDrives(const Robot& robot, int bridged_cycles)
     : settling_cycles_(cycles_of(kSettling_s, robot.rate_hz)) {
   for (const JointConfig& joint : robot.joints) joints_.emplace_back(robot, joint, bridged_cycles);
+  for (const ArmJoint& joint : joints_) {
+    for (const Drive& motor : joint.motors()) ++motors_on_bus_[motor.bus()];
+  }
 }
 
 // --- state ---------------------------------------------------------------------------------------
@@ -91,6 +95,16 @@ std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) cons
   return line_about(drive, words.empty() ? "no warning any more" : words);
 }
 
+std::string ArmDrives::error_text(std::size_t joint, std::uint16_t status) const {
+  const std::vector<Drive>& motors = joints_[joint].motors();
+  const auto changed = std::ranges::find_if(motors, &Drive::setting_changed);
+  if (changed == motors.end()) return motors.front().link().status_text(status);
+  return changed->changed_setting() +
+         ": changed past the bus while the drive was on; end what else writes to it, or find out "
+         "why "
+         "it restarted";
+}
+
 const Drive& ArmDrives::motor_at(int motor) const noexcept {
   std::size_t i = 0;
   while (motor >= static_cast<int>(joints_[i].motors().size()))
@@ -126,6 +140,20 @@ void ArmDrives::add_commands(std::vector<BusEnd>* buses) noexcept {
   }
   ++cycles_in_state_;
   if (in(DriveState::kOn)) torque_present_ = torque_;
+}
+
+void ArmDrives::ask_for_settings(std::vector<BusEnd>* buses) noexcept {
+  if (!in(DriveState::kOn) || cycles_in_state_ % kSettingCycles != 0) return;
+  const std::int64_t round = cycles_in_state_ / kSettingCycles;
+  std::array<int, kMaxBuses> number{};  // of the motor on its bus
+  CanFrame request;
+  for (ArmJoint& joint : joints_) {
+    for (Drive& motor : joint.motors()) {
+      const std::size_t bus = motor.bus();
+      const bool its_turn = round % motors_on_bus_[bus] == number[bus]++;
+      if (its_turn && motor.ask_for_setting(&request)) (*buses)[bus].ask(request);
+    }
+  }
 }
 
 // --- from the drives -----------------------------------------------------------------------------

@@ -46,10 +46,9 @@ class ArmDrives {
   DriveWarning warning(int motor) const noexcept;
   /// The same in words. Allocates: for messages.
   std::string warning_text(int motor, const DriveWarning& warning) const;
-  /// A drive's status code in words. Allocates: for messages.
-  std::string status_text(std::size_t joint, std::uint16_t status) const {
-    return joints_[joint].motors().front().link().status_text(status);
-  }
+  /// What a drive's error is, in words: its status code, or a setting that was changed. Allowed in
+  /// every thread. Allocates: for messages.
+  std::string error_text(std::size_t joint, std::uint16_t status) const;
 
   // --- towards the drives ---------------------------------------------------------------------
 
@@ -57,6 +56,8 @@ class ArmDrives {
   void add_bus_frames(std::vector<BusEnd>* buses) const;
   /// This cycle's one frame for every motor.
   void add_commands(std::vector<BusEnd>* buses) noexcept;
+  /// In ON: every kSettingCycles cycles one motor of each bus, in turn, is asked for a setting.
+  void ask_for_settings(std::vector<BusEnd>* buses) noexcept;
 
   /// Before what has come since the last cycle is received.
   void begin_cycle() noexcept;
@@ -102,6 +103,7 @@ class ArmDrives {
   DriveStateMachine machine_;
   int settling_cycles_;  ///< FALLBACK: damping before the position is held
   std::int64_t cycles_in_state_ = 0;
+  std::array<int, kMaxBuses> motors_on_bus_{};
   std::array<JointTorque, kMaxJoints> torque_{};          ///< accepted last, sent next
   std::array<double, kMaxJoints> tau_gravity_{};          ///< N m, of the command accepted last
   std::array<JointTorque, kMaxJoints> torque_present_{};  ///< sent last, or exerted by the drives

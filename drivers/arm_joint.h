@@ -78,6 +78,9 @@ class ArmJoint {
   bool ignores_target() const noexcept {
     return std::ranges::any_of(motors_, &Drive::ignores_target);
   }
+  bool setting_changed() const noexcept {
+    return std::ranges::any_of(motors_, &Drive::setting_changed);
+  }
   /// The first that one of its motors has.
   Contradiction contradiction() const noexcept;
   /// Cycles since one of its motors last replied.
@@ -87,9 +90,9 @@ class ArmJoint {
   /// Above 110 % of the velocity limit in three cycles in a row.
   bool too_fast() const noexcept { return fast_cycles_ >= 3; }
   /// Fit to be moved: answered, enabled and following, within its position limits, not too fast,
-  /// and nothing that it reports contradicts the rest.
+  /// its settings as they were, and nothing that it reports contradicts the rest.
   bool healthy() const noexcept {
-    return ready_to_enable() && enabled() && !ignores_target() &&
+    return ready_to_enable() && enabled() && !ignores_target() && !setting_changed() &&
            contradiction() == Contradiction::kNone;
   }
   /// The same but for being enabled.

@@ -24,6 +24,8 @@ struct Traffic {
   double replies_s = 0.0;
   double longest_reply_s = 0.0;
   double shortest_pair_s = std::numeric_limits<double>::infinity();
+  double settings_s = 0.0;  ///< request and answer, of all drives that are asked
+  int drives = 0;           ///< these
 
   void add_reply(double reply_s, double command_s) noexcept {
     replies_s += reply_s;
@@ -31,6 +33,12 @@ struct Traffic {
     shortest_pair_s = std::min(shortest_pair_s, command_s + reply_s);
   }
   bool none() const noexcept { return commands_s == 0.0; }
+  /// The mean over cycles. Settings are asked for behind the last command, with identifiers that
+  /// wait for all replies: they take wire time, but a reply waits for one such frame at most.
+  double all_s() const noexcept {
+    const double setting_s = drives == 0 ? 0.0 : settings_s / drives / kSettingCycles;
+    return commands_s + replies_s + setting_s;
+  }
 };
 
 double longest_s(const BusConfig& bus, const CanFrame& frame) noexcept {
@@ -60,6 +68,8 @@ Traffic traffic(const Robot& robot, int index, FrameTime time_s = longest_s) {
     const double command_s = time_s(bus, exchange.command);
     out.commands_s += command_s;
     for (const CanFrame& reply : exchange.replies) out.add_reply(time_s(bus, reply), command_s);
+    for (const CanFrame& frame : exchange.setting) out.settings_s += time_s(bus, frame);
+    if (!exchange.setting.empty()) ++out.drives;
     out.sync = out.sync || exchange.at_sync;
   }
   if (out.sync) out.commands_s += time_s(bus, canopen::encode_sync());
@@ -79,13 +89,11 @@ double foreign_frame_s(const Robot& robot, int bus) {
 }  // namespace
 
 double predicted_bus_load(const Robot& robot, int bus) {
-  const Traffic wire = traffic(robot, bus);
-  return (wire.commands_s + wire.replies_s) * robot.rate_hz;
+  return traffic(robot, bus).all_s() * robot.rate_hz;
 }
 
 double expected_bus_load(const Robot& robot, int bus) {
-  const Traffic wire = traffic(robot, bus, expected_s);
-  return (wire.commands_s + wire.replies_s) * robot.rate_hz;
+  return traffic(robot, bus, expected_s).all_s() * robot.rate_hz;
 }
 
 double predicted_end_s(const Robot& robot, int bus) {

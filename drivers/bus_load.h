@@ -7,7 +7,8 @@
 namespace limber {
 
 /// Share of the bus, 0..1, that a command and its replies per motor and cycle, the SYNC of CANopen
-/// drives and the tip sensor's frames take at robot.rate_hz, every frame at its longest.
+/// drives, the tip sensor's frames and the reading of settings take at robot.rate_hz, every frame
+/// at its longest.
 double predicted_bus_load(const Robot& robot, int bus);
 
 /// The same with frames of the usual length: exact identifiers, the mean over typical data. What

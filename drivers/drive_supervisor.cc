@@ -77,7 +77,7 @@ void DriveSupervisor::check_motion(ArmDrives* drives) const noexcept {
   const std::vector<ArmJoint>& joints = drives->joints();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const int joint = static_cast<int>(i);
-    if (!joints[i].enabled() || joints[i].ignores_target())
+    if (!joints[i].enabled() || joints[i].ignores_target() || joints[i].setting_changed())
       drives->apply(DriveEvent::kDriveError, joint);
     if (joints[i].contradiction() != Contradiction::kNone)
       drives->apply(DriveEvent::kFeedbackWrong, joint);

@@ -2,8 +2,8 @@
 //
 //   progress   start-up dialogues done or failed; every drive enabled, or not in time
 //   replies    a bus lost; a joint silent; all joints silent for as long as their own watchdogs
-//   motion     a drive left the enabled state or ignores its target; what it reports contradicts
-//              itself; position or velocity beyond its limit
+//   motion     a drive left the enabled state, ignores its target or has other settings; what it
+//              reports contradicts itself; position or velocity beyond its limit
 #pragma once
 
 #include <span>

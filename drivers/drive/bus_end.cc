@@ -19,6 +19,7 @@ void BusEnd::send() noexcept {
     std::rotate(batch_.begin(), batch_.begin() + static_cast<std::ptrdiff_t>(first_),
                 batch_.begin() + static_cast<std::ptrdiff_t>(commands));
   if (last_) put(*last_);
+  if (question_) put(*question_);
   const std::span<const CanFrame> batch(batch_.data(), batched_);
   const int accepted = batched_ == 0 ? 0 : bus_->send(batch);
   for (int i = 0; i < accepted; ++i) count_load(batch_[static_cast<std::size_t>(i)]);

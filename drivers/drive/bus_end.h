@@ -24,11 +24,16 @@ class BusEnd {
   void end_with(const CanFrame& frame) noexcept { last_ = frame; }
 
   /// Starts an empty batch.
-  void clear() noexcept { batched_ = 0; }
+  void clear() noexcept {
+    batched_ = 0;
+    question_.reset();
+  }
   void add(const CanFrame& frame) noexcept {
     if (last_ && has_id(frame, last_->id)) return;
     put(frame);
   }
+  /// Goes behind the cycle's last frame. If it is not accepted it is gone.
+  void ask(const CanFrame& question) noexcept { question_ = question; }
   /// Sends the batch. Frames that are not accepted are gone: the next cycle has newer ones, and
   /// begins with the first of them, so that a queue too short for all does not starve always the
   /// same motors. Without a refusal the order is that of add(). The last frame stays the last.
@@ -75,9 +80,10 @@ class BusEnd {
   CanBus* bus_;
   BusConfig config_;
   double load_predicted_;
-  std::array<CanFrame, kMaxMotors + 2> batch_;  ///< motors, tip sensor, last_
+  std::array<CanFrame, kMaxMotors + 3> batch_;  ///< motors, tip sensor, last_, question_
   std::size_t batched_ = 0;
   std::optional<CanFrame> last_;
+  std::optional<CanFrame> question_;
   std::array<CanFrame, 32> received_;
   std::array<CanFrame, 128> held_;  ///< in order of arrival
   std::size_t num_held_ = 0;

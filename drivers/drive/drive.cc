@@ -8,6 +8,7 @@ namespace limber {
 Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
       configure_(&link_.family()),
+      settings_(std::make_unique<SettingsWatch>(&link_.family())),
       fallback_(joint.torque_rate_limit_Nm_per_s / rate_hz),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
       feedback_(link_),
@@ -19,6 +20,7 @@ void Drive::enter(DriveState state, double present, double held) noexcept {
   switch (state) {
     case DriveState::kConfiguring:
       configure_.start();
+      settings_->start();
       link_.forget_angle();
       break;
     case DriveState::kOff:
@@ -88,6 +90,7 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
     }
     return;
   }
+  if (settings_->receive(frame)) return;
   expect_angle(state);
   if (!link_.receive(frame)) {
     if (!link_.take_unsolicited(frame)) count_invalid();
@@ -116,7 +119,7 @@ void Drive::count_invalid() noexcept {
 
 void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   const bool startup = awaits_answer(state);
-  if (!startup && link_.take_unsolicited(frame)) return;
+  if (!startup && (settings_->receive(frame) || link_.take_unsolicited(frame))) return;
   ++late_;
   if (!startup) expect_angle(state);
   if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "drivers/drive/feedback_watch.h"
 #include "drivers/drive/joint_link.h"
 #include "drivers/drive/reply_watch.h"
+#include "drivers/drive/settings_watch.h"
 
 namespace limber {
 
@@ -26,6 +28,8 @@ class Drive {
 
   /// This cycle's one frame. `tau` counts in ON, `settling` in FALLBACK (the first 100 ms).
   CanFrame next_frame(DriveState state, double tau, bool settling) noexcept;
+  /// One of the drive's settings is asked for, besides; see SettingsWatch.
+  bool ask_for_setting(CanFrame* request) noexcept { return settings_->request(request); }
   void begin_cycle() noexcept;
   /// A frame of this motor's.
   void receive(DriveState state, const CanFrame& frame) noexcept;
@@ -45,9 +49,13 @@ class Drive {
   bool answered() const noexcept { return answered_; }
   /// By the last reply, the power stage is on.
   bool enabled() const noexcept { return link_.enabled(); }
-  bool failed() const noexcept { return link_.drive_error() || ignores_target(); }
+  bool failed() const noexcept {
+    return link_.drive_error() || ignores_target() || setting_changed();
+  }
   /// Enabled, but in three states in a row it did not execute its target.
   bool ignores_target() const noexcept { return ignoring_cycles_ >= 3; }
+  /// A setting is no longer what the start-up left. Allowed in every thread.
+  bool setting_changed() const noexcept { return settings_->changed(); }
   /// While it has power: velocity or torque contradict the rest of what it reports.
   Contradiction contradiction() const noexcept { return feedback_.found(); }
   DriveWarning warning() const noexcept;
@@ -63,6 +71,8 @@ class Drive {
   const JointLink& link() const noexcept { return link_; }
   /// Why configuration_wrong(), in words. Allocates: for messages, outside the cycle.
   std::string configuration_problem() const { return link_.describe(configure_.failure()); }
+  /// Which setting_changed(), likewise. Allowed in every thread.
+  std::string changed_setting() const { return link_.describe(settings_->failure()); }
   /// What the drive lacks without being wrong, likewise.
   std::vector<std::string> configuration_warnings() const {
     std::vector<std::string> warnings;
@@ -89,6 +99,7 @@ class Drive {
 
   JointLink link_;
   ConfigureDialogue configure_;
+  std::unique_ptr<SettingsWatch> settings_;  // atomics do not move
   EnableDialogue enable_;
   Fallback fallback_;
   ReplyWatch watch_;

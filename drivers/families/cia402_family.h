@@ -64,6 +64,9 @@ class Cia402Family final : public DriveFamily {
   CanFrame startup_request(int index) const noexcept override {
     return startup_.startup_request(index);
   }
+  bool may_be_read_again(int index) const noexcept override {
+    return startup_.may_be_read_again(index);
+  }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
   std::string describe(const StartupFailure& failure) const override {
     return startup_.describe(failure);

@@ -226,6 +226,12 @@ CanFrame Cia402Startup::startup_request(int index) const noexcept {
   return canopen::encode_sdo_read(planned.object.id, node_);
 }
 
+bool Cia402Startup::may_be_read_again(int index) const noexcept {
+  const Step& planned = step(index);
+  if (planned.kind == Kind::kAwait) return planned.object.id == cia402::kModeInForce.id;
+  return planned.kind == Kind::kCompare || planned.kind == Kind::kCounts;
+}
+
 Answer Cia402Startup::check_answer(int index, const CanFrame& frame, double* found) noexcept {
   const Step& planned = step(index);
   SdoMessage message;

@@ -31,6 +31,8 @@ class Cia402Startup {
   int startup_steps() const noexcept { return static_cast<int>(steps_.size()); }
   StartupStep startup_step(int index) const noexcept;
   CanFrame startup_request(int index) const noexcept;
+  /// What is compared, and the mode in force; of the state the power is awaited to be off.
+  bool may_be_read_again(int index) const noexcept;
   /// The NMT start, which the first state answers; all others are check_answer()'s.
   bool is_start(int index) const noexcept { return step(index).kind == Kind::kStart; }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept;

@@ -44,6 +44,9 @@ class DamiaoFamily final : public DriveFamily {
   int startup_steps() const noexcept override { return kSteps; }
   StartupStep startup_step(int index) const noexcept override;
   CanFrame startup_request(int index) const noexcept override;
+  bool may_be_read_again(int index) const noexcept override {
+    return steps_[static_cast<std::size_t>(index)].kind != Kind::kWrite;
+  }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
 
  private:

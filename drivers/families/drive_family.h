@@ -158,6 +158,12 @@ class DriveFamily {
   virtual int startup_steps() const noexcept = 0;
   virtual StartupStep startup_step(int index) const noexcept = 0;
   virtual CanFrame startup_request(int index) const noexcept = 0;
+  /// Whether the step reads a setting that must stay as it is, and that the drive tells while it is
+  /// on, one frame for one. Its answer is no reply to a command.
+  virtual bool may_be_read_again(int index) const noexcept {
+    static_cast<void>(index);
+    return false;
+  }
   /// The frame as an answer to step `index`; `found` is set unless kNone.
   virtual Answer check_answer(int index, const CanFrame& frame, double* found) noexcept = 0;
   /// In words: "register 23 is 10, expected 28"; kMissing: what that means. Allocates: for

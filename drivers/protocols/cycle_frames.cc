@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "drivers/protocols/canopen.h"
+#include "drivers/protocols/mit.h"
 #include "robots/loader/protocols/drive_protocol.h"
 #include "robots/loader/protocols/tip_sensor_protocol.h"
 
@@ -17,11 +19,27 @@ CanFrame empty_frame(std::uint32_t id, int bytes, bool fd) {
   return frame;
 }
 
+std::vector<CanFrame> setting_frames(const DriveConfig& drive, bool fd) {
+  switch (drive.protocol) {
+    case DriveProtocol::kDamiaoMit:
+      return {empty_frame(mit::kRegisterId, 8, fd), empty_frame(drive.reply_id, 8, fd)};
+    case DriveProtocol::kCia402: {
+      const std::uint8_t node = canopen::node_of(drive.command_id);
+      return {empty_frame(canopen::kSdoRequestCode + node, 8, false),
+              empty_frame(canopen::kSdoAnswerCode + node, 8, false)};
+    }
+    case DriveProtocol::kMoteus:
+      break;
+  }
+  return {};
+}
+
 Exchange exchange_with(const std::string& joint, const DriveConfig& drive, bool fd) {
   Exchange out{joint,
                empty_frame(drive.command_id, drive.frames.command, fd),
                {},
-               traits_of(drive.protocol).needs_sync};
+               traits_of(drive.protocol).needs_sync,
+               setting_frames(drive, fd)};
   std::uint32_t reply_id = drive.reply_id;
   for (const int bytes : drive.frames.replies) {
     out.replies.push_back(empty_frame(reply_id, bytes, fd));
@@ -33,7 +51,7 @@ Exchange exchange_with(const std::string& joint, const DriveConfig& drive, bool 
 Exchange exchange_with(const TipSensorConfig& sensor) {
   const TipSensorTraits& traits = traits_of(sensor.protocol);
   Exchange out{
-      "tip sensor", empty_frame(sensor.command_id, traits.request_bytes, traits.fd), {}, false};
+      "tip sensor", empty_frame(sensor.command_id, traits.request_bytes, traits.fd), {}, false, {}};
   for (std::size_t i = 0; i < static_cast<std::size_t>(traits.replies); ++i)
     out.replies.push_back(empty_frame(sensor.reply_ids[i], traits.reply_bytes, traits.fd));
   return out;

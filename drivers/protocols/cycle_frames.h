@@ -11,12 +11,16 @@
 
 namespace limber {
 
+/// While the drives are on, one drive of each bus is asked for a setting every so many cycles.
+inline constexpr int kSettingCycles = 20;
+
 /// One drive, or the tip sensor. The data of the frames are zero.
 struct Exchange {
   std::string name;  ///< of the joint, or "tip sensor"
   CanFrame command;
   std::vector<CanFrame> replies;
-  bool at_sync = false;  ///< answers the SYNC at the end of all commands, not its command
+  bool at_sync = false;           ///< answers the SYNC at the end of all commands, not its command
+  std::vector<CanFrame> setting;  ///< request and answer, where the protocol has them
 };
 
 /// In the order in which the driver sends the commands. Set-up only.

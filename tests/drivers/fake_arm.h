@@ -47,7 +47,8 @@ class FakeMotor {
   bool handle(const CanFrame& frame, CanFrame* reply) {
     const bool for_register = frame.id == 0x7FF && frame.data[0] == drive_.command_id;
     if (frame.extended || (frame.id != drive_.command_id && !for_register)) return false;
-    frames.push_back(frame);
+    const bool reads = for_register && frame.data[2] == 0x33;
+    (reads && arm_on ? questions : frames).push_back(frame);
     *reply = frame;  // FD flags as in the request
     reply->id = drive_.reply_id;
     if (for_register && frame.data[2] != 0xCC) {
@@ -70,9 +71,11 @@ class FakeMotor {
   const DriveConfig& drive() const { return drive_; }
 
   std::map<int, std::uint32_t> registers;
-  std::vector<CanFrame> frames;  ///< all it ever received
-  int error = 0;                 ///< status nibble: 0 disabled, 1 enabled, 8 and more: fault
-  double angle = 0.0;            ///< drive side
+  std::vector<CanFrame> frames;     ///< all it ever received, but for
+  std::vector<CanFrame> questions;  ///< registers that are read while the arm is ON
+  bool arm_on = false;
+  int error = 0;       ///< status nibble: 0 disabled, 1 enabled, 8 and more: fault
+  double angle = 0.0;  ///< drive side
   double speed = 0.0;
   double torque = 0.0;
   int mos_degC = 30;
@@ -243,6 +246,8 @@ class FakeArm : public DrivenArm {
   void answer() override {
     CanFrame frame;
     CanFrame reply;
+    for (FakeMotor& motor : motors)
+      motor.arm_on = state != nullptr && state->drive_state == joint_state_t::DRIVE_ON;
     for (std::size_t b = 0; b < motor_ends.size(); ++b) {
       while (motor_ends[b]->receive(std::span(&frame, 1)) == 1) {
         for (FakeMotor& motor : motors) {

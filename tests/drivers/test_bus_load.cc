@@ -17,6 +17,9 @@
 namespace limber::test_bus_load {
 namespace {
 
+/// Classic, 8 bytes, 11-bit identifiers: 135 bits each at 1 Mbit/s.
+constexpr double kSettings_s = 2 * 135e-6 / 20;
+
 Robot seven_joints(bool fd) {
   Robot robot;
   robot.buses.push_back({"arm", "virtual:default", fd, 1'000'000, 5'000'000});
@@ -28,9 +31,10 @@ Robot seven_joints(bool fd) {
   return robot;
 }
 
+// Of settings one request and one answer are on the wire every 20 cycles: 113.2 us in FD frames.
 TEST(BusLoad, SevenJointsOnOneFdBusFitOneKilohertz) {
   const Robot robot = seven_joints(true);
-  EXPECT_NEAR(predicted_bus_load(robot, 0), 0.792, 0.0005);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), 0.7924 + 0.1132 / 20, 1e-9);
   // 60 us in a native adapter, at the most; the driver waits for nine tenths of the period.
   EXPECT_NEAR(predicted_end_s(robot, 0), 60e-6 + 792.4e-6, 1e-9);
   EXPECT_NEAR(highest_rate_hz(robot, 0), 0.9 / 852.4e-6, 0.5);
@@ -39,16 +43,18 @@ TEST(BusLoad, SevenJointsOnOneFdBusFitOneKilohertz) {
 
 TEST(BusLoad, SevenJointsOnOneClassicBusDoNot) {
   const Robot robot = seven_joints(false);
-  EXPECT_NEAR(predicted_bus_load(robot, 0), 1.89, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), 1.89 + kSettings_s * 1000, 1e-9);
   EXPECT_NEAR(highest_rate_hz(robot, 0), 0.9 / (60e-6 + 1890e-6), 0.5);
   EXPECT_THROW(checked_bus_load(robot, 0), ConfigError);
 }
 
-// 29-bit command of 48 bytes, 57 us + 519 / 5 us; 11-bit reply of 32, 34 us + 358 / 5 us.
+// 29-bit command of 48 bytes, 57 us + 519 / 5 us; 11-bit reply of 32, 34 us + 358 / 5 us. Their
+// settings are not read again.
 TEST(BusLoad, ThreeMoteusDrivesFillABusAtOneKilohertz) {
   Robot robot = seven_joints(true);
   robot.joints.resize(3);
   for (JointConfig& joint : robot.joints) {
+    joint.drive.protocol = DriveProtocol::kMoteus;
     joint.drive.command_id |= 0x8000U;
     joint.drive.frames = {48, {32}};
   }
@@ -67,7 +73,7 @@ TEST(BusLoad, CanopenDrivesShareOneSync) {
     joint.drive.frames = {4, {24}};
   }
   const double drive_s = 34e-6 + 73 / 5e6 + 34e-6 + 278 / 5e6;
-  EXPECT_NEAR(predicted_bus_load(robot, 0), (2 * drive_s + 55e-6) * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), (2 * drive_s + 55e-6 + kSettings_s) * 1000, 1e-9);
   // Nobody answers before the SYNC, and everybody 50 us after it; 60 us are the adapter's.
   EXPECT_NEAR(predicted_end_s(robot, 0), 60e-6 + 2 * drive_s + 55e-6 + 50e-6, 1e-9);
 }
@@ -88,7 +94,8 @@ TEST(BusLoad, CanopenDrivesOnAClassicBusAnswerInSeveralFrames) {
   }
   const double first_s = 95e-6 + 115e-6 + 115e-6;
   const double second_s = 95e-6 + 115e-6 + 135e-6 + 135e-6;
-  EXPECT_NEAR(predicted_bus_load(robot, 0), (first_s + second_s + 55e-6) * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), (first_s + second_s + 55e-6 + kSettings_s) * 1000,
+              1e-9);
 }
 
 // A single motor's reply finds the wire free after the drive's delay of 50 us.
@@ -120,16 +127,16 @@ TEST(BusLoad, BothMotorsOfAPairCountWhereTheyAre) {
     robot.joints[i].antagonist = robot.joints[i].drive;
     robot.joints[i].antagonist.bus = static_cast<int>(i);
   }
-  EXPECT_NEAR(predicted_bus_load(robot, 0), 3 * 270e-6 * 1000, 1e-9);
-  EXPECT_NEAR(predicted_bus_load(robot, 1), 1 * 270e-6 * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), (3 * 270e-6 + kSettings_s) * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 1), (1 * 270e-6 + kSettings_s) * 1000, 1e-9);
 }
 
 TEST(BusLoad, CountsOnlyTheBusItself) {
   Robot robot = seven_joints(false);
   robot.buses.push_back(robot.buses[0]);
   for (std::size_t i = 0; i < 3; ++i) robot.joints[i].drive.bus = 1;
-  EXPECT_NEAR(predicted_bus_load(robot, 0), 4 * 270e-6 * 1000, 1e-9);
-  EXPECT_NEAR(predicted_bus_load(robot, 1), 3 * 270e-6 * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), (4 * 270e-6 + kSettings_s) * 1000, 1e-9);
+  EXPECT_NEAR(predicted_bus_load(robot, 1), (3 * 270e-6 + kSettings_s) * 1000, 1e-9);
   robot.buses.push_back(robot.buses[0]);
   EXPECT_EQ(predicted_bus_load(robot, 2), 0.0);
   EXPECT_TRUE(std::isinf(highest_rate_hz(robot, 2)));

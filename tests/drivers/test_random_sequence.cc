@@ -54,7 +54,7 @@ class Oracle {
     offers_.push_back(offer);
   }
 
-  /// After a cycle: one frame for each motor, and no frame that must not be.
+  /// After a cycle: one frame for each motor, one question at most, and no frame that must not be.
   void judge(std::int64_t cycle) {
     while (!offers_.empty() && offers_.front().cycle < cycle - kRemembered) offers_.pop_front();
     for (std::size_t j = 0; j < kJoints; ++j) {
@@ -63,6 +63,8 @@ class Oracle {
       judge_frame(j, motor.frames[0], cycle);
       if (::testing::Test::HasFatalFailure()) return;
     }
+    judge_questions();
+    if (::testing::Test::HasFatalFailure()) return;
     std::copy_n(arm_.state->q, kJoints, published_q_.begin());
     // What may hold the arm is what was offered when HOLD began.
     const bool hold = arm_.state->drive_state == joint_state_t::DRIVE_HOLD;
@@ -74,6 +76,16 @@ class Oracle {
   std::int64_t hold_frames = 0;
 
  private:
+  void judge_questions() {
+    std::size_t questions = 0;
+    for (const FakeMotor& motor : arm_.motors) {
+      questions += motor.questions.size();
+      for (const CanFrame& frame : motor.questions)
+        ASSERT_TRUE(std::set<int>({9, 10, 21, 22, 23}).contains(frame.data[3]));
+    }
+    ASSERT_LE(questions, 1U);
+  }
+
   void judge_frame(std::size_t j, const CanFrame& frame, std::int64_t cycle) {
     ASSERT_EQ(frame.length, 8);
     if (frame.id == 0x7FF) {
@@ -176,7 +188,10 @@ class BadDay {
 
   void cycle() {
     disturb();
-    for (FakeMotor& motor : arm.motors) motor.frames.clear();
+    for (FakeMotor& motor : arm.motors) {
+      motor.frames.clear();
+      motor.questions.clear();
+    }
     arm.half_cycle();
     oracle.judge(arm.cycle);
     states.insert(arm.state->drive_state);
