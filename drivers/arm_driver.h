@@ -69,6 +69,9 @@ class ArmDriver {
   /// the next transmit() sends it.
   int accept(const joint_command_t& command) noexcept;
 
+  /// Number of the controller that has the arm; 0: none.
+  std::int64_t controller() const noexcept { return gate_.memory().controller; }
+
   /// Too many cycles took longer than their period: the drives hold the arm by themselves.
   void report_overruns() noexcept { drives_.apply(DriveEvent::kOverrun); }
 

@@ -14,6 +14,10 @@ namespace {
 
 using Frames = std::vector<CanFrame>;
 
+/// Of four drives on a bus of iiwa14: 22 objects each, one every 20 cycles, and the changed one
+/// once more. desktop2r has five registers of two drives: 240.
+constexpr int kLastSetting = 1840;
+
 std::function<void(FaultStage*)> replies(const TamperedBus::Change& change) {
   return [change](FaultStage* stage) { stage->change_replies(change); };
 }
@@ -83,14 +87,36 @@ void foreign_master(FaultStage* stage) {
 
 void foreign_disable(FaultStage* stage) { stage->send_from_outside(stage->family().disable()); }
 
+std::uint16_t number_of(const DriveConfig& drive) {
+  return static_cast<std::uint16_t>(drive.command_id);
+}
+
 /// Damiao: PMAX; CiA 402: the mode, 6060h.
 void foreign_setting(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   stage->send_from_outside(
       drive.protocol == DriveProtocol::kDamiaoMit
-          ? mit::encode_register_write(static_cast<std::uint16_t>(drive.command_id),
-                                       mit::Register::kPositionRange, mit::float_bits(6.0F), false)
+          ? mit::encode_register_write(number_of(drive), mit::Register::kPositionRange,
+                                       mit::float_bits(6.0F), false)
           : canopen::encode_sdo_write(cia402::kMode, 1, canopen::node_of(drive.command_id)));
+}
+
+/// What the maker's tool of a Damiao drive writes over its own wire: position and velocity.
+void mode_past_the_bus(FaultStage* stage) {
+  stage->simulator().tell_past_the_bus(
+      0, mit::encode_register_write(number_of(stage->joint().drive), mit::Register::kControlMode, 2,
+                                    stage->bus_config().fd));
+}
+
+/// Damiao: TIMEOUT; CiA 402: the event timer of RPDO1.
+void watchdog_off_past_the_bus(FaultStage* stage) {
+  const DriveConfig& drive = stage->joint().drive;
+  const auto timer = canopen::pdo_event_timer_ms(canopen::kRpdoCommunication);
+  stage->simulator().tell_past_the_bus(
+      0, drive.protocol == DriveProtocol::kDamiaoMit
+             ? mit::encode_register_write(number_of(drive), mit::Register::kTimeout, 0,
+                                          stage->bus_config().fd)
+             : canopen::encode_sdo_write(timer, 0, canopen::node_of(drive.command_id)));
 }
 
 /// The velocity is wrong by half of the joint's limit, so that no limit notices.
@@ -194,6 +220,16 @@ std::vector<Fault> bus_faults() {
       {.name = "another program writes the drive's settings",
        .begin = foreign_setting,
        .most_cycles = 1,
+       .protocols = {DriveProtocol::kDamiaoMit, DriveProtocol::kCia402}},
+      {.name = "the drive's control mode is changed past the bus",
+       .begin = mode_past_the_bus,
+       .most_cycles = 240,
+       .watched_cycles = 300,
+       .protocols = only_damiao},
+      {.name = "the drive's watchdog is switched off past the bus",
+       .begin = watchdog_off_past_the_bus,
+       .most_cycles = kLastSetting,
+       .watched_cycles = kLastSetting + 100,
        .protocols = {DriveProtocol::kDamiaoMit, DriveProtocol::kCia402}},
       {.name = "frames of other devices", .begin = other_devices},
       {.name = "bus-off",

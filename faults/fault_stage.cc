@@ -98,7 +98,17 @@ bool FaultStage::is_mine(const CanFrame& frame) const {
   const DriveConfig& drive = joint().drive;
   std::uint32_t id = drive.reply_id;
   for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
-    if (has_id(frame, id)) return true;
+    if (has_id(frame, id)) return !tells_setting(frame);
+  }
+  return false;
+}
+
+bool FaultStage::tells_setting(const CanFrame& frame) const {
+  double found = 0.0;
+  for (int i = 0; i < family_->startup_steps(); ++i) {
+    if (family_->may_be_read_again(i) &&
+        family_->check_answer(i, frame, &found) != limber::Answer::kNone)
+      return true;
   }
   return false;
 }

@@ -48,7 +48,7 @@ class FaultStage {
   TamperedBus& bus() { return *tampered_[static_cast<std::size_t>(joint().drive.bus)]; }
   std::vector<TamperedBus*>& buses() { return tampered_; }
   Simulator& simulator() { return lab_->simulator(); }
-  /// Whether the frame is a reply of that drive.
+  /// Whether the frame is a reply of that drive to a command.
   bool is_mine(const CanFrame& frame) const;
   /// Its family, for frames of others that speak to it.
   DriveFamily& family() { return *family_; }
@@ -82,6 +82,7 @@ class FaultStage {
 
  private:
   bool on() const;
+  bool tells_setting(const CanFrame& frame) const;
 
   const LoadedRobot& robot_;
   Scenario scenario_;

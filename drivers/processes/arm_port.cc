@@ -57,6 +57,8 @@ void ArmPort::on_command(const joint_command_t& command) {
   // left from the state before, must not count as refused commands.
   if (lockstep_ && (!of_this_state || answered_)) return;
   const int verdict = driver_->accept(command);
+  if (verdict == driver_status_t::VERDICT_CONTROLLER)
+    reporter_->note_other_controller(command.controller, driver_->controller());
   const bool foreign = verdict == driver_status_t::VERDICT_SIZE ||
                        verdict == driver_status_t::VERDICT_SESSION ||
                        verdict == driver_status_t::VERDICT_CONTROLLER;

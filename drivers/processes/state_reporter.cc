@@ -1,9 +1,11 @@
 #include "drivers/processes/state_reporter.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <array>
 #include <chrono>
+#include <limber/driver_status_t.hpp>
 
 #include "common/problem_text.h"
 #include "drivers/drives_text.h"
@@ -12,6 +14,8 @@ namespace limber {
 namespace {
 
 constexpr std::uint64_t kNothing = ~std::uint64_t{0};
+constexpr auto kRound = std::chrono::milliseconds(20);
+constexpr int kRoundsPerSecond = std::chrono::seconds(1) / kRound;
 
 int fault_of(std::uint64_t packed) noexcept { return static_cast<int>(packed >> 8 & 0xFF); }
 
@@ -29,7 +33,8 @@ StateReporter::StateReporter(std::vector<std::string> joints)
       if (noted != reported) report_changes(reported, noted);
       reported = noted;
       report_warnings(&warned);
-      if (!last_round) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      report_other_controller();
+      if (!last_round) std::this_thread::sleep_for(kRound);
     }
   });
 }
@@ -63,6 +68,18 @@ void StateReporter::report_warnings(std::array<DriveWarning, kMaxMotors>* report
     }
     (*reported)[m] = now;
   }
+}
+
+void StateReporter::report_other_controller() {
+  if (rounds_until_next_ > 0 && --rounds_until_next_ > 0) return;
+  const std::int64_t other = other_controller_.load(std::memory_order_acquire);
+  if (other == controller_told_) return;
+  controller_told_ = other;
+  rounds_until_next_ = kRoundsPerSecond;
+  const std::string who =
+      fmt::format("number {}, and {} has the arm", other, holder_.load(std::memory_order_relaxed));
+  spdlog::warn("warning: {}",
+               problem_text(problems::kGate, driver_status_t::VERDICT_CONTROLLER, "", who));
 }
 
 void StateReporter::report(std::uint64_t packed, int known_fault) const {

@@ -43,6 +43,12 @@ class StateReporter {
   void note_warning(int motor, const DriveWarning& warning) noexcept {
     warnings_[static_cast<std::size_t>(motor)].store(warning, std::memory_order_release);
   }
+  /// A command of controller `number` was refused because `holder` has the arm; a line for another
+  /// number, one a second at most. Allowed inside the cycle.
+  void note_other_controller(std::int64_t number, std::int64_t holder) noexcept {
+    holder_.store(holder, std::memory_order_relaxed);
+    other_controller_.store(number, std::memory_order_release);
+  }
   /// `detail`: ArmDriver::fault_detail(). `controller_fault`: the last command came from a
   /// controller in FAULT. Allowed inside the cycle.
   void note(const joint_state_t& state, std::uint16_t detail = 0,
@@ -68,6 +74,7 @@ class StateReporter {
   }
   void report(std::uint64_t packed, int known_fault) const;
   void report_changes(std::uint64_t reported, std::uint64_t noted) const;
+  void report_other_controller();
 
   std::vector<std::string> joints_;
   FaultText fault_text_;
@@ -81,6 +88,10 @@ class StateReporter {
   bool by_controller_ = false;
   std::uint16_t fault_detail_ = 0;  ///< when the fault began
   std::atomic<std::uint64_t> noted_;
+  std::atomic<std::int64_t> other_controller_ = 0;  ///< 0: none
+  std::atomic<std::int64_t> holder_ = 0;
+  std::int64_t controller_told_ = 0;  // of the thread, as the next
+  int rounds_until_next_ = 0;
   std::jthread thread_;
 };
 

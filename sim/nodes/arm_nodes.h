@@ -43,6 +43,10 @@ class ArmNodes {
   void set_payload(const SimulatedArm& arm, double mass, const Eigen::Vector3d& p_TL) noexcept;
   void inject(const NodeFault& fault, std::int64_t now_ns) noexcept;
   void clear_faults() noexcept;
+  /// See MotorNodes.
+  void tell(int joint, const CanFrame& frame, std::int64_t now_ns) noexcept {
+    motors_.tell(joint, frame, now_ns);
+  }
 
  private:
   MotorNodes motors_;

@@ -127,6 +127,13 @@ void MotorNodes::inject(int joint, int fault, std::int64_t until_ns) noexcept {
   }
 }
 
+void MotorNodes::tell(int joint, const CanFrame& frame, std::int64_t now_ns) noexcept {
+  CanFrame unheard;
+  for (Node& node : nodes_) {
+    if (node.joint == joint) node.motor->receive(frame, node.reading, now_ns, &unheard);
+  }
+}
+
 void MotorNodes::clear_faults() noexcept {
   for (const Node& node : nodes_) node.motor->clear_faults();
 }

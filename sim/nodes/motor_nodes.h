@@ -41,6 +41,8 @@ class MotorNodes {
   /// On all motors of a joint.
   void inject(int joint, int fault, std::int64_t until_ns) noexcept;
   void clear_faults() noexcept;
+  /// The motors of a joint get a frame past their bus, which does not carry what they answer.
+  void tell(int joint, const CanFrame& frame, std::int64_t now_ns) noexcept;
 
  private:
   struct Node {

@@ -45,6 +45,7 @@ def test_second_controller(stack):
     )
     bound = stack.user.latest("JOINT_TORQUE").controller
     assert bound != 0
+    assert f", and {bound} has the arm; end one of them" in stack.log("driver")
     assert stack.state.drive_state == State.DRIVE_ON
     assert np.abs(np.array(stack.truth.q) - before).max() < 0.01
 

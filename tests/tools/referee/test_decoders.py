@@ -61,6 +61,14 @@ def test_damiao_replies(tmp_path):
     assert (lost.enabled, lost.failed) == (False, True)
 
 
+def test_damiao_register_reads_are_no_commands(tmp_path):
+    """While a drive is on, its settings are read beside its commands."""
+    motor = on_can0(DM4310, number=3, fd=False)
+    frames = ("7FF#0300330A00000000", "7FF#0300CC0000000000", "7FF#0400CC0000000000")
+    (request,) = damiao.commands(motor, trace(tmp_path, *frames))
+    assert (request.kind, request.time_ns) == (Kind.REQUEST, 2_000_000_000)
+
+
 def moteus_frame(*values: float) -> str:
     """Mode 10, six values from register 20h on, NOPs up to a length that FD has."""
     data = bytes([0x01, 0x00, 10, 0x0C, len(values), 0x20]) + struct.pack(

@@ -7,7 +7,7 @@ from limber.referee.events import Command, Kind, State, kind_of
 SPECIAL = {0xFC: Kind.ENABLE, 0xFD: Kind.DISABLE, 0xFE: Kind.INVALID, 0xFB: Kind.REQUEST}
 ENABLED, DISABLED = 1, 0
 REGISTERS = 0x7FF  # identifier of what asks for registers or for a state; the drive's is in it
-WRITE = 0x55
+STATE_REQUEST = 0xCC
 OTHER_MODES = (0x100, 0x200, 0x300)  # commands of the modes with a loop in the drive
 
 
@@ -29,7 +29,7 @@ def commands(motor: Motor, trace: Trace) -> list[Command]:
         for frame in trace.of(motor.interface, REGISTERS)
         if len(frame.data) == 8
         and frame.data[:2] == bytes((motor.number, 0))
-        and frame.data[2] != WRITE
+        and frame.data[2] == STATE_REQUEST
     ]
     return sorted(found, key=lambda command: command.time_ns)
 
