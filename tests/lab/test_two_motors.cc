@@ -77,7 +77,7 @@ TEST(TwoMotors, AreTakenOverWithoutAStep) {
   EXPECT_LT(slowest, 0.5) << "the preload is not let go";
 }
 
-// The drives are off for 40 ms: the springs unwind. ACTIVE, asked for as soon as the arm is held
+// The drives are off for 45 ms: the springs unwind. ACTIVE, asked for as soon as the arm is held
 // again, comes when they are wound up.
 const char* const kSlack = R"(format: limber-scenario/1
 name: slack_springs
@@ -87,8 +87,8 @@ duration_s: 5
 timeline:
   - {at_s: 0.3, mode: hold}
   - {at_s: 2.0, mode: idle}
-  - {at_s: 2.04, mode: hold}
-  - {at_s: 2.04, mode: active}
+  - {at_s: 2.045, mode: hold}
+  - {at_s: 2.045, mode: active}
 )";
 
 TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {

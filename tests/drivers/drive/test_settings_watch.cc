@@ -94,8 +94,7 @@ TEST_F(Watched, AFamilyWithNothingToBeReadIsAskedNothing) {
     SettingsWatch empty(of);
     CanFrame frame;
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(empty.request(&frame));
-    EXPECT_FALSE(empty.receive(answer(0, 0)));
-    EXPECT_FALSE(empty.receive(answer(1, 0)));
+    for (int step = 0; step < 7; ++step) EXPECT_FALSE(empty.receive(answer(step, 99))) << step;
   }
 }
 
@@ -192,6 +191,19 @@ TEST_F(Watched, TheFirstChangeStaysUntilTheStartUpIsRepeated) {
   EXPECT_FALSE(watch.receive(answer(4, 8)));
   answer_wrongly(1);
   EXPECT_FALSE(watch.changed()) << "counted from the beginning";
+}
+
+TEST_F(Watched, TheFirstStepMayBeASetting) {
+  FakeFamily first{{true, true}};
+  SettingsWatch other(&first);
+  CanFrame frame;
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_FALSE(other.receive(answer(0, 0))) << "nobody asked";
+    ASSERT_TRUE(other.request(&frame));
+    EXPECT_EQ(frame.id, 0U);
+    EXPECT_TRUE(other.receive(answer(0, 0)));
+    other.start();
+  }
 }
 
 TEST_F(Watched, AStartWhileAnAnswerIsDueBeginsAtTheFirst) {
