@@ -100,9 +100,8 @@ std::string ArmDrives::error_text(std::size_t joint, std::uint16_t status) const
   const auto changed = std::ranges::find_if(motors, &Drive::setting_changed);
   if (changed == motors.end()) return motors.front().link().status_text(status);
   return changed->changed_setting() +
-         ": changed past the bus while the drive was on; end what else writes to it, or find out "
-         "why "
-         "it restarted";
+         ": changed past the bus while the drive was on; end what else writes to it, or "
+         "find out why it restarted";
 }
 
 const Drive& ArmDrives::motor_at(int motor) const noexcept {
