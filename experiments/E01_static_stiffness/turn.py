@@ -22,7 +22,6 @@ SIDES = np.array([[9.0, 0.0, 0.0], [0.0, 45.0, 0.0]])  # N m
 LEGS_S = (4.0, 8.0)  # how long a side takes: fast and slow
 DAMPING_RATIO = 0.2
 FIRST_AT, RESTS_S = 2.0, 3.5
-STEP_S = 1e-3  # the simulator's: nothing is fast in a slow turn without friction
 
 Spring = Callable[[np.ndarray], np.ndarray]
 
@@ -102,7 +101,7 @@ def _half_difference(context: Context, start_q: list[float], mode: str, leg_s: f
         pushes += in_turn(start, leg_s, sides, ramp_s=leg_s, for_s=3 * leg_s)
     name = f"turn_{mode}_{leg_s:g}s"
     end_s = starts[1] + turn_s
-    log = context.run_law(name, "ideal7", gains, pushes, end_s, start_q=start_q, step_s=STEP_S)
+    log = context.run_law(name, "ideal7", gains, pushes, end_s, start_q=start_q)
     hand = []
     for start in starts:
         status(log, start, start + turn_s)

@@ -7,7 +7,6 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.spatial.transform import Rotation
 
 from limber.experiments.context import Context
-from limber.experiments.inertia import gravity_rate
 from limber.experiments.timeline import tip_gains
 from limber.experiments.truth import joints, motion, status, time_s
 from limber.experiments.variants import variant
@@ -83,18 +82,19 @@ def fed_in(run: Fall, rate_hz: int) -> np.ndarray:
     """What delay feeds in over time: -t_d ∫ vᵀ (∂τ/∂q) v dt, with t_d = 1.5 periods and τ all that
     the controller takes from the position: -∂τ/∂q = ∂²U/∂q² - ∂g/∂q, U the spring's energy.
     """
-    chain = load_robot("ideal7").chain
+    robot = load_robot("ideal7")
 
     def spring(q: np.ndarray) -> float:
-        X = chain.forward(q)
+        X = robot.chain.forward(q)
         return float(energy(X[None, :3, 3], Rotation.from_matrix(X[None, :3, :3]), run.goal)[0])
 
     few = slice(None, None, rate_hz // 250)
     step = 1e-3  # s
+    changes = robot.dynamics.gravity_rate(run.q[few], run.v[few])
     power = []
-    for q, v in zip(run.q[few], run.v[few], strict=True):
+    for q, v, change in zip(run.q[few], run.v[few], changes, strict=True):
         curved = spring(q + step * v) - 2 * spring(q) + spring(q - step * v)
-        power.append(curved / step**2 - v @ gravity_rate("ideal7", q, v))
+        power.append(curved / step**2 - v @ change)
     gained = cumulative_trapezoid(power, run.t[few], initial=0.0)
     return np.interp(run.t, run.t[few], 1.5 / rate_hz * gained)
 

@@ -27,6 +27,9 @@ from limber.run.options import LOG_NAME
 __all__ = ["Comparison", "Context", "at_least", "at_most", "case", "ideal_and_bus", "near_zero"]
 
 PICTURE = "picture.png"
+# No springs, friction or drives: nothing happens between two commands that Runge-Kutta steps of a
+# period would miss.
+SMOOTH, PERIOD_S = ("ideal7", "planar2r"), 1e-3
 REFEREE = "LIMBER_REFEREE"  # 1: the frames of every run are judged
 
 
@@ -72,9 +75,12 @@ class Context:
     ) -> Log:
         """Runs a law on exact equations: the arm is held, becomes active, and gets `gains` at 1 s.
 
-        `entries` of the timeline follow, until `end_s`; `head`: what else the scenario says.
+        `entries` of the timeline follow, until `end_s`; `head`: what else is in the scenario.
         """
-        scenario = {"robot": robot, "integrator": "reference", "duration_s": end_s + 0.1, **head}
+        scenario = {"robot": robot, "integrator": "reference", "duration_s": end_s + 0.1}
+        if robot in SMOOTH:
+            scenario["step_s"] = PERIOD_S
+        scenario |= head
         return self.lab({**scenario, "timeline": [*active_with(gains), *entries]}, name)
 
     def eval(self, cases: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -89,16 +89,27 @@ class Motors:
     arm: ElasticArm
     drives: Drives
     bristle: np.ndarray = field(init=False)
+    of_u: float = field(init=False)
+    of_x: np.ndarray = field(init=False)  # n x 4n: τ_m = of_u u + of_x x
 
     def __post_init__(self) -> None:
+        rho, kappa = self.drives.rho, self.drives.kappa
+        K, D = np.diag(self.arm.K), np.diag(self.arm.D)
         self.bristle = np.zeros(self.arm.size)
+        self.of_u = kappa * rho
+        self.of_x = kappa * (1 - rho) * np.hstack([-K, K, -D, D])
 
-    def torque(self, u: np.ndarray, x: State) -> np.ndarray:
-        rho = self.drives.rho
-        if rho == 1:
-            return self.drives.kappa * u
-        tau_t = self.arm.K * (x.theta - x.q) + self.arm.D * (x.theta_dot - x.v)
-        return self.drives.kappa * (rho * u + (1 - rho) * tau_t)
+    def torque(self, u: np.ndarray, x: np.ndarray) -> np.ndarray:
+        return self.of_u * u + self.of_x @ x
+
+    def period(
+        self, A: np.ndarray, E: np.ndarray, loops: int
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Without friction: x a period later as A x + E_u u + E_ext τ_ext, from those of a loop."""
+        n = self.arm.size
+        one = A + E[:, :n] @ self.of_x
+        inputs = sum(np.linalg.matrix_power(one, i) for i in range(loops)) @ E
+        return np.linalg.matrix_power(one, loops), self.of_u * inputs[:, :n], inputs[:, n:]
 
     def friction(self, speed: np.ndarray, step_s: float) -> np.ndarray:
         """Bristles that bend up to bristle_rad, where they slip; exact for a constant speed."""
@@ -125,19 +136,38 @@ def run(
     A, E = held(*arm.matrices(), step_s)
     x = np.zeros(4 * n) if start is None else np.concatenate(start)
     motors, u, rows = Motors(arm, drives), np.zeros(n), []
+    A_period, E_u, E_ext = motors.period(A, E, loops)
     for k in range(round(seconds / PERIOD_S)):
         t, now = k * PERIOD_S, State(*x.reshape(4, n))
         tau_ext = np.zeros(n) if push is None else push(t)
         next_u = law(t, now)
-        rows.append((t, x.copy(), motors.torque(u, now)))
-        pushed = E[:, n:] @ tau_ext
-        for _ in range(loops):
-            tau_m = motors.torque(u, State(*x.reshape(4, n)))
-            for _ in range(steps):
-                friction = motors.friction(x[3 * n :], step_s) if steps > 1 else 0.0
-                x = A @ x + E[:, :n] @ (tau_m - friction) + pushed
+        rows.append((t, x, motors.torque(u, x)))
+        if steps == 1:
+            x = A_period @ x + E_u @ u + E_ext @ tau_ext
+        else:
+            x = rubbed(motors, A, E, x, u, tau_ext, loops, step_s)
         u = next_u
     return _track(arm, rows)
+
+
+def rubbed(
+    motors: Motors,
+    A: np.ndarray,
+    E: np.ndarray,
+    x: np.ndarray,
+    u: np.ndarray,
+    tau_ext: np.ndarray,
+    loops: int,
+    step_s: float,
+) -> np.ndarray:
+    """x a period later, with friction in each step."""
+    n = motors.arm.size
+    pushed = E[:, n:] @ tau_ext
+    for _ in range(loops):
+        tau_m = motors.torque(u, x)
+        for _ in range(FRICTION_STEPS):
+            x = A @ x + E[:, :n] @ (tau_m - motors.friction(x[3 * n :], step_s)) + pushed
+    return x
 
 
 def _track(arm: ElasticArm, rows: list[tuple]) -> Track:

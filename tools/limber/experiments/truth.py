@@ -43,7 +43,8 @@ def between(log: Log, channel: str, start_s: float, end_s: float) -> np.ndarray:
     """The messages of a channel from `start_s` up to `end_s` of arm time."""
     rows = log.read(channel)
     t = time_s(rows)
-    chosen = rows[(t >= start_s - 1e-6) & (t < end_s - 1e-6)]
+    first, last = np.searchsorted(t, [start_s - 1e-6, end_s - 1e-6])
+    chosen = rows[first:last]
     if len(chosen) == 0 or t[-1] < end_s - 0.01:
         raise RunError(f"{log.path}: {channel} ends before {end_s:g} s")
     return chosen

@@ -53,11 +53,19 @@ class ArmDynamics:
         zero = np.zeros_like(q)
         return self.torque(q, zero, zero)
 
+    def gravity_rate(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(∂g/∂q) v, N x n, N m/s, by central differences."""
+        step = STEP_RAD * v
+        return (self.gravity_torque(q + step) - self.gravity_torque(q - step)) / (2 * STEP_RAD)
+
     def gravity_slope(self, q: np.ndarray) -> np.ndarray:
-        """∂g/∂q of one posture, n x n, N m/rad, by central differences."""
-        steps = STEP_RAD * np.eye(len(q))
-        change = self.gravity_torque(q + steps) - self.gravity_torque(q - steps)
-        return change.T / (2 * STEP_RAD)
+        """∂g/∂q of one posture, n x n, N m/rad."""
+        return self.gravity_rate(np.tile(q, (len(q), 1)), np.eye(len(q))).T
+
+    def inertia(self, q: np.ndarray) -> np.ndarray:
+        """M(q) of one posture, n x n, kg m²: column i is what the acceleration e_i takes."""
+        still, zero = np.tile(q, (len(q), 1)), np.zeros((len(q),) * 2)
+        return (self.torque(still, zero, np.eye(len(q))) - self.torque(still, zero, zero)).T
 
     def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
