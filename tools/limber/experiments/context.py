@@ -77,10 +77,9 @@ class Context:
 
         `entries` of the timeline follow, until `end_s`; `head`: what else is in the scenario.
         """
-        scenario = {"robot": robot, "integrator": "reference", "duration_s": end_s + 0.1}
-        if robot in SMOOTH:
-            scenario["step_s"] = PERIOD_S
-        scenario |= head
+        scenario = {"robot": robot, "integrator": "reference", "duration_s": end_s + 0.1, **head}
+        if robot in SMOOTH and scenario["integrator"] == "reference":
+            scenario.setdefault("step_s", PERIOD_S)
         return self.lab({**scenario, "timeline": [*active_with(gains), *entries]}, name)
 
     def eval(self, cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
