@@ -80,6 +80,8 @@ class Track:
 
 
 Law = Callable[[float, State], np.ndarray]
+# x a period later, of x, the controller's torque and that of a push
+Advance = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass
@@ -102,14 +104,28 @@ class Motors:
     def torque(self, u: np.ndarray, x: np.ndarray) -> np.ndarray:
         return self.of_u * u + self.of_x @ x
 
-    def period(
-        self, A: np.ndarray, E: np.ndarray, loops: int
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Without friction: x a period later as A x + E_u u + E_ext τ_ext, from those of a loop."""
+    def linear(self, A: np.ndarray, E: np.ndarray, loops: int) -> Advance:
+        """Without friction: all loops of a period at once, from the matrices of one."""
         n = self.arm.size
         one = A + E[:, :n] @ self.of_x
+        whole = np.linalg.matrix_power(one, loops)
         inputs = sum(np.linalg.matrix_power(one, i) for i in range(loops)) @ E
-        return np.linalg.matrix_power(one, loops), self.of_u * inputs[:, :n], inputs[:, n:]
+        of_u, of_push = self.of_u * inputs[:, :n], inputs[:, n:]
+        return lambda x, u, tau_ext: whole @ x + of_u @ u + of_push @ tau_ext
+
+    def rubbed(self, A: np.ndarray, E: np.ndarray, loops: int, step_s: float) -> Advance:
+        """With friction in each step of each loop; A and E are of a step."""
+        n = self.arm.size
+
+        def advance(x: np.ndarray, u: np.ndarray, tau_ext: np.ndarray) -> np.ndarray:
+            pushed = E[:, n:] @ tau_ext
+            for _ in range(loops):
+                tau_m = self.torque(u, x)
+                for _ in range(FRICTION_STEPS):
+                    x = A @ x + E[:, :n] @ (tau_m - self.friction(x[3 * n :], step_s)) + pushed
+            return x
+
+        return advance
 
     def friction(self, speed: np.ndarray, step_s: float) -> np.ndarray:
         """Bristles that bend up to bristle_rad, where they slip; exact for a constant speed."""
@@ -136,38 +152,15 @@ def run(
     A, E = held(*arm.matrices(), step_s)
     x = np.zeros(4 * n) if start is None else np.concatenate(start)
     motors, u, rows = Motors(arm, drives), np.zeros(n), []
-    A_period, E_u, E_ext = motors.period(A, E, loops)
+    advance = motors.linear(A, E, loops) if steps == 1 else motors.rubbed(A, E, loops, step_s)
     for k in range(round(seconds / PERIOD_S)):
         t, now = k * PERIOD_S, State(*x.reshape(4, n))
         tau_ext = np.zeros(n) if push is None else push(t)
         next_u = law(t, now)
         rows.append((t, x, motors.torque(u, x)))
-        if steps == 1:
-            x = A_period @ x + E_u @ u + E_ext @ tau_ext
-        else:
-            x = rubbed(motors, A, E, x, u, tau_ext, loops, step_s)
+        x = advance(x, u, tau_ext)
         u = next_u
     return _track(arm, rows)
-
-
-def rubbed(
-    motors: Motors,
-    A: np.ndarray,
-    E: np.ndarray,
-    x: np.ndarray,
-    u: np.ndarray,
-    tau_ext: np.ndarray,
-    loops: int,
-    step_s: float,
-) -> np.ndarray:
-    """x a period later, with friction in each step."""
-    n = motors.arm.size
-    pushed = E[:, n:] @ tau_ext
-    for _ in range(loops):
-        tau_m = motors.torque(u, x)
-        for _ in range(FRICTION_STEPS):
-            x = A @ x + E[:, :n] @ (tau_m - motors.friction(x[3 * n :], step_s)) + pushed
-    return x
 
 
 def _track(arm: ElasticArm, rows: list[tuple]) -> Track:

@@ -64,8 +64,8 @@ class ArmDynamics:
 
     def inertia(self, q: np.ndarray) -> np.ndarray:
         """M(q) of one posture, n x n, kg m²: column i is what the acceleration e_i takes."""
-        still, zero = np.tile(q, (len(q), 1)), np.zeros((len(q),) * 2)
-        return (self.torque(still, zero, np.eye(len(q))) - self.torque(still, zero, zero)).T
+        still, unit = np.tile(q, (len(q), 1)), np.eye(len(q))
+        return (self.torque(still, 0.0 * unit, unit) - self.gravity_torque(still)).T
 
     def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
