@@ -71,8 +71,10 @@ void BusStatistics::add(std::int64_t time_ns, int index, const CanFrame& frame) 
 
 std::string BusStatistics::text() const {
   std::string text;
-  for (std::size_t i = 0; i < buses_.size(); ++i)
-    text += (i == 0 ? "" : "\n") + text_of(buses_[i], static_cast<int>(i));
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    if (i > 0) text += '\n';
+    text += text_of(buses_[i], static_cast<int>(i));
+  }
   return text;
 }
 
