@@ -1,16 +1,20 @@
-// The driver's exchange with seven drives over a virtual bus, beside bare sendmmsg and recvmmsg of
-// the same datagrams, in alternating batches of one run. Both meet a process of their own that
-// sends the seven replies as soon as it has the seven commands. Prints one JSON line; the figure
-// that travels between machines is the ratio.
+// The driver's exchange with seven drives over a virtual bus, or a vcan interface, beside bare
+// sendmmsg and recvmmsg of the same frames, in alternating batches of one run. Both meet a process
+// of their own that sends the seven replies as soon as it has the seven commands. Prints one JSON
+// line; the figure that travels between machines is the ratio.
 //
-//   limber-bench-exchange [--rounds 20000]
+//   limber-bench-exchange [--rounds 20000] [--vcan]
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
 #include <array>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -130,28 +134,47 @@ class DrivenArm {
   std::int64_t time_ns_ = 0;
 };
 
-/// An end of a virtual bus that does nothing but the two system calls.
+/// A bus by its address in robot.yaml.
+struct BusName {
+  bool vcan;
+  std::string name;
+  std::string address() const { return (vcan ? "socketcan:" : "virtual:") + name; }
+};
+
+/// The kernel's form of a frame; returns its size.
+std::size_t encode_for_kernel(const CanFrame& frame, std::span<std::uint8_t> out) {
+  canfd_frame raw{};
+  raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U);
+  raw.len = frame.length;
+  raw.flags = frame.bitrate_switch ? CANFD_BRS : 0;
+  std::memcpy(raw.data, frame.data.data(), frame.length);
+  const std::size_t size = frame.fd ? CANFD_MTU : CAN_MTU;
+  std::memcpy(out.data(), &raw, size);
+  return size;
+}
+
+/// An end of a bus that does nothing but the two system calls.
 class BareEnd {
  public:
-  BareEnd(const std::string& bus, const std::vector<CanFrame>& frames)
+  BareEnd(const BusName& bus, const std::vector<CanFrame>& frames)
       : out_(frames.size()), in_(frames.size()) {
-    group_.sin_family = AF_INET;
-    group_.sin_port = htons(virtual_bus_port());
-    inet_pton(AF_INET, virtual_bus_group(bus).c_str(), &group_.sin_addr);
-    sockets_ = open_multicast(bus, group_, 0);
+    bus.vcan ? open_vcan(bus.name) : open_virtual(bus.name);
     const int receiver = sockets_.receiver.get();
     fcntl(receiver, F_SETFL, fcntl(receiver, F_GETFL) & ~O_NONBLOCK);
     const timeval patience{1, 0};
     setsockopt(receiver, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      out_.add(i, encode_datagram(frames[i], out_.datagrams[i]));
-      out_.headers[i].msg_hdr.msg_name = &group_;
-      out_.headers[i].msg_hdr.msg_namelen = sizeof group_;
+      out_.add(i, bus.vcan ? encode_for_kernel(frames[i], out_.datagrams[i])
+                           : encode_datagram(frames[i], out_.datagrams[i]));
+      if (!bus.vcan) {
+        out_.headers[i].msg_hdr.msg_name = &group_;
+        out_.headers[i].msg_hdr.msg_namelen = sizeof group_;
+      }
       in_.add(i, in_.datagrams[i].size());
     }
   }
 
-  void send() { sendmmsg(sockets_.sender.get(), out_.headers.data(), out_.size(), 0); }
+  void send() { sendmmsg(sender(), out_.headers.data(), out_.size(), 0); }
   /// Waits for as many as are sent; false after a second without.
   bool receive() {
     for (unsigned have = 0; have < in_.size();) {
@@ -177,13 +200,36 @@ class BareEnd {
     std::vector<iovec> vectors;
     std::vector<mmsghdr> headers;
   };
+
+  void open_virtual(const std::string& name) {
+    group_.sin_family = AF_INET;
+    group_.sin_port = htons(virtual_bus_port());
+    inet_pton(AF_INET, virtual_bus_group(name).c_str(), &group_.sin_addr);
+    sockets_ = open_multicast(name, group_, 0);
+  }
+  /// One socket, which does not receive what it sends.
+  void open_vcan(const std::string& name) {
+    sockets_.receiver = FileDescriptor(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
+    const int on = 1;
+    setsockopt(sockets_.receiver.get(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(if_nametoindex(name.c_str()));
+    if (address.can_ifindex == 0 ||
+        bind(sockets_.receiver.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+      throw ConfigError(name + ": there is no such CAN interface; tests/vcan/run-in-vcan has it");
+  }
+  int sender() const {
+    return sockets_.sender.get() >= 0 ? sockets_.sender.get() : sockets_.receiver.get();
+  }
+
   sockaddr_in group_{};
   MulticastSockets sockets_;
   Datagrams out_;
   Datagrams in_;
 };
 
-pid_t spawn_drives(const std::string& bus, const std::vector<CanFrame>& replies) {
+pid_t spawn_drives(const BusName& bus, const std::vector<CanFrame>& replies) {
   return spawn([&] {
     ask_for_realtime(kPriority);
     BareEnd drives(bus, replies);
@@ -200,7 +246,9 @@ std::int64_t bare_exchange(BareEnd* end) {
   return monotonic_ns() - start_ns;
 }
 
-int run(std::int64_t rounds) {
+int run(std::int64_t rounds, bool vcan) {
+  const BusName own{vcan, vcan ? "vcan0" : "bench-own"};
+  const BusName peer{vcan, vcan ? "vcan1" : "bench-bare"};
   const LoadedRobot robot = load_robot("openarm");
   DrivenArm arm(robot);
   const std::vector<CanFrame> commands = arm.bus().commands;
@@ -208,11 +256,10 @@ int run(std::int64_t rounds) {
   const auto seven = static_cast<std::size_t>(robot.robot.size());
   if (commands.size() != seven || replies.size() != seven)
     throw std::runtime_error("not one command and one reply for each drive");
-  const std::array<pid_t, 2> drives{spawn_drives("bench-own", replies),
-                                    spawn_drives("bench-bare", replies)};
-  const std::unique_ptr<CanBus> bus = open_can_bus("virtual:bench-own", true);
+  const std::array<pid_t, 2> drives{spawn_drives(own, replies), spawn_drives(peer, replies)};
+  const std::unique_ptr<CanBus> bus = open_can_bus(own.address(), true);
   arm.bus().change_to(bus.get());
-  BareEnd bare("bench-bare", commands);
+  BareEnd bare(peer, commands);
   const RealtimeGrant grant = ask_for_realtime(kPriority);
   usleep(200'000);  // the drives' sockets are open
 
@@ -245,5 +292,7 @@ int main(int argc, char** argv) {
                    "The driver's exchange with seven drives beside bare system calls.");
   std::int64_t rounds = 20'000;
   line.integer("--rounds", &rounds, 200, 10'000'000, "exchanges of each kind");
-  return run_program(line, argc, argv, [&] { return run(rounds); });
+  bool vcan = false;
+  line.flag("--vcan", &vcan, "over the interfaces vcan0 and vcan1 instead of virtual buses");
+  return run_program(line, argc, argv, [&] { return run(rounds, vcan); });
 }
