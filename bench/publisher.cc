@@ -4,12 +4,11 @@
 //   limber-bench-publisher --rate 20000 --seconds 2
 #include <fmt/format.h>
 
-#include <array>
-#include <lcm/lcm-cpp.hpp>
+#include <algorithm>
 
 #include "common/clock.h"
+#include "common/lcm_port.h"
 #include "common/lcm_url.h"
-#include "common/open_lcm.h"
 #include "common/program.h"
 #include "common/realtime.h"
 
@@ -17,12 +16,24 @@ using namespace limber;
 
 namespace {
 
-constexpr std::size_t kBytes = 304;
+/// 304 bytes: its number as the field `seq`, behind where a fingerprint is, big-endian; zeros.
+struct Numbered {
+  std::int64_t seq = 0;
+
+  int encode(void* out, int offset, int room) const {
+    constexpr int kBytes = 304;
+    if (room < kBytes) return -1;
+    auto* bytes = static_cast<std::uint8_t*>(out) + offset;
+    std::fill_n(bytes, kBytes, std::uint8_t{0});
+    for (int i = 0; i < 8; ++i) bytes[8 + i] = static_cast<std::uint8_t>(seq >> (56 - 8 * i));
+    return kBytes;
+  }
+};
+
 constexpr std::int64_t kBurst_ns = 500'000;  // what is due is sent so often: no timer is finer here
 
 int run(double rate_hz, double seconds) {
-  const auto lcm = open_lcm(user_plane_url());
-  std::array<std::uint8_t, kBytes> message{};
+  LcmPort port(user_plane_url(), LcmPort::Use::kPublishOnly);
   const auto total = static_cast<std::int64_t>(rate_hz * seconds);
   std::int64_t sent = 0;
   const std::int64_t start_ns = monotonic_ns();
@@ -30,11 +41,7 @@ int run(double rate_hz, double seconds) {
   for (loop.start(); sent < total; loop.wait()) {
     const double elapsed_s = static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
     const auto due = std::min(total, static_cast<std::int64_t>(elapsed_s * rate_hz) + 1);
-    for (; sent < due; ++sent) {
-      for (std::size_t i = 0; i < 8; ++i)  // as the field `seq`: behind the fingerprint, big-endian
-        message[8 + i] = static_cast<std::uint8_t>(sent >> (56U - 8U * i));
-      lcm->publish("BENCH", message.data(), static_cast<unsigned>(message.size()));
-    }
+    for (; sent < due; ++sent) port.publish("BENCH", Numbered{sent});
   }
   fmt::print("{{\"sent\": {}, \"seconds\": {:.3f}}}\n", sent,
              static_cast<double>(monotonic_ns() - start_ns) * 1e-9);

@@ -9,10 +9,12 @@ find_program(LIMBER_LCM_GEN lcm-gen HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQ
 file(GLOB LIMBER_LCM_PREFIX ${LIMBER_VENV}/lib/python3*/site-packages)
 find_path(LIMBER_LCM_INCLUDE lcm/lcm-cpp.hpp HINTS ${LIMBER_LCM_PREFIX}/include NO_DEFAULT_PATH REQUIRED)
 find_library(LIMBER_LCM_LIBRARY liblcm.so.1 NAMES lcm HINTS ${LIMBER_LCM_PREFIX}/lib NO_DEFAULT_PATH REQUIRED)
-add_library(lcm_cpp INTERFACE)
-target_include_directories(lcm_cpp SYSTEM INTERFACE ${LIMBER_LCM_INCLUDE})
-target_link_libraries(lcm_cpp INTERFACE ${LIMBER_LCM_LIBRARY})
-set(CMAKE_BUILD_RPATH ${LIMBER_LCM_PREFIX}/lib)
+# The headers are for what lcm-gen writes; LCM's library is what tests compare limber's own wire format and logs with.
+add_library(lcm_headers INTERFACE)
+target_include_directories(lcm_headers SYSTEM INTERFACE ${LIMBER_LCM_INCLUDE})
+add_library(lcm_library INTERFACE)
+target_link_libraries(lcm_library INTERFACE lcm_headers ${LIMBER_LCM_LIBRARY})
+target_link_options(lcm_library INTERFACE LINKER:-rpath,${LIMBER_LCM_PREFIX}/lib)
 
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)

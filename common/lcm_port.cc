@@ -25,8 +25,8 @@ LcmPort::LcmPort(const std::string& url, Use use)
     return;
   }
   hear_only(url_, sockets_, {});
-  setsockopt(descriptor(), SOL_SOCKET, SO_RCVBUF, &address_.receive_buffer_bytes,
-             sizeof address_.receive_buffer_bytes);
+  const int bytes = address_.receive_buffer_bytes.value_or(kReceiveBuffer_bytes);
+  setsockopt(descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
 }
 
 bool LcmPort::send(Bytes datagram) noexcept {

@@ -104,14 +104,6 @@ LcmAddress parse_lcm_url(const std::string& url) {
   return address;
 }
 
-std::string checked_lcm_url(const std::string& url) {
-  const LcmAddress address = parse_lcm_url(url);
-  std::array<char, INET_ADDRSTRLEN> group{};
-  inet_ntop(AF_INET, &address.group.sin_addr, group.data(), group.size());
-  return fmt::format("{}{}:{}?ttl={}&recv_buf_size={}", kScheme, group.data(),
-                     ntohs(address.group.sin_port), address.ttl, address.receive_buffer_bytes);
-}
-
 std::string arm_plane_url() { return from_environment("LIMBER_ARM_URL", channels::kArmPlaneUrl); }
 std::string user_plane_url() {
   return from_environment("LCM_DEFAULT_URL", channels::kUserPlaneUrl);

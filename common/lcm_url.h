@@ -3,22 +3,23 @@
 
 #include <netinet/in.h>
 
+#include <optional>
 #include <string>
 
 namespace limber {
 
+/// LCM's own default is too small.
+inline constexpr int kReceiveBuffer_bytes = 2 << 20;
+
 struct LcmAddress {
   sockaddr_in group{};
   int ttl = 0;
-  int receive_buffer_bytes = 2 << 20;
+  std::optional<int> receive_buffer_bytes;  ///< as asked for; else kReceiveBuffer_bytes or more
 };
 
 /// Allowed is udpm://[GROUP[:PORT]] with at most one `ttl`, which is 0 unless LIMBER_ALLOW_REMOTE=1
 /// is set (messages stay on this machine), and `recv_buf_size`. Throws ConfigError. Set-up only.
 LcmAddress parse_lcm_url(const std::string& url);
-
-/// `url`, if allowed, with the receive buffer written out: LCM's own default is too small.
-std::string checked_lcm_url(const std::string& url);
 
 /// $LIMBER_ARM_URL or the arm plane's address of the channel table; $LCM_DEFAULT_URL or the user
 /// plane's.

@@ -43,21 +43,6 @@ const sockaddr* generic(const sockaddr_in* address) {
   return reinterpret_cast<const sockaddr*>(address);
 }
 
-FileDescriptor open_receiver(const std::string& name, const sockaddr_in& group) {
-  FileDescriptor socket = open_udp(name);
-  set(name, socket.get(), SOL_SOCKET, SO_REUSEADDR, 1);
-  set(name, socket.get(), SOL_SOCKET, SO_REUSEPORT, 1);
-  set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
-  // Bound to the group, not to any address: other groups on the same port stay out.
-  if (bind(socket.get(), generic(&group), sizeof(group)) != 0) {
-    refuse_with_errno(name, "cannot bind to port " + std::to_string(ntohs(group.sin_port)));
-  }
-  // No interface named: the kernel joins where its route to the group leads, and sent frames take
-  // the same route.
-  set(name, socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, ip_mreqn{group.sin_addr, {}, 0});
-  return socket;
-}
-
 /// Sends from a port of its own, by which our frames are distinguished from all others. Not
 /// connected: the kernel would fix a source address, and then prefer that address's interface to
 /// the route.
@@ -158,8 +143,23 @@ bool is_loopback(const std::string& interface) {
 
 }  // namespace
 
+FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group) {
+  FileDescriptor socket = open_udp(name);
+  set(name, socket.get(), SOL_SOCKET, SO_REUSEADDR, 1);
+  set(name, socket.get(), SOL_SOCKET, SO_REUSEPORT, 1);
+  set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
+  // Bound to the group, not to any address: other groups on the same port stay out.
+  if (bind(socket.get(), generic(&group), sizeof(group)) != 0) {
+    refuse_with_errno(name, "cannot bind to port " + std::to_string(ntohs(group.sin_port)));
+  }
+  // No interface named: the kernel joins where its route to the group leads, and sent frames take
+  // the same route.
+  set(name, socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, ip_mreqn{group.sin_addr, {}, 0});
+  return socket;
+}
+
 MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl) {
-  MulticastSockets sockets{open_receiver(name, group), open_sender(name, ttl)};
+  MulticastSockets sockets{open_multicast_receiver(name, group), open_sender(name, ttl)};
   Filter filter = drop_own(name, sockets.sender.get());
   filter.push_back(kPass);
   attach(name, sockets.receiver.get(), &filter);

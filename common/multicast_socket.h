@@ -26,6 +26,10 @@ struct MulticastSockets {
 /// kMulticastRouteCommands. Set-up only.
 MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl);
 
+/// The receiver alone, which hears everybody in the group. Throws ConfigError likewise. Set-up
+/// only.
+FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group);
+
 /// From here on `receiver` hears LCM's short messages on these channels alone; the kernel drops all
 /// others before they wake anybody up. `sender`'s it still does not hear. Throws ConfigError that
 /// begins with `name`. Set-up only.

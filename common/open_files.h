@@ -4,7 +4,7 @@
 namespace limber {
 
 /// Throws ConfigError unless there may be enough for any program here: one that has none left fails
-/// in the middle (the LCM library ends the process). Set-up only.
+/// in the middle. Set-up only.
 void require_open_files();
 
 }  // namespace limber

@@ -2,7 +2,7 @@
 // can send to it. A datagram is "LC02", a sequence number (4 bytes, big-endian), the channel's name
 // with a terminating zero, and the encoded message
 // (https://lcm-proj.github.io/lcm/content/udp-multicast-protocol.html). Longer messages come in
-// fragments ("LC03"); limber's never do.
+// fragments ("LC03", lcm_fragments.h); limber's never do.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,17 @@ inline std::size_t write_lcm_header(std::string_view channel, std::uint32_t sequ
   return static_cast<std::size_t>(end - out.begin());
 }
 
+/// The channel's name in front, with its terminating zero, and what is behind it; nothing if the
+/// name does not end in time. The views are into `bytes`. Allowed in the cycle.
+inline std::optional<LcmDatagram> split_lcm_channel(std::span<const std::uint8_t> bytes) noexcept {
+  const auto name = bytes.first(std::min(bytes.size(), kLongestChannel + 1));
+  const auto zero = std::ranges::find(name, 0);
+  if (zero == name.end()) return std::nullopt;
+  const auto length = static_cast<std::size_t>(zero - name.begin());
+  return LcmDatagram{{reinterpret_cast<const char*>(bytes.data()), length},
+                     bytes.subspan(length + 1)};
+}
+
 /// Nothing if it is no short message. The views are into `datagram`. Allowed in the cycle.
 inline std::optional<LcmDatagram> read_lcm_datagram(
     std::span<const std::uint8_t> datagram) noexcept {
@@ -41,12 +52,7 @@ inline std::optional<LcmDatagram> read_lcm_datagram(
   if (datagram.size() < kLcmHeaderBytes ||
       !std::equal(kShort.begin(), kShort.end(), datagram.begin()))
     return std::nullopt;
-  const auto rest = datagram.subspan(kLcmHeaderBytes);
-  const auto zero = std::ranges::find(rest.first(std::min(rest.size(), kLongestChannel + 1)), 0);
-  const auto length = static_cast<std::size_t>(zero - rest.begin());
-  if (length >= std::min(rest.size(), kLongestChannel + 1)) return std::nullopt;
-  return LcmDatagram{{reinterpret_cast<const char*>(rest.data()), length},
-                     rest.subspan(length + 1)};
+  return split_lcm_channel(datagram.subspan(kLcmHeaderBytes));
 }
 
 }  // namespace limber

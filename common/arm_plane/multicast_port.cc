@@ -13,8 +13,8 @@ class MulticastPort final : public DatagramPort {
   MulticastPort(const std::string& url, const LcmAddress& address)
       : group_(address.group),
         sockets_(open_multicast("arm plane " + url, address.group, address.ttl)) {
-    setsockopt(sockets_.receiver.get(), SOL_SOCKET, SO_RCVBUF, &address.receive_buffer_bytes,
-               sizeof address.receive_buffer_bytes);
+    const int bytes = address.receive_buffer_bytes.value_or(kReceiveBuffer_bytes);
+    setsockopt(sockets_.receiver.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
   }
 
   bool send(std::span<const std::uint8_t> datagram) noexcept override {

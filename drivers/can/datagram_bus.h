@@ -7,7 +7,7 @@
 
 #include "common/file_descriptor.h"
 #include "drivers/can/can_bus.h"
-#include "drivers/can/datagram_batch.h"
+#include "common/datagram_batch.h"
 
 namespace limber {
 

@@ -1,7 +1,10 @@
 // Which LCM addresses are taken: nothing that leaves this machine unless it is wanted.
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 #include "common/config_error.h"
@@ -12,21 +15,29 @@ namespace {
 
 std::string refusal(const std::string& url) {
   try {
-    checked_lcm_url(url);
+    parse_lcm_url(url);
   } catch (const ConfigError& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(LcmUrl, HasEverythingWrittenOut) {
-  EXPECT_EQ(checked_lcm_url("udpm://"), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
-  EXPECT_EQ(checked_lcm_url("udpm://239.1.2.3:7000?ttl=0"),
-            "udpm://239.1.2.3:7000?ttl=0&recv_buf_size=2097152");
-  EXPECT_EQ(checked_lcm_url("udpm://239.1.2.3?"),
-            "udpm://239.1.2.3:7667?ttl=0&recv_buf_size=2097152");
-  EXPECT_EQ(checked_lcm_url("udpm://?recv_buf_size=4096"),
-            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4096");
+std::string place(const std::string& url) {
+  const LcmAddress address = parse_lcm_url(url);
+  std::array<char, INET_ADDRSTRLEN> group{};
+  inet_ntop(AF_INET, &address.group.sin_addr, group.data(), group.size());
+  return std::string(group.data()) + ":" + std::to_string(ntohs(address.group.sin_port));
+}
+
+TEST(LcmUrl, WhatIsNotGivenIsLcmsOwn) {
+  EXPECT_EQ(place("udpm://"), "239.255.76.67:7667");
+  EXPECT_EQ(place("udpm://239.1.2.3:7000?ttl=0"), "239.1.2.3:7000");
+  EXPECT_EQ(place("udpm://239.1.2.3?"), "239.1.2.3:7667");
+  for (const char* url : {"udpm://", "udpm://?ttl=0"}) {
+    EXPECT_EQ(parse_lcm_url(url).ttl, 0);
+    EXPECT_EQ(parse_lcm_url(url).receive_buffer_bytes, std::nullopt);
+  }
+  EXPECT_EQ(parse_lcm_url("udpm://?recv_buf_size=4096").receive_buffer_bytes, 4096);
 }
 
 TEST(LcmUrl, HasAGroupAndAPort) {

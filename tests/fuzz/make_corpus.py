@@ -140,6 +140,39 @@ def black_box_inputs() -> None:
         keep("black_box", f"ring_{ring}", struct.pack("<H", ring) + messages_of_a_cycle)
 
 
+def shared_memory_inputs() -> None:
+    """An action with a length, then what it needs; see shared_memory.cc."""
+
+    def action(kind: int, length: int = 0) -> bytes:
+        return struct.pack("<BH", kind, length)
+
+    def spoil(ring: int, what: int, slot: int, data: bytes) -> bytes:
+        return action(4) + bytes([ring + 2 * what, slot]) + data
+
+    receive, wait, send, write = (action(kind, 400) for kind in range(4))
+    keep("shared_memory", "both_ways", b"\1" + (write + wait + receive + send) * 8)
+    keep("shared_memory", "overtaken", b"\0" + write * 70 + receive * 3 + wait)
+    number, size = struct.pack("<bI", 0, 2**31), struct.pack("<bI", 0, 2**32 - 1)
+    spoilt = spoil(1, 0, 0, number) + receive + spoil(1, 2, 1, size) + write + receive
+    keep("shared_memory", "spoilt", b"\1" + write + spoilt + spoil(1, 1, 2, b"\2") + wait)
+    torn = spoil(1, 1, 1, b"\100") + receive + spoil(1, 4, 1, b"\3" + bytes(8)) + receive
+    keep("shared_memory", "torn", b"\1" + write * 3 + torn)
+
+
+def fragment_inputs() -> None:
+    """As lcm_fragments.cc reads them: kind and sender, five numbers, length, data."""
+
+    def fragment(sender: int, offset: int, number: int, data: bytes) -> bytes:
+        return bytes([sender, 1, 10, offset, number, 3, len(data)]) + data
+
+    parts = [(0, 0, b"ARM\0abcd"), (4, 1, b"efgh"), (8, 2, b"ij")]
+    keep("lcm_fragments", "in_order", b"".join(fragment(0, *part) for part in parts))
+    both = (fragment(sender, *part) for part in parts[::-1] for sender in (1, 2))
+    keep("lcm_fragments", "two_senders", b"".join(both))
+    large = struct.pack("<BIBIBIBIBIBB", 60, 1, 0, 1 << 20, 0, 5, 0, 1, 0, 300, 0, 1) + b"x"
+    keep("lcm_fragments", "large", large * 3 + fragment(0, *parts[0]))
+
+
 def lockstep_inputs() -> None:
     frames = [
         Frame(0x1FFFFFF0 + kind, True, False, struct.pack("<q", number))
@@ -253,6 +286,8 @@ def main() -> None:
         message_inputs(logs)
     sensor_inputs()
     black_box_inputs()
+    shared_memory_inputs()
+    fragment_inputs()
     lockstep_inputs()
     gate_inputs()
     file_inputs()

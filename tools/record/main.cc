@@ -1,16 +1,15 @@
 // limber-record: the user plane into an LCM event log.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <lcm/lcm-cpp.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "common/clock.h"
 #include "common/lcm_url.h"
-#include "common/open_lcm.h"
 #include "common/program.h"
 #include "common/wait_readable.h"
+#include "tools/record/lcm_listener.h"
 #include "tools/record/recorder.h"
 
 namespace {
@@ -19,31 +18,6 @@ namespace {
 /// the line has been quiet this long, or for `--tail`.
 constexpr std::int64_t kQuiet_ns = 200'000'000;
 constexpr double kTail_s = 5.0;
-
-/// Longer than any message of limber's. LCM hands on sizes of broken datagrams as they come.
-constexpr std::uint32_t kMostBytes = 1U << 20U;
-
-struct Sink {
-  limber::Recorder* recorder;
-  std::int64_t last_ns = 0;
-  std::int64_t ignored = 0;  // impossible sizes
-  std::string failure;       // no exception may cross LCM's C code
-};
-
-void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel, Sink* sink) {
-  if (buffer->data_size > kMostBytes) {
-    if (sink->ignored++ == 0)
-      spdlog::warn("a datagram on {} has an impossible size: left out", channel);
-    return;
-  }
-  try {
-    sink->recorder->write(buffer->recv_utime, channel, buffer->data,
-                          static_cast<std::int32_t>(buffer->data_size));
-  } catch (const std::exception& error) {
-    sink->failure = error.what();
-  }
-  sink->last_ns = limber::monotonic_ns();
-}
 
 struct Options {
   std::string path;
@@ -55,26 +29,36 @@ struct Options {
 int record(const Options& given, const std::string& url) {
   const auto& stop = limber::stop_on_signals();
   limber::Recorder recorder(given.path, static_cast<std::int64_t>(given.least_free_MB * 1e6));
-  const auto lcm = limber::open_lcm(url);
-  Sink sink{&recorder, limber::monotonic_ns(), 0, {}};
-  lcm->subscribeFunction(".*", on_message, &sink)->setQueueCapacity(0);
+  limber::LcmListener listener(url);
+  const auto write = [&](std::int64_t time_us, const limber::LcmDatagram& message) {
+    recorder.write(time_us, message.channel, message.message);
+  };
   spdlog::info("recording {} to {}", url, given.path);
   const std::int64_t start_ns = limber::monotonic_ns();
-  const int descriptor = lcm->getFileno();
   std::int64_t stopped_ns = 0;
   while (true) {
     const std::int64_t now = limber::monotonic_ns();
     if (stopped_ns == 0 &&
         (stop != 0 || (given.duration_s > 0 && now - start_ns > given.duration_s * 1e9)))
       stopped_ns = now;
-    if (stopped_ns != 0 &&
-        (now - sink.last_ns > kQuiet_ns || now - stopped_ns > given.tail_s * 1e9))
-      break;
-    if (limber::wait_readable(std::span(&descriptor, 1), now + 50'000'000)) lcm->handle();
-    if (!sink.failure.empty()) throw std::runtime_error(sink.failure);
+    const auto ends = [&](std::int64_t time_ns) {
+      return stopped_ns != 0 && time_ns - stopped_ns > given.tail_s * 1e9;
+    };
+    if (listener.take_batch(write) > 0) {
+      // By its arrival: what waited when the user stopped the recording is written, however long
+      // that takes.
+      if (ends(listener.newest_ns())) break;
+      continue;
+    }
+    const std::int64_t last_ns = std::max(start_ns, listener.newest_ns());
+    if (ends(now) || (stopped_ns != 0 && now - last_ns > kQuiet_ns)) break;
+    limber::wait_readable(listener.descriptor(), now + 50'000'000);
   }
   recorder.close();
-  std::printf("%s\n", recorder.report().c_str());
+  if (listener.incomplete() > 0) {
+    spdlog::warn("{} messages in fragments did not come whole: left out", listener.incomplete());
+  }
+  std::printf("%s\n", recorder.report(listener.dropped()).c_str());
   return limber::kExitDone;
 }
 

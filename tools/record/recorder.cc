@@ -15,21 +15,24 @@ namespace {
 constexpr int kFingerprintBytes = 8;
 
 /// The first field of the message: a big-endian 64-bit integer behind LCM's fingerprint.
-std::int64_t sequence_number(const void* data) {
-  const auto* bytes = static_cast<const unsigned char*>(data) + kFingerprintBytes;
+std::int64_t sequence_number(std::span<const std::uint8_t> message) {
   std::uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | bytes[i];
+  for (const std::uint8_t byte : message.subspan(kFingerprintBytes, 8)) value = value << 8 | byte;
   return static_cast<std::int64_t>(value);
 }
 
 }  // namespace
 
-void Recorder::write(std::int64_t time_us, const std::string& channel, const void* data,
-                     std::int32_t size) {
-  const auto [entry, fresh] = channels_.try_emplace(channel);
+void Recorder::write(std::int64_t time_us, std::string_view channel,
+                     std::span<const std::uint8_t> message) {
+  auto entry = channels_.find(channel);
+  if (entry == channels_.end()) {
+    entry = channels_.try_emplace(std::string(channel)).first;
+    entry->second.numbered = !std::ranges::count(channels::kUnnumbered, channel);
+  }
   ChannelCount& count = entry->second;
-  if (fresh) count.numbered = !std::ranges::count(channels::kUnnumbered, channel);
-  if (log_.offer(time_us, channel, data, size)) {
+  const auto size = static_cast<std::int32_t>(message.size());
+  if (log_.offer(time_us, channel, message.data(), size)) {
     ++messages_;
     bytes_ += size;
     ++count.messages;
@@ -41,18 +44,19 @@ void Recorder::write(std::int64_t time_us, const std::string& channel, const voi
       spdlog::warn("the disk is too slow: messages are left out, and counted as lost");
   }
   if (size < kFingerprintBytes + 8 || !count.numbered) return;
-  const std::int64_t seq = sequence_number(data);
+  const std::int64_t seq = sequence_number(message);
   if (count.last_seq >= 0 && seq > count.last_seq + 1) count.lost += seq - count.last_seq - 1;
   count.last_seq = seq;
 }
 
-std::string Recorder::report() const {
+std::string Recorder::report(std::int64_t dropped) const {
   std::string lost;
   for (const auto& [channel, count] : channels_) {
     lost += fmt::format("{}\"{}\": {}", lost.empty() ? "" : ", ", channel, count.lost);
   }
-  return fmt::format("{{\"messages\": {}, \"bytes\": {}, \"file_bytes\": {}, \"lost\": {{{}}}}}",
-                     messages_, bytes_, log_.bytes_on_disk(), lost);
+  return fmt::format(
+      "{{\"messages\": {}, \"bytes\": {}, \"file_bytes\": {}, \"dropped\": {}, \"lost\": {{{}}}}}",
+      messages_, bytes_, log_.bytes_on_disk(), dropped, lost);
 }
 
 }  // namespace limber

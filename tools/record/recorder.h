@@ -1,10 +1,12 @@
-// Writes every message of an LCM plane to an event log without dropping any, and counts by sequence
-// number what never arrived.
+// Writes messages to an event log, and counts by sequence number what never arrived.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "common/event_log.h"
 
@@ -26,17 +28,17 @@ class Recorder {
 
   /// A message that the disk is too slow for is counted as lost; the first is warned of.
   /// Throws std::runtime_error when the disk refuses (full, gone).
-  void write(std::int64_t time_us, const std::string& channel, const void* data, std::int32_t size);
+  void write(std::int64_t time_us, std::string_view channel, std::span<const std::uint8_t> message);
   /// Throws std::runtime_error when the disk refuses.
   void close() { log_.close(); }
 
-  const std::map<std::string, ChannelCount>& channels() const { return channels_; }
-  /// One line of JSON: {"messages": n, "bytes": n, "file_bytes": n, "lost": {"CHANNEL": n, ...}}.
-  std::string report() const;
+  /// One line of JSON: {"messages": n, "bytes": n, "file_bytes": n, "dropped": n, "lost":
+  /// {"CHANNEL": n, ...}}. `dropped`: datagrams of any channel that the kernel had no room for.
+  std::string report(std::int64_t dropped) const;
 
  private:
   EventLog log_;
-  std::map<std::string, ChannelCount> channels_;
+  std::map<std::string, ChannelCount, std::less<>> channels_;
   std::int64_t messages_ = 0;
   std::int64_t bytes_ = 0;
   bool slow_ = false;

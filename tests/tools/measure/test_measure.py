@@ -363,6 +363,20 @@ def test_refusals_losses_and_faults_fail_the_run(tmp_path, still):
     assert not summary.passed
 
 
+@pytest.mark.parametrize(("dropped", "lost"), [(0, 3), (2, 3), (3, 3), (5, 5)])
+def test_what_the_kernel_dropped_is_lost_on_all_channels_together(tmp_path, still, dropped, lost):
+    """Gaps in numbers tell of numbered channels alone, and are among what was dropped."""
+    truth = truth_of(still, np.linalg.inv(still.robot.K_x))
+    log = Log(
+        write_log(tmp_path / "d.lcmlog", {"SIM_TRUTH": truth, "JOINT_STATE": state_of(truth)})
+    )
+    summary = measure(log, still, "lockstep", {"JOINT_STATE": 3}, recorder_dropped=dropped)[0]
+    assert summary.find("messages lost").value == lost
+    more = "2 more before the recorder" in summary.find("messages lost").note
+    assert more == (dropped == 5)
+    assert not summary.passed
+
+
 def test_not_a_number_never_passes(tmp_path, still):
     truth = truth_of(still, np.linalg.inv(still.robot.K_x))
     truth["p_BT"] = np.nan

@@ -16,6 +16,7 @@ from limber.dev import can_interfaces
 from limber.live import network
 
 WANTED_BUFFER_BYTES = 2 << 20
+RECORDER_BUFFER_BYTES = 64 << 20
 WANTED_PRIORITY = 80
 ARPHRD_CAN = "280"  # linux/if_arp.h
 SMALL_DISK_BYTES = 1 << 30
@@ -55,7 +56,12 @@ def _receive_buffer() -> Iterator[Finding]:
         yield Finding("ok", "receive buffer", text)
     else:
         text += ": at 1 kHz a pause of 0.2 s loses messages"
-        yield Finding("warn", "receive buffer", text, "sudo sysctl -w net.core.rmem_max=4194304")
+        yield Finding(
+            "warn",
+            "receive buffer",
+            text,
+            f"sudo sysctl -w net.core.rmem_max={RECORDER_BUFFER_BYTES}",
+        )
 
 
 def _limit(which: int) -> float:

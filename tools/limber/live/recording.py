@@ -56,8 +56,11 @@ class Recording:
         lost = {name: count for name, count in found["lost"].items() if name != "JOINT_TORQUE"}
         self.lost = {name: count for name, count in lost.items() if count}
         self._notes.close()
-        if self.lost:
-            shown = ", ".join(f"{count} of {name}" for name, count in self.lost.items())
+        shown = ", ".join(f"{count} of {name}" for name, count in self.lost.items())
+        more = found["dropped"] - sum(self.lost.values())
+        if more > 0:
+            shown += f"{', ' if shown else ''}{more} more before the recorder"
+        if shown:
             warnings.warn(f"{self.path}: messages lost: {shown}", stacklevel=2)
 
     def _told(self) -> str:

@@ -14,12 +14,17 @@ from limber.problems import problem
 
 
 def health_results(
-    log: Log, scenario: Scenario, recorder_lost: dict[str, int], faults: list[Fault]
+    log: Log,
+    scenario: Scenario,
+    recorder_lost: dict[str, int],
+    recorder_dropped: int,
+    faults: list[Fault],
 ) -> list[Result]:
     state, driver = log.read("JOINT_STATE"), log.read("DRIVER_STATUS")
     results = [Result("cycles", len(state))]
     realtime = len(driver) and not driver[-1]["lockstep"]
-    results.append(_lost(log, recorder_lost, skipped={"JOINT_TORQUE"} if realtime else set()))
+    skipped = {"JOINT_TORQUE"} if realtime else set()
+    results.append(_lost(log, recorder_lost, recorder_dropped, skipped))
     if len(driver):
         results.extend(_driver(driver[-1], scenario))
     results.append(_requests(log, log.read("CONTROLLER_STATUS")))
@@ -33,16 +38,23 @@ def _unsound(log: Log) -> list[Result]:
     return [at_most("messages with impossible numbers", count, "", 0)] if count else []
 
 
-def _lost(log: Log, recorder_lost: dict[str, int], skipped: set[str]) -> Result:
+def _lost(
+    log: Log, recorder_lost: dict[str, int], recorder_dropped: int, skipped: set[str]
+) -> Result:
     """`skipped`: channels whose gaps are no loss. In realtime a controller that was held up answers
     the newest state only; the driver counts the others as cycles without an answer.
+
+    What the kernel dropped before the recorder is known of all channels together.
     """
     lost = {name: log.lost(name) for name in log.channels if name not in skipped}
     for name, count in recorder_lost.items():
         if name in lost:
             lost[name] = max(lost[name], count)
-    where = ", ".join(f"{name} {count}" for name, count in lost.items() if count)
-    return at_most("messages lost", sum(lost.values()), "", 0, where)
+    where = [f"{name} {count}" for name, count in lost.items() if count]
+    more = max(recorder_dropped - sum(lost.values()), 0)
+    if more:
+        where.append(f"{more} more before the recorder")
+    return at_most("messages lost", sum(lost.values()) + more, "", 0, ", ".join(where))
 
 
 def _driver(status: np.void, scenario: Scenario) -> list[Result]:

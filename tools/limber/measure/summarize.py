@@ -20,6 +20,7 @@ def measure(
     mode: str,
     recorder_lost: dict[str, int] | None = None,
     stopped: bool = False,
+    recorder_dropped: int = 0,
 ) -> tuple[Summary, list[MeasuredPush]]:
     """`stopped`: by the user, before the scenario was over; what follows is not judged."""
     end_s = stopped_s(log) if stopped else scenario.duration_s
@@ -28,7 +29,7 @@ def measure(
     pushes = measure_pushes(log, scenario)
     tolerances = scenario.tolerances
     results = [Result("stopped", f"by you after {end_s:.1f} s")] if stopped else []
-    results += health_results(log, scenario, recorder_lost or {}, faults)
+    results += health_results(log, scenario, recorder_lost or {}, recorder_dropped, faults)
     results += push_results(pushes, tolerances.stiffness)
     results += matrix_results(pushes, tolerances.stiffness, scenario.friction)
     results += contact_results(truth, scenario, tolerances.contact_force)

@@ -66,7 +66,10 @@ def measure_again(folder: Path, console: Console) -> int:
         folder, header.get("mode", "unknown"), header.get("stopped_early", False)
     )
     finished.log_name = log_file(folder).name
-    finished.recorder = {"lost": header.get("recorder_lost", {})}
+    finished.recorder = {
+        "lost": header.get("recorder_lost", {}),
+        "dropped": header.get("recorder_dropped", 0),
+    }
     return report(finished, scenario, console)
 
 
@@ -109,10 +112,15 @@ def _boxes(folder: Path) -> list[str]:
 def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:
     log = Log(finished.log)
     lost = finished.recorder.get("lost", {})
-    summary, pushes = measure(log, scenario, finished.mode, lost, finished.stopped_early)
+    dropped = finished.recorder.get("dropped", 0)
+    summary, pushes = measure(
+        log, scenario, finished.mode, lost, finished.stopped_early, recorder_dropped=dropped
+    )
     if len(log.read("JOINT_STATE")) == 0:
         raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
     summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}
+    if dropped:
+        summary.header["recorder_dropped"] = dropped
     if finished.stopped_early:
         summary.header["stopped_early"] = True
     summary.save(finished.folder / "summary.json")

@@ -1,4 +1,4 @@
-#include "drivers/can/datagram_batch.h"
+#include "common/datagram_batch.h"
 
 #include <time.h>
 
@@ -10,8 +10,6 @@
 
 namespace limber {
 namespace {
-
-constexpr int kReceiveBufferBytes = 4 << 20;
 
 std::int64_t to_ns(const timespec& time) noexcept {
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
@@ -25,42 +23,46 @@ std::int64_t realtime_ns() noexcept {
 
 }  // namespace
 
-ReceiveBatch::ReceiveBatch(std::size_t longest_bytes)
+ReceiveBatch::ReceiveBatch(std::size_t longest_bytes, bool with_senders)
     : longest_bytes_(longest_bytes), buffer_(longest_bytes * kBatch) {
   for (std::size_t i = 0; i < kBatch; ++i) {
     vectors_[i] = {buffer_.data() + i * longest_bytes_, longest_bytes_};
     messages_[i].msg_hdr.msg_iov = &vectors_[i];
     messages_[i].msg_hdr.msg_iovlen = 1;
     messages_[i].msg_hdr.msg_control = &control_[i];
+    if (with_senders) messages_[i].msg_hdr.msg_name = &senders_[i];
   }
 }
 
 int ReceiveBatch::receive(int descriptor, int at_most) noexcept {
   const auto wanted = static_cast<unsigned>(std::clamp(at_most, 0, kBatch));
-  for (unsigned i = 0; i < wanted; ++i) messages_[i].msg_hdr.msg_controllen = sizeof(Control);
+  for (unsigned i = 0; i < wanted; ++i) {
+    messages_[i].msg_hdr.msg_controllen = sizeof(Control);
+    messages_[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);  // ignored without a name
+  }
   const int count = recvmmsg(descriptor, messages_.data(), wanted, MSG_DONTWAIT, nullptr);
   if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : -1;
   if (count == 0) return 0;
   // The kernel stamps with the wall clock. An offset taken now carries a stamp over to the
   // monotonic clock unless the wall clock was set in the microseconds between.
   const std::int64_t now_ns = monotonic_ns();
-  const std::int64_t offset_ns = now_ns - realtime_ns();
+  const std::int64_t wall_now_ns = realtime_ns();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    read_control(messages_[i].msg_hdr, i, now_ns, offset_ns);
+    wall_times_[i] = wall_now_ns;
+    read_control(messages_[i].msg_hdr, i);
+    timestamps_[i] = now_ns + std::min<std::int64_t>(wall_times_[i] - wall_now_ns, 0);
   }
   return count;
 }
 
-void ReceiveBatch::read_control(const msghdr& header, std::size_t i, std::int64_t now_ns,
-                                std::int64_t offset_ns) noexcept {
-  timestamps_[i] = now_ns;
+void ReceiveBatch::read_control(const msghdr& header, std::size_t i) noexcept {
   msghdr copy = header;  // CMSG_NXTHDR wants it writable
   for (cmsghdr* part = CMSG_FIRSTHDR(&copy); part != nullptr; part = CMSG_NXTHDR(&copy, part)) {
     if (part->cmsg_level != SOL_SOCKET) continue;
     if (part->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(part), sizeof(stamp));
-      timestamps_[i] = std::min(to_ns(stamp) + offset_ns, now_ns);
+      wall_times_[i] = to_ns(stamp);
     } else if (part->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t lost = 0;
       std::memcpy(&lost, CMSG_DATA(part), sizeof(lost));
@@ -114,15 +116,19 @@ int SendBatch::flush(int descriptor) noexcept {
   return sent;
 }
 
-void prepare_receive(int descriptor) {
+int prepare_receive(int descriptor, int buffer_bytes) {
   const int on = 1;
   // Where a kernel has no stamps or loss counter, receive time is "now" and losses stay unseen:
   // worth running without.
   setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
   setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
-  if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof(int)) != 0) {
-    setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof(int));
+  if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &buffer_bytes, sizeof(int)) != 0) {
+    setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof(int));
   }
+  int doubled = 0;  // the kernel counts its own overhead in
+  socklen_t size = sizeof(doubled);
+  getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &doubled, &size);
+  return doubled / 2;
 }
 
 }  // namespace limber

@@ -20,7 +20,8 @@ inline constexpr int kBatch = 32;
 /// prepare_receive() once.
 class ReceiveBatch {
  public:
-  explicit ReceiveBatch(std::size_t longest_bytes);
+  /// `with_senders`: sender() is wanted, of sockets of the internet.
+  explicit ReceiveBatch(std::size_t longest_bytes, bool with_senders = false);
   ReceiveBatch(const ReceiveBatch&) = delete;
   ReceiveBatch& operator=(const ReceiveBatch&) = delete;
 
@@ -34,13 +35,17 @@ class ReceiveBatch {
   std::int64_t timestamp_ns(int i) const noexcept {
     return timestamps_[static_cast<std::size_t>(i)];
   }
+  /// The same by the wall clock, as the kernel has stamped it.
+  std::int64_t wall_time_ns(int i) const noexcept {
+    return wall_times_[static_cast<std::size_t>(i)];
+  }
+  const sockaddr_in& sender(int i) const noexcept { return senders_[static_cast<std::size_t>(i)]; }
   /// Datagrams the kernel has dropped because the socket's buffer was full, as far as it has
   /// reported.
   std::int64_t lost() const noexcept { return lost_; }
 
  private:
-  void read_control(const msghdr& header, std::size_t i, std::int64_t now_ns,
-                    std::int64_t offset_ns) noexcept;
+  void read_control(const msghdr& header, std::size_t i) noexcept;
 
   struct alignas(cmsghdr) Control {
     std::array<std::byte, 64> bytes;
@@ -51,6 +56,8 @@ class ReceiveBatch {
   std::array<iovec, kBatch> vectors_{};
   std::array<mmsghdr, kBatch> messages_{};
   std::array<std::int64_t, kBatch> timestamps_{};
+  std::array<std::int64_t, kBatch> wall_times_{};
+  std::array<sockaddr_in, kBatch> senders_{};
   std::uint32_t lost_count_ = 0;  // the kernel's counter, modulo 2^32
   std::int64_t lost_ = 0;
 };
@@ -83,8 +90,9 @@ class SendBatch {
   int count_ = 0;
 };
 
-/// Kernel receive stamps, loss counter, and a receive buffer of 4 MiB or as much as the system
-/// permits (net.core.rmem_max). Set-up only.
-void prepare_receive(int descriptor);
+/// Kernel receive stamps, loss counter, and a receive buffer of so many bytes; without the
+/// privilege for it (CAP_NET_ADMIN) as much as the system permits (net.core.rmem_max). Returns its
+/// size. Set-up only.
+int prepare_receive(int descriptor, int buffer_bytes = 4 << 20);
 
 }  // namespace limber
