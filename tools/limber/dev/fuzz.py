@@ -29,7 +29,8 @@ FILE_MUTATIONS = 2_000
 TEXTS = ("robot_yaml", "scenario", "urdf")
 SLOW = ("joint_command", "joint_state", *TEXTS)
 # libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
-LONGEST = {"black_box": 256, "joint_command": 256, "joint_state": 256} | dict.fromkeys(TEXTS, 1024)
+SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory")
+LONGEST = dict.fromkeys(SHORT, 256) | dict.fromkeys(TEXTS, 1024)
 WHAT = {
     "black_box": "messages of any length in a black box of any size",
     "candump_log": "lines and files of a candump log",
