@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "common/datagram_batch.h"
 #include "common/file_descriptor.h"
 #include "drivers/can/can_bus.h"
-#include "common/datagram_batch.h"
 
 namespace limber {
 
