@@ -14,6 +14,7 @@ from limber.model.scenario import Scenario, load_scenario
 from limber.model.validation import load_checked
 from limber.paths import existing_file, run_folder
 from limber.run import buses, runner
+from limber.run.drive_words import with_words
 from limber.run.options import FinishedRun, RunOptions
 
 
@@ -118,6 +119,7 @@ def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]
     )
     if len(log.read("JOINT_STATE")) == 0:
         raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
+    summary.faults = with_words(summary.faults, finished.folder)
     summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}
     if dropped:
         summary.header["recorder_dropped"] = dropped
