@@ -13,6 +13,7 @@ namespace limber {
 namespace {
 
 constexpr double kShutDownBraking_s = 0.3;
+constexpr float kMostTemperature_degC = 1000.0F;
 constexpr int kBatchesPerPoll = 16;  // a flooded bus must not keep the cycle
 
 std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& buses,
@@ -205,6 +206,9 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
   if (state_.fault == joint_state_t::FAULT_FEEDBACK && state_.fault_joint >= 0)
     return static_cast<std::uint16_t>(
         drives_.joints()[static_cast<std::size_t>(state_.fault_joint)].contradiction());
+  if (state_.fault == joint_state_t::FAULT_TEMPERATURE && state_.fault_joint >= 0)
+    return static_cast<std::uint16_t>(std::clamp(
+        std::round(state_.temperature_degC[state_.fault_joint]), 0.0F, kMostTemperature_degC));
   if (state_.fault == joint_state_t::FAULT_COMMAND_REFUSED)
     return static_cast<std::uint16_t>(refused_for_);
   if (state_.fault != joint_state_t::FAULT_BUS) return 0;
@@ -217,6 +221,8 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
 std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) const {
   if (fault == joint_state_t::FAULT_DRIVE_ERROR && joint >= 0)
     return drives_.error_text(static_cast<std::size_t>(joint), detail);
+  if (fault == joint_state_t::FAULT_TEMPERATURE && joint >= 0)
+    return drives_.heat_text(static_cast<std::size_t>(joint), detail);
   if (detail == 0) return "";
   if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
   if (fault == joint_state_t::FAULT_COMMAND_REFUSED) {

@@ -99,9 +99,8 @@ class ArmDriver {
     return drives_.warning_text(motor, warning);
   }
   /// What lies behind the fault of the last state: of a drive's error its drive_status, of
-  /// contradicting feedback a Contradiction, of a lost bus its number << 8 and BUS_*, of refused
-  /// commands the last VERDICT_*; else 0.
-  /// Allowed in the cycle.
+  /// contradicting feedback a Contradiction, of heat its temperature, of a lost bus its number << 8
+  /// and BUS_*, of refused commands the last VERDICT_*; else 0. Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
   /// The same in words; "" if nothing is known beyond the fault. Allocates: for messages.
   std::string fault_text(int fault, int joint, std::uint16_t detail) const;

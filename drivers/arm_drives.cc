@@ -83,11 +83,19 @@ std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) cons
   const Drive& drive = motor_at(motor);
   std::string words;
   const auto add = [&](const std::string& word) { words += (words.empty() ? "" : "; ") + word; };
-  if (warning.hot)
+  const DriveConfig& config = drive.link().joint().drive;
+  if (warning.too_hot) {
+    add(
+        fmt::format("{} degC, more than {:g} (limit_temperature_degC): not used again before it is "
+                    "down to {:g}",
+                    warning.temperature_degC, config.limit_temperature_degC,
+                    config.limit_temperature_degC - HeatWatch::kHysteresis_K));
+  } else if (warning.hot) {
     add(
         fmt::format("{} degC, more than {:g} (warning_temperature_degC): let it cool, or the drive "
                     "will stop",
-                    warning.temperature_degC, drive.link().joint().drive.warning_temperature_degC));
+                    warning.temperature_degC, config.warning_temperature_degC));
+  }
   if (warning.flagged) add("the drive warns (statusword, bit 7)");
   if (warning.emergency != 0)
     add(fmt::format("emergency {:04X}h: {}", warning.emergency,
@@ -102,6 +110,12 @@ std::string ArmDrives::error_text(std::size_t joint, std::uint16_t status) const
   return changed->changed_setting() +
          ": changed past the bus while the drive was on; end what else writes to it, or "
          "find out why it restarted";
+}
+
+std::string ArmDrives::heat_text(std::size_t joint, int temperature_degC) const {
+  const JointConfig& config = joints_[joint].motors().front().link().joint();
+  return fmt::format("{} degC, limit {:g} (limit_temperature_degC)", temperature_degC,
+                     config.drive.limit_temperature_degC);
 }
 
 const Drive& ArmDrives::motor_at(int motor) const noexcept {

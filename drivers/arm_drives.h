@@ -50,6 +50,9 @@ class ArmDrives {
   /// every thread. Allocates: for messages.
   std::string error_text(std::size_t joint, std::uint16_t status) const;
 
+  /// How hot a joint is, and its limit, in words. Likewise.
+  std::string heat_text(std::size_t joint, int temperature_degC) const;
+
   // --- towards the drives ---------------------------------------------------------------------
 
   /// Frames that drives need once a cycle and bus, whoever of them needs it. Set-up only.

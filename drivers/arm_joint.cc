@@ -120,7 +120,7 @@ bool ArmJoint::out_of_range() const noexcept {
 }
 
 bool ArmJoint::ready_to_enable() const noexcept {
-  return fresh() && !out_of_range() && fast_cycles_ == 0;
+  return fresh() && !out_of_range() && fast_cycles_ == 0 && !too_hot();
 }
 
 // --- messages ------------------------------------------------------------------------------------
@@ -138,8 +138,7 @@ void ArmJoint::write_state(std::size_t i, joint_state_t* state) const noexcept {
   state->tau_applied[i] = applied().tau;
   state->tau_preload_applied[i] = static_cast<float>(applied().preload);
   state->current_A[i] = static_cast<float>(std::abs(one_A) >= std::abs(other_A) ? one_A : other_A);
-  state->temperature_degC[i] =
-      static_cast<float>(std::max(first().temperature_degC(), second().temperature_degC()));
+  state->temperature_degC[i] = static_cast<float>(temperature_degC());
   const auto failed = std::ranges::find_if(motors_, &Drive::failed);
   const Drive& told = failed == motors_.end() ? motors_.front() : *failed;
   state->drive_status[i] = static_cast<std::int16_t>(told.link().status());

@@ -81,6 +81,11 @@ class ArmJoint {
   bool setting_changed() const noexcept {
     return std::ranges::any_of(motors_, &Drive::setting_changed);
   }
+  bool too_hot() const noexcept { return std::ranges::any_of(motors_, &Drive::too_hot); }
+  /// Of the warmest motor.
+  double temperature_degC() const noexcept {
+    return std::max(first().temperature_degC(), second().temperature_degC());
+  }
   /// The first that one of its motors has.
   Contradiction contradiction() const noexcept;
   /// Cycles since one of its motors last replied.
@@ -90,7 +95,7 @@ class ArmJoint {
   /// Above 110 % of the velocity limit in three cycles in a row.
   bool too_fast() const noexcept { return fast_cycles_ >= 3; }
   /// Fit to be moved: answered, enabled and following, within its position limits, not too fast,
-  /// its settings as they were, and nothing that it reports contradicts the rest.
+  /// not too hot, its settings as they were, and nothing that it reports contradicts the rest.
   bool healthy() const noexcept {
     return ready_to_enable() && enabled() && !ignores_target() && !setting_changed() &&
            contradiction() == Contradiction::kNone;

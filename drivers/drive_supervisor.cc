@@ -81,6 +81,7 @@ void DriveSupervisor::check_motion(ArmDrives* drives) const noexcept {
       drives->apply(DriveEvent::kDriveError, joint);
     if (joints[i].contradiction() != Contradiction::kNone)
       drives->apply(DriveEvent::kFeedbackWrong, joint);
+    if (joints[i].too_hot()) drives->apply(DriveEvent::kTooHot, joint);
     if (joints[i].out_of_range()) drives->apply(DriveEvent::kPositionTrip, joint);
     if (joints[i].too_fast()) drives->apply(DriveEvent::kVelocityTrip, joint);
   }

@@ -29,6 +29,11 @@ void frozen_encoder(FaultStage* stage) {
   event(stage, scenario_event_t::FAULT_FROZEN_ENCODER, 0.0);
 }
 
+/// The drive reports a kelvin more than its limit_temperature_degC.
+Begin hot(double duration_s) {
+  return [=](FaultStage* stage) { event(stage, scenario_event_t::FAULT_HOT, duration_s); };
+}
+
 /// A payload of so many kg, or none, in the place of what is there.
 Begin payload(double mass_kg) {
   return [mass_kg](FaultStage* stage) {
@@ -136,6 +141,7 @@ constexpr int kFromStart = 2000;  // cycles: enabled, and a second of motion
 
 std::vector<Fault> feedback_faults() {
   const std::vector only_damiao = {DriveProtocol::kDamiaoMit};
+  const std::vector with_thermometer = {DriveProtocol::kDamiaoMit, DriveProtocol::kMoteus};
   std::vector<Fault> all = {
       {.name = "the encoder freezes",
        .begin = frozen_encoder,
@@ -164,6 +170,15 @@ std::vector<Fault> feedback_faults() {
        .most_cycles = 20,
        .watched_cycles = 1000,
        .protocols = only_damiao},
+      {.name = "the drive is too hot",
+       .begin = hot(0.0),
+       .most_cycles = 12,
+       .watched_cycles = 500,
+       .protocols = with_thermometer},
+      {.name = "the drive reads too hot for 8 ms",
+       .begin = hot(0.008),
+       .watched_cycles = 500,
+       .protocols = with_thermometer},
       {.name = "commands reach no drive any more", .begin = commands_lost, .most_cycles = 4},
       {.name = "motor and controller silent at once",
        .begin = motor_and_controller_silent,

@@ -9,7 +9,8 @@ constexpr std::array kInjected = {"silent", "frozen_encoder", "drive_error", "dr
 constexpr std::array kCauses = {
     "none",          "controller_lost", "command_refused", "reply_lost", "drive_error",
     "configuration", "position",        "velocity",        "bus",        "overrun",
-    "requested",     "reply_invalid",   "foreign_command", "feedback"};
+    "requested",     "reply_invalid",   "foreign_command", "feedback",   "emergency_stop",
+    "temperature"};
 
 template <typename Names>
 std::string name_in(const Names& names, int index) {

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace limber {
+namespace {
+
+constexpr int kHotReplies = 10;
+
+}  // namespace
 
 Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
@@ -12,7 +17,8 @@ Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycl
       fallback_(joint.torque_rate_limit_Nm_per_s / rate_hz),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
       feedback_(link_),
-      heat_(joint.drive.warning_temperature_degC),
+      warmth_(joint.drive.warning_temperature_degC),
+      heat_limit_(joint.drive.limit_temperature_degC, kHotReplies),
       invalid_window_(bridged_cycles),
       cycles_per_second_(static_cast<int>(std::ceil(rate_hz))) {}
 
@@ -157,7 +163,10 @@ void Drive::close_cycle(DriveState state, std::int64_t cycle, double time_s) noe
 void Drive::check_feedback(DriveState state, double time_s) noexcept {
   const bool powered =
       state == DriveState::kOn || state == DriveState::kFallback || state == DriveState::kDamp;
-  if (link_.fresh()) heat_.add(link_.temperature_degC());
+  if (link_.fresh()) {
+    warmth_.add(link_.temperature_degC());
+    heat_limit_.add(link_.temperature_degC());
+  }
   if (!powered) ignoring_cycles_ = 0;
   // A drive that is given up since its angle jumped is not held against that angle.
   if (!powered || link_.jumped()) {
@@ -170,7 +179,8 @@ void Drive::check_feedback(DriveState state, double time_s) noexcept {
 
 DriveWarning Drive::warning() const noexcept {
   DriveWarning warning;
-  warning.hot = heat_.hot();
+  warning.hot = warmth_.hot();
+  warning.too_hot = too_hot();
   warning.flagged = link_.warns();
   // Of a drive in fault it is the fault's cause, and told with that.
   if (!link_.drive_error()) warning.emergency = link_.emergency();

@@ -58,6 +58,8 @@ class Drive {
   bool setting_changed() const noexcept { return settings_->changed(); }
   /// While it has power: velocity or torque contradict the rest of what it reports.
   Contradiction contradiction() const noexcept { return feedback_.found(); }
+  /// Above limit_temperature_degC in ten replies in a row, until it is cooler.
+  bool too_hot() const noexcept { return heat_limit_.hot(); }
   DriveWarning warning() const noexcept;
   bool configured() const noexcept { return configure_.done(); }
   bool configuration_wrong() const noexcept { return configure_.failed(); }
@@ -104,7 +106,8 @@ class Drive {
   Fallback fallback_;
   ReplyWatch watch_;
   FeedbackWatch feedback_;
-  HeatWatch heat_;
+  HeatWatch warmth_;
+  HeatWatch heat_limit_;
   std::int64_t ignoring_cycles_ = 0;
   bool answered_ = false;
   std::int64_t late_ = 0;

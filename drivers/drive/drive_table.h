@@ -51,12 +51,13 @@ enum class DriveEvent : std::int8_t {
   kBusLost,
   kDriveError,
   kFeedbackWrong,  ///< reported velocity or torque contradicts position or command
+  kTooHot,         ///< a drive is hotter than its limit, and can still hold
   kPositionTrip,
   kVelocityTrip,
   kEmergencyStop,  ///< pressed, or silent
   kEmergencyOff,   ///< the drives have held long enough
 };
-inline constexpr int kDriveEvents = 24;
+inline constexpr int kDriveEvents = 25;
 
 struct DriveTransition {
   DriveState from;

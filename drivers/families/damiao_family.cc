@@ -19,13 +19,13 @@ constexpr double kTolerance = 1e-4;  // float32 against what people write: 12.56
 
 std::uint32_t as_float(double value) noexcept { return mit::float_bits(static_cast<float>(value)); }
 
-bool is_range(mit::Register reg) noexcept {
-  return reg == mit::Register::kPositionRange || reg == mit::Register::kVelocityRange ||
-         reg == mit::Register::kTorqueRange;
+bool is_float(mit::Register reg) noexcept {
+  return reg == mit::Register::kOverTemperature || reg == mit::Register::kPositionRange ||
+         reg == mit::Register::kVelocityRange || reg == mit::Register::kTorqueRange;
 }
 
 double value_of(mit::Register reg, std::uint32_t raw) noexcept {
-  return is_range(reg) ? static_cast<double>(mit::bits_float(raw)) : static_cast<double>(raw);
+  return is_float(reg) ? static_cast<double>(mit::bits_float(raw)) : static_cast<double>(raw);
 }
 
 DriveCondition condition_of(mit::DriveError status) noexcept {
@@ -70,6 +70,7 @@ DamiaoFamily::DamiaoFamily(const JointConfig& joint, bool fd) : drive_(joint.dri
       {Kind::kReadBack, Register::kControlMode, kModeMit},
       {Kind::kWrite, Register::kTimeout, timeout},
       {Kind::kReadBack, Register::kTimeout, timeout},
+      {Kind::kCompareAbove, Register::kOverTemperature, as_float(drive_.limit_temperature_degC)},
   }};
 }
 
@@ -153,6 +154,10 @@ double DamiaoFamily::angle_resolution() const noexcept {
   return 2.0 * mit::half_count(drive_.range.position_rad, kPositionBits);
 }
 
+int DamiaoFamily::startup_steps() const noexcept {
+  return std::isfinite(drive_.limit_temperature_degC) ? kSteps : kSteps - 1;
+}
+
 StartupStep DamiaoFamily::startup_step(int index) const noexcept {
   const Step& step = steps_[static_cast<std::size_t>(index)];
   return {static_cast<std::uint32_t>(step.reg), value_of(step.reg, step.raw)};
@@ -171,10 +176,20 @@ Answer DamiaoFamily::check_answer(int index, const CanFrame& frame, double* foun
   if (!mit::decode_register(frame, id(), operation, step.reg, &raw)) return Answer::kNone;
   *found = value_of(step.reg, raw);
   const double expected = value_of(step.reg, step.raw);
-  const bool right = step.kind == Kind::kCompareRange
-                         ? std::abs(*found - expected) <= kTolerance * expected
-                         : raw == step.raw;
+  bool right = raw == step.raw;
+  if (step.kind == Kind::kCompareRange)
+    right = std::abs(*found - expected) <= kTolerance * expected;
+  if (step.kind == Kind::kCompareAbove) right = *found > expected;
   return right ? Answer::kRight : Answer::kWrong;
+}
+
+std::string DamiaoFamily::describe(const StartupFailure& failure) const {
+  const bool heat = failure.reg == static_cast<std::uint32_t>(mit::Register::kOverTemperature);
+  if (!heat || failure.answer != Answer::kWrong) return DriveFamily::describe(failure);
+  return fmt::format(
+      "register 2 (over-temperature) is {:g}, expected more than {:g}: the drive "
+      "would let go before limit_temperature_degC stops the arm",
+      failure.found, failure.expected);
 }
 
 }  // namespace limber

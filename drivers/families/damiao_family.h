@@ -1,7 +1,7 @@
 // Damiao drives: MIT frames, registers for the start-up.
 //
 // Start-up: PMAX, VMAX, TMAX equal robot.yaml -> CTRL_MODE := MIT, read back
-//            -> TIMEOUT := watchdog_s, read back
+//            -> TIMEOUT := watchdog_s, read back -> OT_Value is above limit_temperature_degC
 #pragma once
 
 #include <array>
@@ -41,22 +41,25 @@ class DamiaoFamily final : public DriveFamily {
   std::string status_text(std::uint16_t status) const override;
   double angle_resolution() const noexcept override;
 
-  int startup_steps() const noexcept override { return kSteps; }
+  /// The last one is left out if there is no limit.
+  int startup_steps() const noexcept override;
   StartupStep startup_step(int index) const noexcept override;
   CanFrame startup_request(int index) const noexcept override;
   bool may_be_read_again(int index) const noexcept override {
-    return steps_[static_cast<std::size_t>(index)].kind != Kind::kWrite;
+    const Kind kind = steps_[static_cast<std::size_t>(index)].kind;
+    return kind == Kind::kCompareRange || kind == Kind::kReadBack;
   }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
+  std::string describe(const StartupFailure& failure) const override;
 
  private:
-  enum class Kind : std::uint8_t { kCompareRange, kWrite, kReadBack };
+  enum class Kind : std::uint8_t { kCompareRange, kWrite, kReadBack, kCompareAbove };
   struct Step {
     Kind kind;
     mit::Register reg;
     std::uint32_t raw;  ///< expected or written
   };
-  static constexpr int kSteps = 7;
+  static constexpr int kSteps = 8;
 
   CanFrame special(mit::Special special) noexcept;
   std::uint16_t id() const noexcept { return static_cast<std::uint16_t>(drive_.command_id); }

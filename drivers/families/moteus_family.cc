@@ -37,6 +37,9 @@ bool not_below(double found, double expected) {
   return std::isnan(found) || found >= expected - kLastDecimal;
 }
 
+/// NaN is none here, too.
+bool above(double found, double limit) { return !(found <= limit); }
+
 DriveCondition condition_of(Mode mode) noexcept {
   switch (mode) {
     case Mode::kPosition:
@@ -78,6 +81,7 @@ MoteusFamily::MoteusFamily(const JointConfig& joint)
       {"conf get servo.pid_position.kd", equal, drive_.range.kd_Nms_per_rad * kTurn},
       {"conf get servopos.position_min", not_above, std::min(a, b)},
       {"conf get servopos.position_max", not_below, std::max(a, b)},
+      {"conf get servo.fault_temperature", above, drive_.limit_temperature_degC},
   }};
 }
 
@@ -245,6 +249,11 @@ std::string MoteusFamily::describe(const StartupFailure& failure) const {
     return fmt::format("{} cannot be read, and is not compared with robot.yaml", name);
   if (failure.answer != Answer::kWrong)
     return fmt::format("{} not answered over the diagnostic channel", name);
+  if (name == "servo.fault_temperature")
+    return fmt::format(
+        "{} is {:g}, expected more than {:g}: the drive would let go before "
+        "limit_temperature_degC stops the arm",
+        name, failure.found, failure.expected);
   if (std::isinf(failure.expected))
     return fmt::format("{} is {:g}, expected nan: the joint has no end", name, failure.found);
   return fmt::format("{} is {:g}, expected {:g}{}", name, failure.found, failure.expected,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "drivers/families/drive_family.h"
@@ -43,7 +44,10 @@ class MoteusFamily final : public DriveFamily {
 
   /// Text is answered from the drive's main loop, not at once.
   int patience_cycles() const noexcept override { return 5; }
-  int startup_steps() const noexcept override { return kSteps; }
+  /// The last question is left out if there is no limit_temperature_degC.
+  int startup_steps() const noexcept override {
+    return std::isfinite(drive_.limit_temperature_degC) ? kSteps : kSteps - 2;
+  }
   StartupStep startup_step(int index) const noexcept override;
   CanFrame startup_request(int index) const noexcept override;
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
@@ -57,7 +61,7 @@ class MoteusFamily final : public DriveFamily {
     double expected;
   };
   static constexpr int kRegisters = 2;
-  static constexpr int kQuestions = 6;
+  static constexpr int kQuestions = 7;
   static constexpr int kSteps = kRegisters + 2 * kQuestions;  // a line takes two: sent, answered
 
   static int question_of(int index) noexcept { return (index - kRegisters) / 2; }

@@ -54,8 +54,9 @@ enum class Special : std::uint8_t {
 
 /// Damiao registers limber uses.
 enum class Register : std::uint8_t {
-  kTimeout = 9,       ///< uint32, counts of 50 us
-  kControlMode = 10,  ///< uint32, 1 = MIT
+  kOverTemperature = 2,  ///< float32, degC: hotter, the drive leaves the enabled mode
+  kTimeout = 9,          ///< uint32, counts of 50 us
+  kControlMode = 10,     ///< uint32, 1 = MIT
   kPositionRange = 21,
   kVelocityRange = 22,
   kTorqueRange = 23,  ///< float32

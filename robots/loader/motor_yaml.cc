@@ -12,16 +12,25 @@
 namespace limber {
 namespace {
 
-void read_warning_temperature(const YamlMap& yaml, const DriveProtocolTraits& traits,
-                              DriveConfig* drive) {
-  constexpr const char* kKey = "warning_temperature_degC";
-  if (std::isfinite(traits.warning_temperature_degC)) {
-    drive->warning_temperature_degC =
-        yaml.number_or(kKey, {20.0, 200.0}, traits.warning_temperature_degC);
-  } else if (yaml.has(kKey)) {
-    yaml.refuse(
-        kKey, fmt::format("{} drives report no temperature, but warn by themselves", traits.word));
+void read_temperatures(const YamlMap& yaml, const DriveProtocolTraits& traits, DriveConfig* drive) {
+  constexpr const char* kWarning = "warning_temperature_degC";
+  constexpr const char* kLimit = "limit_temperature_degC";
+  if (!std::isfinite(traits.warning_temperature_degC)) {
+    for (const char* key : {kWarning, kLimit}) {
+      if (yaml.has(key))
+        yaml.refuse(key, fmt::format("{} drives report no temperature, but warn by themselves",
+                                     traits.word));
+    }
+    return;
   }
+  const double warning = yaml.number_or(kWarning, {20.0, 200.0}, traits.warning_temperature_degC);
+  const double limit = yaml.number_or(kLimit, {20.0, 200.0}, traits.limit_temperature_degC);
+  if (!(limit > warning)) {
+    yaml.refuse(yaml.has(kLimit) ? kLimit : kWarning,
+                fmt::format("the limit, {:g}, must be above the warning, {:g}", limit, warning));
+  }
+  drive->warning_temperature_degC = warning;
+  drive->limit_temperature_degC = limit;
 }
 
 DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
@@ -41,7 +50,7 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   if (yaml.has("actuator")) drive.actuator = read_actuator(yaml.map("actuator"));
   drive.actuator.resistance_ohm = resistance;
   refuse_foreign_keys(yaml, traits);
-  read_warning_temperature(yaml, traits, &drive);
+  read_temperatures(yaml, traits, &drive);
   traits.read_motor(yaml, &drive);
   yaml.finish();
   return drive;

@@ -77,6 +77,8 @@ struct DriveConfig {
   double counts_per_turn = 16384.0;  ///< motor encoder, per joint revolution
   /// Above it the driver warns; infinite: never.
   double warning_temperature_degC = std::numeric_limits<double>::infinity();
+  /// Above it the driver stops the arm while the drive can hold it; infinite: never.
+  double limit_temperature_degC = std::numeric_limits<double>::infinity();
   ActuatorConfig actuator;          ///< what makes torque of the command; for the simulator
   double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "scenarios/loader/values_yaml.h"
 
@@ -10,7 +11,11 @@ namespace limber {
 namespace {
 
 const std::vector<std::string> kFaults = {"silent", "frozen_encoder", "drive_error",
-                                          "drop_commands"};  // FAULT_* order
+                                          "drop_commands", "hot"};
+constexpr std::array<std::int8_t, 5> kFaultNumbers = {
+    scenario_event_t::FAULT_SILENT, scenario_event_t::FAULT_FROZEN_ENCODER,
+    scenario_event_t::FAULT_DRIVE_ERROR, scenario_event_t::FAULT_DROP_COMMANDS,
+    scenario_event_t::FAULT_HOT};
 constexpr double kLongestPush_s = 60.0;
 
 }  // namespace
@@ -98,7 +103,8 @@ void read_joint_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t*
   std::vector<std::string> names;
   for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
   event->joint = index_of(yaml.word("joint", names), names);
-  event->fault = static_cast<std::int8_t>(index_of(yaml.word("kind", kFaults), kFaults));
+  event->fault =
+      kFaultNumbers[static_cast<std::size_t>(index_of(yaml.word("kind", kFaults), kFaults))];
 }
 
 }  // namespace

@@ -91,6 +91,7 @@ std::uint16_t Cia402Node::statusword() const noexcept {
   if (enabled()) word |= cia402::kFollowing | cia402::kTargetReached;
   const bool at_peak = std::abs(motor_torque()) > joint_.drive.peak_torque_Nm;
   if (enabled() && (limited_ || at_peak)) word |= cia402::kLimitActive;
+  if (has(scenario_event_t::FAULT_HOT)) word |= cia402::kWarning;
   return static_cast<std::uint16_t>(word);
 }
 

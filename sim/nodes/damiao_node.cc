@@ -16,7 +16,6 @@ constexpr std::uint8_t kStore = 0xAA;
 constexpr std::uint8_t kStateRequest = 0xCC;
 constexpr std::uint8_t kMotorPosition = 80;
 constexpr std::uint8_t kOutputPosition = 81;
-constexpr int kTemperature_degC = 30;
 /// Some clients send special frames to the id of another mode.
 constexpr std::uint32_t kLastModeOffset = mit::id_offset(mit::ControlMode::kForcePosition);
 
@@ -42,8 +41,8 @@ CanFrame DamiaoNode::state_frame(const CanFrame& request,
   reply.position_rad = sensed.position;
   reply.velocity_rad_per_s = sensed.velocity;
   reply.torque_Nm = sensed.torque;
-  reply.mos_temperature_degC = kTemperature_degC;
-  reply.rotor_temperature_degC = kTemperature_degC;
+  reply.mos_temperature_degC = reply.rotor_temperature_degC =
+      static_cast<int>(temperature_degC(drive_));
   CanFrame frame = mit::encode_reply(reply, registers_.range(), registers_.reply_id(), request.fd,
                                      mit::Quantiser::kTruncate);
   frame.bitrate_switch = request.bitrate_switch;

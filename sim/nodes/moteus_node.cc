@@ -20,7 +20,6 @@ constexpr int kDriverFault = 33;
 constexpr int kNotConfigured = 36;
 constexpr int kOutsideLimits = 39;
 constexpr int kStopPosition = 45;
-constexpr double kBoardTemperature_degC = 30.0;
 constexpr double kVoltage_V = 48.0;
 constexpr double kModel = 0x0200;
 constexpr double kFirmware = 0x0100;
@@ -167,7 +166,7 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
       return is(kHomedOutput);
     case Register::kMotorTemperature:
     case Register::kTemperature:
-      return is(kBoardTemperature_degC);
+      return is(temperature_degC(drive_));
     case Register::kVoltage:
       return is(kVoltage_V);
     case Register::kFault:

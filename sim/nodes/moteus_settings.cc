@@ -38,6 +38,7 @@ constexpr std::array kSettingRows = {
     SettingRow{"servo.timeout_max_torque_Nm", false, is_positive},
     SettingRow{"servo.default_velocity_limit", false, is_positive_or_none},
     SettingRow{"servo.default_accel_limit", false, is_positive_or_none},
+    SettingRow{"servo.fault_temperature", false, never},
     SettingRow{"servopos.position_min", false, is_number_or_none},
     SettingRow{"servopos.position_max", false, is_number_or_none},
 };
@@ -64,6 +65,7 @@ MoteusSettings::MoteusSettings(const DriveConfig& drive, std::uint8_t id) {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   constexpr double kDefaultTimeout_s = 0.1;
+  constexpr double kFaultTemperature_degC = 75.0;
   const bool damps = drive.watchdog_reaction == NodeWatchdogReaction::kDamp;
   default_ = {static_cast<double>(id),
               1.0 / drive.gear_ratio,
@@ -75,6 +77,7 @@ MoteusSettings::MoteusSettings(const DriveConfig& drive, std::uint8_t id) {
               drive.timeout_torque_Nm,
               kNone,
               kNone,
+              kFaultTemperature_degC,
               kNone,
               kNone};
   stored_ = values_ = default_;

@@ -23,6 +23,7 @@ enum class Setting : std::uint8_t {
   kTimeoutTorque,
   kVelocityLimit,      ///< turns/s; NaN: none
   kAccelerationLimit,  ///< turns/s^2; NaN: none
+  kFaultTemperature,   ///< degC
   kPositionMin,        ///< turns; NaN: none
   kPositionMax,
   kCount,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limber/scenario_event_t.hpp>
 #include <memory>
@@ -56,6 +57,8 @@ class MotorNode {
   ///   own law.
   /// - DRIVE_ERROR: leaves enabled mode with an error that cannot be cleared while it lasts.
   /// - DROP_COMMANDS: answers, but takes nothing in; the watchdog is not fed.
+  /// - HOT: reports a kelvin more than its limit_temperature_degC, or, without a thermometer,
+  /// warns.
   void inject(int fault, const JointReading& joint, std::int64_t until_ns) noexcept {
     if (fault < 0 || fault >= kFaults) return;
     on_fault(fault, joint);
@@ -70,10 +73,17 @@ class MotorNode {
     return now_ns_ < fault_until_ns_[static_cast<std::size_t>(fault)];
   }
 
+  double temperature_degC(const DriveConfig& drive) const noexcept {
+    const bool hot = has(scenario_event_t::FAULT_HOT);
+    return hot && std::isfinite(drive.limit_temperature_degC) ? drive.limit_temperature_degC + 1.0
+                                                              : kUsual_degC;
+  }
+
   std::int64_t now_ns_ = 0;  ///< simulated time; receive() and update() keep it
 
  private:
-  static constexpr int kFaults = scenario_event_t::FAULT_DROP_COMMANDS + 1;
+  static constexpr int kFaults = scenario_event_t::FAULT_HOT + 1;
+  static constexpr double kUsual_degC = 30.0;
   std::array<std::int64_t, kFaults> fault_until_ns_{};
 };
 

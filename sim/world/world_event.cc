@@ -88,9 +88,10 @@ bool read_fault(const scenario_event_t& event, const FaultyNodes& nodes,
   const bool on_sensor = nodes.tip_sensor && event.joint == Event::NODE_TIP_SENSOR && silent;
   const bool on_stop = nodes.emergency_stop && event.joint == Event::NODE_EMERGENCY_STOP &&
                        (silent || event.fault == Event::FAULT_PRESSED);
-  const bool on_joint = event.joint >= 0 && event.joint < nodes.joints &&
-                        event.fault >= Event::FAULT_SILENT &&
-                        event.fault <= Event::FAULT_DROP_COMMANDS;
+  const bool of_drive =
+      (event.fault >= Event::FAULT_SILENT && event.fault <= Event::FAULT_DROP_COMMANDS) ||
+      event.fault == Event::FAULT_HOT;
+  const bool on_joint = event.joint >= 0 && event.joint < nodes.joints && of_drive;
   if (!(on_joint || on_sensor || on_stop) || !within(event.duration_s, 0.0, kMaxFault_s))
     return false;
   *fault = {

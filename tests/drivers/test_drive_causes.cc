@@ -59,6 +59,126 @@ TEST(DriveWarnings, WithoutALimitThereIsNone) {
   EXPECT_FALSE(arm.driver->warning(0).any());
 }
 
+/// limit_temperature_degC 90, and 80 to warn of.
+Robot robot_with_limits(int joints) {
+  Robot robot = test_robot(joints);
+  for (JointConfig& joint : robot.joints) {
+    joint.drive.warning_temperature_degC = 80.0;
+    joint.drive.limit_temperature_degC = 90.0;
+  }
+  return robot;
+}
+/// Its drives' own limit, register 2 of each, is 100 degC.
+FakeArm arm_with_limits(int joints) {
+  FakeArm arm(robot_with_limits(joints));
+  for (testing::FakeMotor& motor : arm.motors) motor.set_float(2, 100.0);
+  return arm;
+}
+void run(FakeArm* arm, int cycles) {
+  for (int i = 0; i < cycles; ++i) arm->cycle_with(kKeep);
+}
+
+TEST(Heat, TenHotRepliesInARowStopTheArmWhichTheDrivesHold) {
+  FakeArm arm = arm_with_limits(2);
+  ASSERT_TRUE(arm.switch_on());
+  arm.command.tau_gravity[1] = 0.3;
+  arm.motors[1].rotor_degC = 91;
+  EXPECT_EQ(cycles_until_off(&arm, 100), 10);
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_HOLD);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_TEMPERATURE);
+  EXPECT_EQ(arm.state->fault_joint, 1);
+  EXPECT_EQ(arm.driver->fault_detail(), 91);
+  EXPECT_EQ(arm.driver->fault_text(arm.state->fault, 1, 91),
+            "91 degC, limit 90 (limit_temperature_degC)");
+  EXPECT_EQ(arm.driver->warning_text(1, arm.driver->warning(1)),
+            "joint2 (id 0x2): 91 degC, more than 90 (limit_temperature_degC): not used again "
+            "before it is down to 85");
+  EXPECT_FALSE(arm.driver->warning(0).any());
+  run(&arm, 200);  // 50 N m/rad of 500, 1 N m s/rad of 5, in 4095 counts
+  for (const testing::FakeMotor& motor : arm.motors) {
+    EXPECT_EQ(raw_command(motor.last()).kp, 410);
+    EXPECT_EQ(raw_command(motor.last()).kd, 819);
+  }
+}
+
+TEST(Heat, OddReadingsAndTheLimitItselfAreNone) {
+  FakeArm arm = arm_with_limits(1);
+  ASSERT_TRUE(arm.switch_on());
+  for (int second = 0; second < 3; ++second) {
+    arm.motors[0].mos_degC = 255;
+    run(&arm, 9);
+    arm.motors[0].mos_degC = 90;
+    run(&arm, 50);
+    EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
+  }
+}
+
+TEST(Heat, AMissingReplyIsNeitherHotNorCool) {
+  FakeArm arm = arm_with_limits(1);
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[0].mos_degC = 91;
+  run(&arm, 9);
+  arm.motors[0].silent = true;
+  run(&arm, 2);
+  EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
+  arm.motors[0].silent = false;
+  run(&arm, 1);
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_TEMPERATURE);
+}
+
+TEST(Heat, IsAcknowledgedOnceItIsFiveKelvinBelow) {
+  constexpr int kAcknowledge = joint_command_t::REQUEST_ACKNOWLEDGE;
+  FakeArm arm = arm_with_limits(2);
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[1].mos_degC = 91;
+  ASSERT_EQ(cycles_until_off(&arm, 100), 10);
+  arm.motors[1].mos_degC = 86;
+  EXPECT_FALSE(arm.run_until(joint_state_t::DRIVE_ON, kAcknowledge, 300));
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_TEMPERATURE);
+  arm.motors[1].mos_degC = 85;
+  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, kAcknowledge, 300));
+  EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_NONE);
+}
+
+// The way to let it cool: released, and not enabled before.
+TEST(Heat, AReleasedArmIsNotEnabledBefore) {
+  FakeArm arm = arm_with_limits(2);
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[1].mos_degC = 91;
+  ASSERT_EQ(cycles_until_off(&arm, 100), 10);
+  ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, joint_command_t::REQUEST_OFF));
+  EXPECT_FALSE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ON, 300));
+  EXPECT_EQ(arm.motors[0].error, 0) << "none of them";
+  arm.motors[1].mos_degC = 84;
+  EXPECT_TRUE(arm.run_until(joint_state_t::DRIVE_ON, joint_command_t::REQUEST_ON, 300));
+}
+
+TEST(Heat, OfTwoMotorsTheHotterCounts) {
+  Robot robot = robot_with_limits(1);
+  robot.joints[0].has_antagonist = true;
+  robot.joints[0].antagonist = robot.joints[0].drive;
+  robot.joints[0].antagonist.command_id = 5;
+  robot.joints[0].antagonist.reply_id = 0x15;
+  FakeArm arm(robot);
+  for (testing::FakeMotor& motor : arm.motors) motor.set_float(2, 100.0);
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[1].mos_degC = 95;
+  EXPECT_EQ(cycles_until_off(&arm, 100), 10);
+  EXPECT_EQ(arm.state->fault_joint, 0);
+  EXPECT_EQ(arm.driver->fault_detail(), 95);
+}
+
+TEST(Heat, ADriveThatLetsGoBeforeIsRefused) {
+  for (const double own : {100.0, 90.0, 85.0, std::nan("")}) {
+    FakeArm arm = arm_with_limits(2);
+    arm.motors[1].set_float(2, own);
+    EXPECT_EQ(arm.run_until(joint_state_t::DRIVE_OFF, kKeep), own > 90.0) << own;
+    if (own > 90.0) continue;
+    EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_CONFIGURATION);
+    EXPECT_EQ(arm.state->fault_joint, 1);
+  }
+}
+
 // 4 rad/s at rest: -0.5 s ln(1 - (0.08 + 0.07 * 4) / (4 * 0.5)).
 TEST(Feedback, AVelocityWithoutMotionStopsTheArmWithTheReason) {
   FakeArm arm(test_robot(2));

@@ -35,6 +35,7 @@ TEST_F(GoodChain, DriveSpeaksCia402) {
   EXPECT_EQ(turn_.drive.counts_per_turn, 4194304.0);
   EXPECT_EQ(turn_.drive.rated_torque_Nm, 2.0);
   EXPECT_FALSE(std::isfinite(turn_.drive.warning_temperature_degC));
+  EXPECT_FALSE(std::isfinite(turn_.drive.limit_temperature_degC));
   EXPECT_NEAR(turn_.drive.range.torque_Nm, 65.534, 1e-9);
 }
 
@@ -161,6 +162,17 @@ const Mutation kSlips[] = {
      "cia402 drives report no temperature, but warn by themselves", 1},
     {"WarmBeyondSense", "    encoder_bits: 14",
      "    encoder_bits: 14\n    warning_temperature_degC: 300", "from 20 to 200", 1},
+    {"HotWithoutTemperature", "    encoder_bits: 22",
+     "    encoder_bits: 22\n    limit_temperature_degC: 70",
+     "cia402 drives report no temperature, but warn by themselves", 1},
+    {"HotBeyondSense", "    encoder_bits: 14",
+     "    encoder_bits: 14\n    limit_temperature_degC: 300", "from 20 to 200", 1},
+    {"HotBeforeWarm", "    encoder_bits: 14",
+     "    encoder_bits: 14\n    limit_temperature_degC: 80",
+     "the limit, 80, must be above the warning, 80", 1},
+    {"WarmAboveTheUsualLimit", "    encoder_bits: 14",
+     "    encoder_bits: 14\n    warning_temperature_degC: 95",
+     "the limit, 90, must be above the warning, 95", 1},
     {"ActuatorKind", "kind: current_drive", "kind: magic", "expected one of: ideal, current_drive"},
     {"ActuatorKey", "      lag_s: 0.0005", "      lagg_s: 0.0005", "unknown key 'lagg_s'"},
     {"MagnetGrowsStronger", "magnet_per_K: -0.0012", "magnet_per_K: 0.0012", "out of range"},

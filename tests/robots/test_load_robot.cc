@@ -152,6 +152,7 @@ TEST(LoadRobot, MoteusDrivesAreRead) {
   EXPECT_NEAR(turn.range.kd_Nms_per_rad * 2.0 * M_PI, 20.0, 1e-9);
   EXPECT_EQ(turn.timeout_torque_Nm, 3.0);
   EXPECT_EQ(turn.warning_temperature_degC, 50.0);
+  EXPECT_EQ(turn.limit_temperature_degC, 65.0);
   EXPECT_EQ(turn.counts_per_turn, 4294967296.0);
   EXPECT_EQ(robot.joints[0].torque_limit_Nm, 15.0);  // peak; the URDF says 20
   EXPECT_EQ(robot.joints[0].velocity_limit, 5.0);    // URDF: frames have no end
@@ -202,6 +203,7 @@ TEST_F(ArmOfTheTests, DriveSideIsRead) {
   EXPECT_EQ(turn.offset_rad, 0.7);
   EXPECT_EQ(turn.watchdog_s, 0.02);
   EXPECT_EQ(turn.warning_temperature_degC, 80.0);
+  EXPECT_EQ(turn.limit_temperature_degC, 90.0);
   EXPECT_EQ(turn.watchdog_reaction, NodeWatchdogReaction::kOff);
   EXPECT_EQ(turn.hold_kp_Nm_per_rad, 50.0);
   EXPECT_EQ(robot_.joints[1].drive.sign, 1.0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
@@ -190,6 +191,23 @@ TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
   EXPECT_EQ(scenario.timeline[1].time_ns, 800'000'000);
   EXPECT_EQ(std::get<mode_request_t>(scenario.timeline[1].message).request,
             +mode_request_t::REQUEST_ACTIVE);
+}
+
+TEST(LoadScenario, EveryKindOfADrivesFault) {
+  const LoadedRobot robot = load_robot("desktop2r");
+  const std::map<std::string, int> kinds = {
+      {"silent", scenario_event_t::FAULT_SILENT},
+      {"frozen_encoder", scenario_event_t::FAULT_FROZEN_ENCODER},
+      {"drive_error", scenario_event_t::FAULT_DRIVE_ERROR},
+      {"drop_commands", scenario_event_t::FAULT_DROP_COMMANDS},
+      {"hot", scenario_event_t::FAULT_HOT}};
+  for (const auto& [word, number] : kinds) {
+    const Scenario scenario = load_text(
+        "duration_s: 2\ntimeline: [{at_s: 1, fault: {joint: " + robot.robot.joints[1].name +
+            ", kind: " + word + "}}]\n",
+        robot);
+    EXPECT_EQ(std::get<scenario_event_t>(scenario.timeline.back().message).fault, number) << word;
+  }
 }
 
 TEST(LoadScenario, FirstGainsStartFromTheRobots) {

@@ -115,6 +115,7 @@ std::string joint_json(const Robot& robot, const ArmReport& report, std::size_t 
                     {"bus", json::text(bus)},
                     {"id", json::number(drive.command_id)},
                     {"reply_id", json::number(drive.reply_id)},
+                    {"limit_temperature_degC", json::number(drive.limit_temperature_degC)},
                     {"rotor_inertia_kgm2", json::number(drive.rotor_inertia_kgm2)},
                     {"torque_constant_Nm_per_A", json::number(drive.torque_constant_Nm_per_A)},
                     {"short_circuit_damping_Nms", json::number(drive.short_circuit_damping_Nms)}});

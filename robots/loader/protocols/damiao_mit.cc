@@ -50,6 +50,7 @@ const DriveProtocolTraits kDamiaoMitTraits = {
     .protocol = DriveProtocol::kDamiaoMit,
     .word = "damiao_mit",
     .warning_temperature_degC = 80.0,  // guessed: 20 K below the 100 of its makers' windings
+    .limit_temperature_degC = 90.0,    // guessed: half way there, while the drive still holds
     .keys = kDamiaoKeys,
     .read_motor = read_damiao_mit_motor,
     .read_ids = read_damiao_mit_ids,

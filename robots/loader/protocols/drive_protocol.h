@@ -27,6 +27,8 @@ struct DriveProtocolTraits {
   bool rotary_only = false;   ///< counts turns
   /// Default of a motor's `warning_temperature_degC`; infinite: its drives report none.
   double warning_temperature_degC = std::numeric_limits<double>::infinity();
+  /// Likewise of its `limit_temperature_degC`.
+  double limit_temperature_degC = std::numeric_limits<double>::infinity();
   /// Keys of a motor, or of a joint, that only this protocol has.
   std::span<const char* const> keys = {};
 

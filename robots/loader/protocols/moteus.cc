@@ -58,6 +58,7 @@ const DriveProtocolTraits kMoteusTraits = {
     .rotary_only = true,
     .warning_temperature_degC =
         50.0,  // its firmware reduces the current from there on, and faults at 75
+    .limit_temperature_degC = 65.0,  // guessed: there 40 % of its current are left
     .keys = kMoteusKeys,
     .read_motor = read_moteus_motor,
     .read_ids = read_moteus_ids,

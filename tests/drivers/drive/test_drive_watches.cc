@@ -29,6 +29,34 @@ TEST(HeatWatch, IsToldOnceAboutALimitThatIsSwayedAbout) {
   EXPECT_TRUE(heat.hot());
 }
 
+TEST(HeatWatch, OfSeveralReadingsAsManyInARowTellEitherWay) {
+  HeatWatch heat(90.0, 3);
+  const auto hot_after = [&heat](std::initializer_list<double> temperatures) {
+    for (double temperature : temperatures) heat.add(temperature);
+    return heat.hot();
+  };
+  EXPECT_FALSE(hot_after({90.0, 90.0, 90.0, 90.0})) << "the limit itself";
+  EXPECT_FALSE(hot_after({91.0, 255.0, 30.0})) << "two odd ones";
+  EXPECT_FALSE(hot_after({91.0, 91.0, 90.0, 91.0, 91.0}));
+  EXPECT_TRUE(hot_after({91.0}));
+  EXPECT_TRUE(hot_after({85.5, 85.5, 85.5, 85.5}));
+  EXPECT_TRUE(hot_after({85.0, 20.0, 86.0, 85.0, 85.0}));
+  EXPECT_FALSE(hot_after({85.0}));
+  EXPECT_FALSE(hot_after({91.0, 91.0})) << "counted afresh";
+}
+
+TEST(HeatWatch, AReadingThatIsNoneTellsNothing) {
+  HeatWatch heat(90.0, 2);
+  heat.add(std::nan(""));
+  heat.add(91.0);
+  EXPECT_FALSE(heat.hot());
+  heat.add(HUGE_VAL);
+  heat.add(91.0);
+  EXPECT_TRUE(heat.hot());
+  for (int i = 0; i < 3; ++i) heat.add(std::nan(""));
+  EXPECT_TRUE(heat.hot());
+}
+
 /// Cycles until a velocity field of `velocity` at a standing joint contradicts, or -1 in 10 s.
 int cycles_standing(double velocity, double limit, double position = 0.0) {
   VelocityWatch watch(limit, 1e-6);

@@ -194,6 +194,8 @@ TEST(DriveWarningEdges, AnyAndAnother) {
     EXPECT_FALSE(warning.differs(warning));
   }
   EXPECT_FALSE(none.differs({false, false, 0, 90})) << "a temperature alone is none";
+  const DriveWarning too_hot{.too_hot = true};
+  EXPECT_TRUE(too_hot.any() && too_hot.differs(none) && !too_hot.differs(too_hot));
 }
 
 }  // namespace

@@ -264,6 +264,33 @@ TEST_F(DamiaoStartUp, WhatFailedInWords) {
   EXPECT_EQ(family_->describe({23, Answer::kWrong, 10.0, 28.0}), "register 23 is 10, expected 28");
 }
 
+// OT_Value, register 2, against limit_temperature_degC. 90 is 42B40000h, the next float 42B40001h.
+TEST(DamiaoHeat, TheDrivesOwnLimitIsAbove) {
+  JointConfig made = joint();
+  const int without = make_drive_family(made, false, 1e-3)->startup_steps();
+  made.drive.limit_temperature_degC = 90.0;
+  const auto family = make_drive_family(made, false, 1e-3);
+  ASSERT_EQ(family->startup_steps(), without + 1);
+  const int last = without;
+  EXPECT_EQ(text(family->startup_request(last)), "7FF#0100330200000000");
+  EXPECT_EQ(family->startup_step(last).reg, 2U);
+  EXPECT_EQ(family->startup_step(last).expected, 90.0);
+  EXPECT_FALSE(family->may_be_read_again(last)) << "the ranges, mode and time-out have their turn";
+  double found = 0.0;
+  const auto answer = [&](const std::string& bytes) {
+    return family->check_answer(last, parse("011#01003302" + bytes), &found);
+  };
+  EXPECT_EQ(answer("0000C842"), Answer::kRight);
+  EXPECT_EQ(found, 100.0);
+  EXPECT_EQ(answer("0100B442"), Answer::kRight);
+  EXPECT_EQ(answer("0000B442"), Answer::kWrong);
+  EXPECT_EQ(answer("0000C07F"), Answer::kWrong) << "not a number";
+  EXPECT_EQ(family->describe({2, Answer::kWrong, 85.0, 90.0}),
+            "register 2 (over-temperature) is 85, expected more than 90: the drive would let go "
+            "before limit_temperature_degC stops the arm");
+  EXPECT_EQ(family->describe({2, Answer::kNone, 0.0, 90.0}), "register 2 not answered");
+}
+
 TEST(DriveFamilies, WhatNobodyHasToldIsADisabledDriveAtRest) {
   const DriveReport report;
   EXPECT_EQ(report.condition, DriveCondition::kDisabled);

@@ -274,6 +274,26 @@ TEST(MoteusSettings, AJointWithoutEndsNeedsADriveWithout) {
   }
 }
 
+// limit_temperature_degC has to act before the drive's own fault.
+TEST(MoteusSettings, TheDrivesOwnTemperatureLimitIsAbove) {
+  Robot robot = moteus_robot();
+  robot.joints[1].drive.limit_temperature_degC = 65.0;
+  for (const char* own : {"75.000000", "65.000000", "60.000000", "nan"}) {
+    MoteusArm arm(robot);
+    arm.motors[1].settings["servo.fault_temperature"] = own;
+    for (int i = 0; i < 40; ++i) arm.half_cycle();
+    EXPECT_EQ(arm.motors[1].lines.back(), "conf get servo.fault_temperature\n");
+    EXPECT_EQ(arm.motors[0].lines.back(), "conf get servopos.position_max\n") << "has no limit";
+    const bool right = std::string(own).starts_with("7") || std::string(own) == "nan";
+    EXPECT_EQ(arm.state->drive_state == joint_state_t::DRIVE_OFF, right) << own;
+    if (std::string(own).starts_with("60")) {
+      EXPECT_EQ(arm.driver->configuration_problem(),
+                "joint2 (servo 2): servo.fault_temperature is 60, expected more than 65: the drive "
+                "would let go before limit_temperature_degC stops the arm");
+    }
+  }
+}
+
 TEST(MoteusSettings, TextComesInPiecesLateAndBehindOtherText) {
   MoteusArm arm;
   arm.motors[0].text = std::string("emit servo_stats\r\n\x07\x00\n\x00binary", 27);

@@ -443,6 +443,15 @@ TEST(Cia402Node, DriveErrorIsAnOverCurrentThatLasts) {
   EXPECT_EQ(bench.heard(), "083#0000000000000000");
 }
 
+// Bit 7 of the statusword; these drives report no temperature.
+TEST(Cia402Node, HotDrivesWarn) {
+  Cia402Bench bench;
+  bench.enable();
+  EXPECT_EQ(bench.read(cia402::kStatusword), 0x1637U);
+  bench.node->inject(scenario_event_t::FAULT_HOT, bench.joint, bench.now + 10 * Cia402Bench::kMs);
+  EXPECT_EQ(bench.read(cia402::kStatusword), 0x16B7U);
+}
+
 TEST(Cia402Node, SilentDrivesObey) {
   Cia402Bench bench;
   bench.write(canopen::kHeartbeatPeriod_ms, 5);

@@ -509,6 +509,28 @@ TEST_F(Node, SilentNodeObeysWithoutAnswering) {
   EXPECT_NE(send(mit::Command{0.0, 0.0, 0.0, 0.0, 2.0}), "none");
 }
 
+// Its last two bytes: power stage and winding, degC; usually 30 = 1Eh.
+TEST(HotNode, ReportsAKelvinMoreThanItsLimit) {
+  JointConfig joint = joint3();
+  joint.drive.limit_temperature_degC = 90.0;
+  DamiaoNode node(joint, false);
+  CanFrame reply;
+  const auto temperatures = [&](std::int64_t now_ns) {
+    EXPECT_TRUE(node.receive(mit::encode_state_request(3, false), {}, now_ns, &reply));
+    return hex(reply).substr(12);
+  };
+  EXPECT_EQ(temperatures(0), "1E1E");
+  node.inject(scenario_event_t::FAULT_HOT, {}, 5 * kMs);
+  EXPECT_EQ(temperatures(4 * kMs), "5B5B");
+  EXPECT_EQ(node.state(), mit::DriveError::kDisabled) << "no error of its own";
+  EXPECT_EQ(temperatures(5 * kMs), "1E1E");
+}
+
+TEST_F(Node, WithoutALimitItIsNotHot) {
+  node_.inject(scenario_event_t::FAULT_HOT, joint_, INT64_MAX);
+  EXPECT_EQ(send(mit::encode_state_request(3, false)).substr(12), "1E1E");
+}
+
 TEST_F(Node, FrozenEncoderFreezesTheDrivesOwnLoopToo) {
   joint_ = {0.5, 0.2, 0.5, 0.2, 0.0};
   send(Special::kEnable);

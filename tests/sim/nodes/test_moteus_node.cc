@@ -30,6 +30,7 @@ JointConfig servo4() {
   joint.drive.reply_id = 0x400;
   joint.drive.counts_per_turn = std::exp2(32);
   joint.drive.peak_torque_Nm = 10.0;
+  joint.drive.limit_temperature_degC = 65.0;
   joint.drive.timeout_torque_Nm = 5.0;
   joint.drive.torque_constant_Nm_per_A = 0.5;
   joint.drive.range = {HUGE_VAL, HUGE_VAL, HUGE_VAL, 40.0 / kTurn, 4.0 / kTurn};
@@ -354,6 +355,7 @@ TEST_F(MoteusTextTest, SettingsByName) {
   EXPECT_EQ(ask("conf get servo.pid_position.kd"), "4.000000\r\n");
   EXPECT_EQ(ask("conf get servopos.position_min"), "nan\r\n");
   EXPECT_EQ(ask("conf get id.id"), "4\r\n");
+  EXPECT_EQ(ask("conf get servo.fault_temperature"), "75.000000\r\n");
   EXPECT_EQ(ask("conf get servo.no_such"), "ERR error reading\r\n");
   EXPECT_EQ(ask("conf get no.such"), "ERR unknown group\r\n");
   EXPECT_EQ(ask("conf frobnicate"), "ERR unknown subcommand\r\n");
@@ -634,6 +636,15 @@ TEST_F(MoteusNodeTest, DriveErrorLatchesItsFault) {
   send("010000");
   EXPECT_EQ(node_.mode(), Mode::kStopped);
   EXPECT_EQ(read(Register::kFault), 0.0);
+}
+
+TEST_F(MoteusNodeTest, AHotDriveReportsAKelvinMoreThanItsLimit) {
+  EXPECT_EQ(read(Register::kTemperature), 30.0);
+  node_.inject(scenario_event_t::FAULT_HOT, joint_, now_ + 5 * kMs);
+  EXPECT_EQ(read(Register::kTemperature), 66.0);
+  EXPECT_EQ(read(Register::kFault), 0.0);
+  advance(6 * kMs);
+  EXPECT_EQ(read(Register::kTemperature), 30.0);
 }
 
 TEST_F(MoteusNodeTest, OtherFaults) {

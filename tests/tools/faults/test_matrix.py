@@ -67,8 +67,8 @@ def test_a_wrong_expectation_is_found():
         assert any(words in problem for problem in problems), (wrong, problems)
 
 
-def test_there_are_54_rows():
-    assert len(ROWS) == 54
+def test_there_are_55_rows():
+    assert len(ROWS) == 55
 
 
 def test_every_fault_is_one_of_limber_faults_and_each_is_in_a_row():

@@ -89,6 +89,17 @@ def test_a_fault_has_time_joint_number_limit_and_consequence(tmp_path, run):
     assert np.isinf(fault.until_s)
 
 
+def test_a_hot_drive_is_told_with_its_limit(tmp_path, run):
+    state = state_of()
+    state["temperature_degC"][:, 1] = 66
+    state["fault"][2000:], state["fault_joint"][2000:] = State.FAULT_TEMPERATURE, 1
+    state["drive_state"][2000:] = State.DRIVE_HOLD
+    log = log_of(tmp_path / "log", JOINT_STATE=state, CONTROLLER_STATUS=status_of())
+    (fault,) = find_faults(log, run.robot, end_s=SECONDS)
+    assert fault.title == "driver.TEMPERATURE at 2.000 s, elbow: 66 degC, limit 65 degC"
+    assert "support the arm" in fault.problem.remedy
+
+
 def test_what_is_measured_after_a_fault_is_not_judged(tmp_path, run):
     state, status, truth = state_of(), status_of(), truth_of()
     truth["p_BT"][truth["time_ns"] > 2.5e9, 0] *= 3  # in DAMP the arm is no spring

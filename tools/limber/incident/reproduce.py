@@ -27,6 +27,7 @@ PAUSE_S = 0.05
 FAULTS = {
     "driver.REPLY_LOST": "silent",
     "driver.DRIVE_ERROR": "drive_error",
+    "driver.TEMPERATURE": "hot",
     "controller.ENCODER_STOPPED": "frozen_encoder",
 }
 

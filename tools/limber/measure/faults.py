@@ -251,6 +251,12 @@ def _feedback(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
     return f"{angle:.4g} {unit}, {speed:.4g} {unit}/s, {tau:.4g} of {sent:.4g} {effort}"
 
 
+def _temperature(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
+    limit = evidence.joint(onset.joint).get("limit_temperature_degC")
+    measured = f"{float(rows['temperature_degC'][-1][onset.joint]):.0f} degC"
+    return measured + (f", limit {limit:.4g} degC" if limit is not None else "")
+
+
 def _refused(evidence: Evidence, _rows: Rows, onset: _Onset) -> str:
     counts = evidence.counted(onset.time_s, "commands_refused")
     found = [(problem("gate", verdict), int(n)) for verdict, n in enumerate(counts) if n]
@@ -308,6 +314,7 @@ MEASURED: dict[str, Callable[[Evidence, Rows, _Onset], str]] = {
     "driver.REPLY_LOST": _reply,
     "driver.DRIVE_ERROR": _drive_error,
     "driver.FEEDBACK": _feedback,
+    "driver.TEMPERATURE": _temperature,
     "driver.COMMAND_REFUSED": _refused,
     "driver.CONTROLLER_LOST": _missing,
     "driver.OVERRUN": _overruns,
