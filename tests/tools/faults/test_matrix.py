@@ -12,6 +12,7 @@ from limber.faults.matrix import LockStepRun, NamedTest, read_matrix
 from limber.paths import ROOT
 
 ROWS = read_matrix()
+DOUBLED = "two motors with one identifier"
 RUNS = [(row, run) for row in ROWS for run in row.lock_step]
 
 
@@ -60,6 +61,7 @@ def test_a_wrong_expectation_is_found():
         (LockStepRun("two answers lost in a row", "refused"), "no command was refused"),
         (LockStepRun("two answers lost in a row", "kept still", moved_rad=0.001), "moved"),
         (replace(right, moved_on_rad=1e-6), "while the drives were ON"),
+        (LockStepRun(DOUBLED, "FALLBACK", joint=2, cycles=12), "names joint 1, expected 2"),
         (LockStepRun("two answers lost in a row", "stopped", moved_rad=1.0), "never left ON"),
         (LockStepRun("controller silent", "stopped", moved_rad=1e-6), "moved"),
     ):

@@ -101,6 +101,8 @@ def _wrong(run: LockStepRun, reaction: dict[str, Any]) -> Iterator[str]:
             yield f"{state.replace('HOLD', 'FALLBACK')}, expected {run.reaction}"
         elif run.cause and cause != run.cause:
             yield f"cause {cause}, expected {run.cause}"
+        elif run.joint and reaction["joint"] != run.joint - 1:
+            yield f"names joint {reaction['joint'] + 1}, expected {run.joint}"
     if run.reaction in ("bridged", "refused") and cycles >= 0:
         yield f"{state.replace('HOLD', 'FALLBACK')} ({cause}) after {cycles} cycles, expected none"
     if run.reaction == "refused" and reaction["refused"] == 0:

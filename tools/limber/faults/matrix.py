@@ -25,7 +25,8 @@ TESTS = {
 class LockStepRun:
     """A fault of limber-faults. `cycles`: within so many the drives leave ON; 0: no limit.
 
-    `cause`: of JOINT_STATE, without FAULT_. `verdict`: by which most commands are refused, of
+    `cause`: of JOINT_STATE, without FAULT_. `joint`: the one that it must name, from 1; 0: any.
+    `verdict`: by which most commands are refused, of
     DRIVER_STATUS, without VERDICT_. `moved_rad`: farthest that a joint may move, and
     `moved_on_rad`: while the drives are ON; 0: no limit.
     `referee`: why the trace cannot be judged, or "".
@@ -34,6 +35,7 @@ class LockStepRun:
     fault: str
     reaction: str
     cause: str = ""
+    joint: int = 0
     verdict: str = ""
     cycles: int = 0
     moved_rad: float = 0.0
