@@ -169,6 +169,20 @@ def test_long_messages_of_other_programs_come_whole(tmp_path):
         assert event.data == bytes(number % 251 for number in range(len(event.data)))
 
 
+def test_names_and_numbers_of_others_leave_the_report_whole(tmp_path):
+    path = tmp_path / "run.lcmlog"
+    name = 'a "name" \\ of theirs'
+    with recording(path) as recorder:
+        sender = lcm.LCM(USER_URL)
+        for number in (0, 2**63 - 1, 0, 2**63 - 1, 5, 8):
+            sender.publish(name, bytes(8) + number.to_bytes(8, "big"))
+        sender.publish(name, b"")
+        assert ended(recorder)
+    report = report_of(path)
+    assert report["messages"] == 7
+    assert report["lost"] == {name: 2}  # 6 and 7; what leaps further is a new run
+
+
 def test_a_message_that_lacks_a_fragment_is_told(tmp_path):
     path = tmp_path / "run.lcmlog"
     # Number 7, 10 bytes from byte 4 on, fragment 1 of 2.

@@ -1,9 +1,9 @@
 #include "tools/record/recorder.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +13,8 @@ namespace limber {
 namespace {
 
 constexpr int kFingerprintBytes = 8;
+/// A number that leaps further is a new run of the sender, or none at all.
+constexpr std::int64_t kMostLost = std::int64_t{1} << 32;
 
 /// The first field of the message: a big-endian 64-bit integer behind LCM's fingerprint.
 std::int64_t sequence_number(std::span<const std::uint8_t> message) {
@@ -45,18 +47,21 @@ void Recorder::write(std::int64_t time_us, std::string_view channel,
   }
   if (size < kFingerprintBytes + 8 || !count.numbered) return;
   const std::int64_t seq = sequence_number(message);
-  if (count.last_seq >= 0 && seq > count.last_seq + 1) count.lost += seq - count.last_seq - 1;
+  if (count.last_seq >= 0 && seq > count.last_seq && seq - count.last_seq <= kMostLost)
+    count.lost += seq - count.last_seq - 1;
   count.last_seq = seq;
 }
 
 std::string Recorder::report(std::int64_t dropped) const {
-  std::string lost;
-  for (const auto& [channel, count] : channels_) {
-    lost += fmt::format("{}\"{}\": {}", lost.empty() ? "" : ", ", channel, count.lost);
-  }
-  return fmt::format(
-      "{{\"messages\": {}, \"bytes\": {}, \"file_bytes\": {}, \"dropped\": {}, \"lost\": {{{}}}}}",
-      messages_, bytes_, log_.bytes_on_disk(), dropped, lost);
+  nlohmann::ordered_json lost = nlohmann::ordered_json::object();
+  for (const auto& [channel, count] : channels_) lost[channel] = count.lost;
+  const nlohmann::ordered_json report = {{"messages", messages_},
+                                         {"bytes", bytes_},
+                                         {"file_bytes", log_.bytes_on_disk()},
+                                         {"dropped", dropped},
+                                         {"lost", lost}};
+  // A channel's name is whatever somebody sends.
+  return report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace limber
