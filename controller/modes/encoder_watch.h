@@ -8,7 +8,6 @@
 
 #include "common/joints.h"
 #include "common/types.h"
-#include "controller/observers/momentum_observer.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {
@@ -32,18 +31,6 @@ namespace limber::controller {
 ///     does when this one swings unseen, and does not when the whole arm leans against something. A
 ///     wrist that hangs on to nothing may turn without moving another joint: not found.
 ///
-/// A hand may push one joint out of the way and hold this one to a single count, so that its torque
-/// grows as well. It then drives the other joint k, and no swing of this one does. With the
-/// momentum residual r, whose growth since the last change no unknown load explains, and the way
-/// that k has gone since,
-///
-///   sign(way_k) r_k > kPushShare tau_friction_k + max(0, -sign(way_k) M_ki a),
-///   a = (tau - g - balanced) / M_ii
-///
-/// the joint is taken as held by the push, and the reckoning begins anew; the third time in a row
-/// it is not. A hand is felt with 0.3 of a joint's friction bound and more, a swing with 0.1 at
-/// most (random pushes on desktop2r; frozen encoders of desktop2r and planar2r).
-///
 /// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
 class EncoderWatch {
  public:
@@ -52,8 +39,6 @@ class EncoderWatch {
   static constexpr double kStood_s = 0.01;
   static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;  ///< likewise
-  static constexpr double kPushShare = 0.2;
-  static constexpr int kPushes = 2;
 
   /// For set-up.
   explicit EncoderWatch(const Robot& robot);
@@ -62,14 +47,10 @@ class EncoderWatch {
 
   /// Forgets what was seen.
   void reset() noexcept;
-  struct Model {
-    const VectorJ& g;    ///< torque that holds the arm's weight, N m
-    const VectorJ& CTv;  ///< see MomentumObserver, N m
-    const MatrixJ& M;    ///< of links and rotors, kg m^2
-  };
-  /// Once a cycle with drives that follow: the joint whose encoder has stopped, -1: none. `dt_s`:
-  /// since the last call.
-  int stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept;
+  /// Once a cycle with drives that follow: the joint whose encoder has stopped, -1: none. `gravity`
+  /// and `M`: of the model, N m and kg m^2; `dt_s`: since the last call.
+  int stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
+              double dt_s) noexcept;
 
  private:
   /// Since a joint's reading changed last.
@@ -85,10 +66,8 @@ class EncoderWatch {
     double v;
     double load_Nm;                         ///< tau - g then
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
-    VectorJ r;                              ///< likewise, N m
     bool sudden;
     double expected_speed;  ///< rad/s, from what was reported before on
-    int pushes = 0;
     double stood_s = 0.0;
     double expected_angle = 0.0;  ///< since then, rad
   };
@@ -98,12 +77,7 @@ class EncoderWatch {
     std::optional<Rest> rest;
   };
 
-  Rest rest_of(const joint_state_t& state, int i, double load_Nm) const noexcept;
-  /// Is another joint driven? `swing`: acceleration that joint i would have, rad/s^2.
-  bool pushed(const joint_state_t& state, int i, const MatrixJ& M, double swing) const noexcept;
-
   std::vector<Joint> joints_;
-  MomentumObserver observer_;
 };
 
 }  // namespace limber::controller
