@@ -14,7 +14,6 @@
 #include <sys/wait.h>
 
 #include <array>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -27,6 +26,7 @@
 #include "common/multicast_socket.h"
 #include "common/program.h"
 #include "common/realtime.h"
+#include "drivers/can/kernel_frame.h"
 #include "drivers/can/memory_bus.h"
 #include "drivers/can/virtual_bus.h"
 #include "drivers/can/virtual_frame.h"
@@ -141,18 +141,6 @@ struct BusName {
   std::string address() const { return (vcan ? "socketcan:" : "virtual:") + name; }
 };
 
-/// The kernel's form of a frame; returns its size.
-std::size_t encode_for_kernel(const CanFrame& frame, std::span<std::uint8_t> out) {
-  canfd_frame raw{};
-  raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U);
-  raw.len = frame.length;
-  raw.flags = frame.bitrate_switch ? CANFD_BRS : 0;
-  std::memcpy(raw.data, frame.data.data(), frame.length);
-  const std::size_t size = frame.fd ? CANFD_MTU : CAN_MTU;
-  std::memcpy(out.data(), &raw, size);
-  return size;
-}
-
 /// An end of a bus that does nothing but the two system calls.
 class BareEnd {
  public:
@@ -164,7 +152,7 @@ class BareEnd {
     const timeval patience{1, 0};
     setsockopt(receiver, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      out_.add(i, bus.vcan ? encode_for_kernel(frames[i], out_.datagrams[i])
+      out_.add(i, bus.vcan ? to_kernel(frames[i], out_.datagrams[i])
                            : encode_datagram(frames[i], out_.datagrams[i]));
       if (!bus.vcan) {
         out_.headers[i].msg_hdr.msg_name = &group_;
