@@ -155,6 +155,14 @@ inline Robot test_robot(int n, int num_buses = 1) {
   return robot;
 }
 
+/// Gives the joint a second motor like its first, which answers to 5.
+inline void add_second_motor(JointConfig* joint) {
+  joint->has_antagonist = true;
+  joint->antagonist = joint->drive;
+  joint->antagonist.command_id = 5;
+  joint->antagonist.reply_id = 0x15;
+}
+
 /// A driver on in-memory buses, and the shortest controller there is. What answers it is up to the
 /// arm.
 class DrivenArm {

@@ -24,13 +24,10 @@ constexpr std::size_t kFirst = 1, kSecond = 2;  // motors of joint 1
 Robot robot_with_a_pair() {
   Robot robot = test_robot(2);
   JointConfig& joint = robot.joints[1];
-  joint.has_antagonist = true;
   joint.transmission.kind = TransmissionKind::kAntagonistic;
   joint.transmission.preload_max_rad = 0.5;
   joint.drive.peak_torque_Nm = 9.5;
-  joint.antagonist = joint.drive;
-  joint.antagonist.command_id = 5;
-  joint.antagonist.reply_id = 0x15;
+  testing::add_second_motor(&joint);
   joint.antagonist.sign = 1.0;
   joint.antagonist.offset_rad = -0.2;
   return robot;

@@ -155,10 +155,7 @@ TEST(Heat, AReleasedArmIsNotEnabledBefore) {
 
 TEST(Heat, OfTwoMotorsTheHotterCounts) {
   Robot robot = robot_with_limits(1);
-  robot.joints[0].has_antagonist = true;
-  robot.joints[0].antagonist = robot.joints[0].drive;
-  robot.joints[0].antagonist.command_id = 5;
-  robot.joints[0].antagonist.reply_id = 0x15;
+  testing::add_second_motor(&robot.joints[0]);
   FakeArm arm(robot);
   for (testing::FakeMotor& motor : arm.motors) motor.set_float(2, 100.0);
   ASSERT_TRUE(arm.switch_on());

@@ -75,10 +75,7 @@ TEST(ChangedSettings, EveryBusAsksForItself) {
 
 TEST(ChangedSettings, BothMotorsOfAJointAreAsked) {
   Robot robot = test_robot(1);
-  robot.joints[0].has_antagonist = true;
-  robot.joints[0].antagonist = robot.joints[0].drive;
-  robot.joints[0].antagonist.command_id = 5;
-  robot.joints[0].antagonist.reply_id = 0x15;
+  testing::add_second_motor(&robot.joints[0]);
   FakeArm arm(robot);
   ASSERT_TRUE(arm.switch_on());
   run(&arm, 200);
