@@ -1,20 +1,9 @@
 #include "dynamics/arm_kernel.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 
-// The members below that run over rows of joints are compiled for each kind of processor, and
-// chosen when the program is loaded. All give the same bits: nothing is fused (-ffp-contract=off),
-// and each lane's numbers are added in one order. Sanitizers are not ready when that choice is
-// made.
-#ifndef LIMBER_EACH_PROCESSOR
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LIMBER_EACH_PROCESSOR [[gnu::target_clones("avx512f", "avx2", "default")]]
-#else
-#define LIMBER_EACH_PROCESSOR
-#endif
-#endif
+#include "dynamics/each_processor.h"
+#include "dynamics/row_sines.h"
 
 namespace limber::dynamics {
 namespace {
@@ -53,13 +42,15 @@ ArmKernel<N>::ArmKernel(const BodyChain& chain, const Vector3d& gravity)
     : chain_(chain), size_(chain.size()), gravity_(gravity) {
   const Row<N> zero = Row<N>{};
   m_ = zero;
-  com_ = R_x_ = R_y_ = R_z_ = p_ = c_ = h_ = {zero, zero, zero};
-  S_ = V_ = V_x_S_ = A_ = {p_, p_};
+  com_ = c_ = h_ = {zero, zero, zero};
+  fixed_ = X_ = {c_, c_, c_, c_};
+  S_ = V_ = V_x_S_ = A_ = {c_, c_};
   I_C_ = I_O_ = {zero, zero, zero, zero, zero, zero};
   turns_ = slides_ = zero;
   for (int i = 0; i < size_; ++i) {
     const Body& body = chain.bodies[static_cast<std::size_t>(i)];
     (body.prismatic ? slides_ : turns_)[i] = 1.0;
+    fixed_.set(i, body.R, body.p);
     set_mass(i, body.mass);
   }
 }
@@ -75,34 +66,29 @@ void ArmKernel<N>::set_mass(int body, const MassProperties& mass) noexcept {
 }
 
 template <int N>
-void ArmKernel<N>::place(const VectorJ& q) noexcept {
-  Matrix3d R = Matrix3d::Identity();
-  Vector3d p = Vector3d::Zero();
-  for (int i = 0; i < size_; ++i) {
-    const Body& body = chain_.bodies[static_cast<std::size_t>(i)];
-    p += R * body.p;
-    R = R * body.R;
-    if (body.prismatic) {
-      p += q[i] * R.col(2);
-    } else {
-      const double cosine = std::cos(q[i]), sine = std::sin(q[i]);
-      const Vector3d x = R.col(0);
-      R.col(0) = cosine * x + sine * R.col(1);
-      R.col(1) = cosine * R.col(1) - sine * x;
-    }
-    R_x_.set(i, R.col(0)), R_y_.set(i, R.col(1)), R_z_.set(i, R.col(2)), p_.set(i, p);
-  }
+[[gnu::always_inline]] inline void ArmKernel<N>::place_rows(const VectorJ& q) noexcept {
+  const Row<N> position = padded<N>(q);
+  const RowSines<N> turn = sines<N>(turns_ * position);
+  RowPose<N> X = fixed_;
+  X.p = X.p + slides_ * position * X.R_z;
+  X.R_x = turn.cosine * fixed_.R_x + turn.sine * fixed_.R_y;
+  X.R_y = turn.cosine * fixed_.R_y - turn.sine * fixed_.R_x;
+  X_ = from_base<N>(X, size_);
+}
+
+template <int N>
+void ArmKernel<N>::place_tip() noexcept {
   const FixedFrame& tip = chain_.frames.back();
+  const Matrix3d R = rotation(size_ - 1);
   R_tip_ = R * tip.R;
-  p_tip_ = p + R * tip.p;
-  spread();
+  p_tip_ = position(size_ - 1) + R * tip.p;
 }
 
 template <int N>
 [[gnu::always_inline]] inline void ArmKernel<N>::spread_rows() noexcept {
-  const Row3<N> moment = cross(p_, R_z_);
-  S_ = {slides_ * R_z_ + turns_ * moment, turns_ * R_z_};
-  c_ = p_ + com_.x * R_x_ + com_.y * R_y_ + com_.z * R_z_;
+  const Row3<N> moment = cross(X_.p, X_.R_z);
+  S_ = {slides_ * X_.R_z + turns_ * moment, turns_ * X_.R_z};
+  c_ = X_.p + rotated(X_, com_);
   h_ = m_ * c_;
   carried_h_ = from_tip<N>(h_);
 }
@@ -110,18 +96,18 @@ template <int N>
 template <int N>
 Matrix3d ArmKernel<N>::rotation(int body) const noexcept {
   Matrix3d R;
-  R << R_x_.at(body), R_y_.at(body), R_z_.at(body);
+  R << X_.R_x.at(body), X_.R_y.at(body), X_.R_z.at(body);
   return R;
 }
 
 // I_O = R I_C R^T + m (c.c 1 - c c^T).
 template <int N>
 [[gnu::always_inline]] inline void ArmKernel<N>::weigh_rows() noexcept {
-  const Row3<N> a = I_C_.xx * R_x_ + I_C_.xy * R_y_ + I_C_.xz * R_z_;
-  const Row3<N> b = I_C_.xy * R_x_ + I_C_.yy * R_y_ + I_C_.yz * R_z_;
-  const Row3<N> c = I_C_.xz * R_x_ + I_C_.yz * R_y_ + I_C_.zz * R_z_;
+  const Row3<N> a = rotated<N>(X_, {I_C_.xx, I_C_.xy, I_C_.xz});
+  const Row3<N> b = rotated<N>(X_, {I_C_.xy, I_C_.yy, I_C_.yz});
+  const Row3<N> c = rotated<N>(X_, {I_C_.xz, I_C_.yz, I_C_.zz});
   const auto entry = [&](const auto& i, const auto& k) -> Row<N> {
-    return i(a) * k(R_x_) + i(b) * k(R_y_) + i(c) * k(R_z_) - i(h_) * k(c_);
+    return i(a) * k(X_.R_x) + i(b) * k(X_.R_y) + i(c) * k(X_.R_z) - i(h_) * k(c_);
   };
   const auto x = [](const Row3<N>& v) -> const Row<N>& { return v.x; };
   const auto y = [](const Row3<N>& v) -> const Row<N>& { return v.y; };
@@ -220,11 +206,12 @@ template <int N>
   for (int i = 0; i < size_; ++i) (*CTv)[i] = C_transposed_v[i];
 }
 
-// Templates themselves cannot be compiled so, their specialisations can.
 #define LIMBER_ROWS_OF(N)                                                                      \
   template <>                                                                                  \
-  LIMBER_EACH_PROCESSOR void ArmKernel<N>::spread() noexcept {                                 \
+  LIMBER_EACH_PROCESSOR void ArmKernel<N>::place(const VectorJ& q) noexcept {                  \
+    place_rows(q);                                                                             \
     spread_rows();                                                                             \
+    place_tip();                                                                               \
   }                                                                                            \
   template <>                                                                                  \
   LIMBER_EACH_PROCESSOR void ArmKernel<N>::weigh() noexcept {                                  \

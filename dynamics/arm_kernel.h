@@ -1,5 +1,6 @@
 // The dynamics of a serial arm, one algorithm for all terms. Every line below is one line of
-// arm_kernel.cc, which runs over all joints at once; only the poses and the sums go joint by joint.
+// arm_kernel.cc, which runs over all joints at once; what is summed along the arm, and the poses
+// X_i = X_(i-1) X_fixed,i X_joint,i(q_i), go over 1, 2, 4, ... neighbours.
 //
 // All vectors are in base axes. Twists, momenta and wrenches are taken at the base origin, linear
 // part first; z_i is the axis of joint i and p_i a point on it. Body i has mass m, centre of mass
@@ -44,9 +45,9 @@ class ArmKernel {
   /// Poses of all bodies, S, c and h.
   void place(const VectorJ& q) noexcept;
   Eigen::Matrix3d rotation(int body) const noexcept;
-  Eigen::Vector3d position(int body) const noexcept { return p_.at(body); }
+  Eigen::Vector3d position(int body) const noexcept { return X_.p.at(body); }
   Eigen::Vector3d centre_of_mass(int body) const noexcept { return c_.at(body); }
-  Eigen::Vector3d axis(int body) const noexcept { return R_z_.at(body); }
+  Eigen::Vector3d axis(int body) const noexcept { return X_.R_z.at(body); }
   const Eigen::Matrix3d& tip_rotation() const noexcept { return R_tip_; }
   const Eigen::Vector3d& tip_position() const noexcept { return p_tip_; }
   /// Of the tip.
@@ -74,14 +75,14 @@ class ArmKernel {
 
  private:
   // What the members of these names do, over rows; compiled for each kind of processor.
+  void place_rows(const VectorJ& q) noexcept;
   void spread_rows() noexcept;
   void weigh_rows() noexcept;
   void move_rows(const VectorJ& v, const VectorJ& a) noexcept;
   void gravity_rows(VectorJ* g) const noexcept;
   void mass_rows(MatrixJ* M) const noexcept;
   void torque_rows(VectorJ* tau, VectorJ* CTv) const noexcept;
-  /// S, c and h from the poses.
-  void spread() noexcept;
+  void place_tip() noexcept;
   Row3<N> linear_momentum() const noexcept;
 
   // Of the chain.
@@ -90,11 +91,11 @@ class ArmKernel {
   Eigen::Vector3d gravity_;
   Row<N> m_, carried_m_;   // of the body; of all bodies that its joint carries
   Row<N> turns_, slides_;  // 1 for a joint of the kind, else 0
+  RowPose<N> fixed_;       // in the body before, at joint position zero
   Row3<N> com_;            // in body axes
   RowSymmetric<N> I_C_;    // about the centre of mass, body axes
   // Of the present state.
-  Row3<N> R_x_, R_y_, R_z_;  // columns: axes of the bodies
-  Row3<N> p_;
+  RowPose<N> X_;
   Row6<N> S_;
   Row3<N> c_, h_, carried_h_;
   RowSymmetric<N> I_O_;

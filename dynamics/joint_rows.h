@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 namespace limber::dynamics {
@@ -29,6 +30,10 @@ struct Row3 {
 template <int N>
 [[gnu::always_inline]] inline Row3<N> operator+(const Row3<N>& a, const Row3<N>& b) noexcept {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <int N>
+[[gnu::always_inline]] inline Row3<N> operator-(const Row3<N>& a, const Row3<N>& b) noexcept {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <int N>
 [[gnu::always_inline]] inline Row3<N> operator*(const Row<N>& s, const Row3<N>& a) noexcept {
@@ -68,13 +73,17 @@ template <int N, int Shift, std::size_t... I>
   constexpr auto from = [](int lane) { return lane >= 0 && lane < N ? lane : N; };
   return __builtin_shufflevector(a, Row<N>{}, from(static_cast<int>(I) + Shift)...);
 }
+template <int N, int Shift>
+[[gnu::always_inline]] inline Row<N> shifted(const Row<N>& a) noexcept {
+  return shifted<N, Shift>(a, std::make_index_sequence<N>());
+}
 /// Sums over 1, 2, 4, ... neighbours: so each lane's numbers are added in one order.
 template <int N, int Shift>
 [[gnu::always_inline]] inline Row<N> summed(const Row<N>& a) noexcept {
   if constexpr (Shift >= N || -Shift >= N) {
     return a;
   } else {
-    return summed<N, 2 * Shift>(a + shifted<N, Shift>(a, std::make_index_sequence<N>()));
+    return summed<N, 2 * Shift>(a + shifted<N, Shift>(a));
   }
 }
 
@@ -103,6 +112,75 @@ template <int N>
 template <int N>
 [[gnu::always_inline]] inline Row6<N> from_tip(const Row6<N>& a) noexcept {
   return {from_tip<N>(a.lin), from_tip<N>(a.ang)};
+}
+
+/// A pose a joint: the columns of its rotation, and its origin.
+template <int N>
+struct RowPose {
+  Row3<N> R_x, R_y, R_z, p;
+
+  void set(int i, const Eigen::Matrix3d& R, const Eigen::Vector3d& origin) noexcept {
+    R_x.set(i, R.col(0)), R_y.set(i, R.col(1)), R_z.set(i, R.col(2)), p.set(i, origin);
+  }
+};
+
+template <int N>
+[[gnu::always_inline]] inline Row3<N> rotated(const RowPose<N>& X, const Row3<N>& a) noexcept {
+  return a.x * X.R_x + a.y * X.R_y + a.z * X.R_z;
+}
+/// B, whose poses are given in the frames A.
+template <int N>
+[[gnu::always_inline]] inline RowPose<N> operator*(const RowPose<N>& A,
+                                                   const RowPose<N>& B) noexcept {
+  return {rotated(A, B.R_x), rotated(A, B.R_y), rotated(A, B.R_z), A.p + rotated(A, B.p)};
+}
+/// f of each row of one pose, or of two: M joints.
+template <int M, typename F, typename... Poses>
+[[gnu::always_inline]] inline RowPose<M> each_row(const F& f, const Poses&... X) noexcept {
+  const auto each = [&](const auto&... a) -> Row3<M> { return {f(a.x...), f(a.y...), f(a.z...)}; };
+  return {each(X.R_x...), each(X.R_y...), each(X.R_z...), each(X.p...)};
+}
+/// Lane i gets the pose of lane i - Joints, or that of the base.
+template <int N, int Joints>
+[[gnu::always_inline]] inline RowPose<N> before(const RowPose<N>& X) noexcept {
+  RowPose<N> B = each_row<N>([](const Row<N>& a) { return shifted<N, -Joints>(a); }, X);
+  Row<N> base = Row<N>{};
+  for (int i = 0; i < Joints; ++i) base[i] = 1.0;
+  B.R_x.x += base, B.R_y.y += base, B.R_z.z += base;
+  return B;
+}
+/// Each pose after those of the joints before it, base to this one: over 1, 2, 4 neighbours, and of
+/// more than eight joints by halves, since g++ 12 moves lanes of what is wider than a register one
+/// by one.
+template <int N, int Neighbour = 1>
+[[gnu::always_inline]] inline RowPose<N> from_base(const RowPose<N>& X, int joints) noexcept {
+  if constexpr (N > 8) {
+    constexpr int kHalf = N / 2;
+    const auto half = [](int first) {
+      return [first](const Row<N>& a) {
+        Row<kHalf> out;
+        std::memcpy(&out, reinterpret_cast<const double*>(&a) + first, sizeof out);
+        return out;
+      };
+    };
+    const auto joined = [](const Row<kHalf>& low, const Row<kHalf>& high) {
+      Row<N> out;
+      std::memcpy(&out, &low, sizeof low);
+      std::memcpy(reinterpret_cast<double*>(&out) + kHalf, &high, sizeof high);
+      return out;
+    };
+    const auto last = [](const Row<kHalf>& a) { return Row<kHalf>{} + a[kHalf - 1]; };
+    const auto low = from_base<kHalf>(each_row<kHalf>(half(0), X), kHalf);
+    const auto high = each_row<kHalf>(last, low) *
+                      from_base<kHalf>(each_row<kHalf>(half(kHalf), X), joints - kHalf);
+    return each_row<N>(joined, low, high);
+  } else {
+    if constexpr (Neighbour < N) {
+      if (Neighbour < joints)
+        return from_base<N, 2 * Neighbour>(before<N, Neighbour>(X) * X, joints);
+    }
+    return X;
+  }
 }
 
 /// A symmetric 3 x 3 matrix a joint.

@@ -1,42 +1,41 @@
 #include "dynamics/spd_solve.h"
 
-#include <limits>
+#include "dynamics/each_processor.h"
+#include "dynamics/row_solve.h"
 
 namespace limber::dynamics {
+namespace {
 
-template <int Columns>
-void solve_spd(const MatrixJ& M,
-               Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::ColMajor, kMaxJoints, Columns>*
-                   X) noexcept {
-  const auto n = M.rows();
-  // By rows: all right-hand sides at once.
-  using Sides = Eigen::Array<double, Columns, 1>;
-  double L[kMaxJoints][kMaxJoints];
-  double inverse_D[kMaxJoints];
-  Sides Y[kMaxJoints];
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Y[i] = X->row(i).transpose();
-    double LD[kMaxJoints];  // row i of L D
-    double d = M(i, i);
-    for (Eigen::Index j = 0; j < i; ++j) {
-      double sum = M(j, i);
-      for (Eigen::Index k = 0; k < j; ++k) sum -= LD[k] * L[j][k];
-      LD[j] = sum;
-      L[i][j] = sum * inverse_D[j];
-      d -= sum * L[i][j];
-      Y[i] -= L[i][j] * Y[j];
-    }
-    inverse_D[i] = d > 0.0 ? 1.0 / d : std::numeric_limits<double>::quiet_NaN();
+constexpr int kColumns = 8;  // of which six, or one, are used
+
+template <int N, typename Sides>
+[[gnu::always_inline]] inline void solve_by_rows(const MatrixJ& M, Sides* X) noexcept {
+  const int n = static_cast<int>(M.rows());
+  Row<N> S[N];
+  Row<kColumns> Y[N];
+  for (int i = 0; i < n; ++i) {
+    S[i] = Row<N>{}, Y[i] = Row<kColumns>{};
+    for (int k = 0; k < n; ++k) S[i][k] = M(k, i);
+    for (int k = 0; k < X->cols(); ++k) Y[i][k] = (*X)(i, k);
   }
-  for (Eigen::Index i = n - 1; i >= 0; --i) {
-    Sides x = inverse_D[i] * Y[i];
-    for (Eigen::Index k = i + 1; k < n; ++k) x -= L[k][i] * Y[k];
-    Y[i] = x;
-    X->row(i) = x.transpose();
+  solve_rows<N, kColumns>(n, S, Y);
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < X->cols(); ++k) (*X)(i, k) = Y[i][k];
   }
 }
 
-template void solve_spd(const MatrixJ& M, MatrixJ6* X) noexcept;
-template void solve_spd(const MatrixJ& M, VectorJ* X) noexcept;
+}  // namespace
+
+#define LIMBER_SOLVE_FOR(Sides)                                               \
+  LIMBER_EACH_PROCESSOR void solve_spd(const MatrixJ& M, Sides* X) noexcept { \
+    if (M.rows() <= 8) {                                                      \
+      solve_by_rows<8>(M, X);                                                 \
+    } else {                                                                  \
+      solve_by_rows<kMaxJoints>(M, X);                                        \
+    }                                                                         \
+  }
+LIMBER_SOLVE_FOR(MatrixJ6)
+LIMBER_SOLVE_FOR(VectorJ)
+#undef LIMBER_SOLVE_FOR
 
 }  // namespace limber::dynamics

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "dynamics/geometric_mean.h"
+
 namespace limber::controller {
 namespace {
 
@@ -46,9 +48,12 @@ Matrix never_driving(const Matrix& D) noexcept {
   return V * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
 }
 
-// M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T.
+// M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T: twice the ratio
+// times the geometric mean of M and K, which is found sooner without the modes if K has no zeros.
 template <typename Matrix>
 Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
+  Matrix mean(K.rows(), K.cols());
+  if (dynamics::geometric_mean(M, K, mean)) return 2.0 * ratio * mean;
   // Where a direction is lost M has an eigenvalue of zero, or less by rounding.
   const Matrix least = kInertiaRounding * M.trace() * Matrix::Identity(M.rows(), M.cols());
   const Eigen::LLT<Matrix> cholesky(Matrix(M + least));
@@ -150,7 +155,11 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
 Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
                     const Matrix6& K, double ratio) noexcept {
   if (design == DampingDesign::kDoubleDiagonalisation) {
-    if (const auto reach = Reach::regular(J, Minv_JT)) return reach->damping(K, ratio);
+    const Matrix6 G = scaled_mobility(J, Minv_JT);
+    if (const auto inverse = regular_inverse(G, kRegular * G.norm())) {
+      const Matrix6 Lambda = row_scale().asDiagonal() * *inverse * row_scale().asDiagonal();
+      return doubly_diagonalised<Matrix6>(Lambda, K, ratio);
+    }
   }
   return tip_damping(design, tip_mobility(J, Minv_JT), K, ratio);
 }

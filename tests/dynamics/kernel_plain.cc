@@ -2,4 +2,5 @@
 #define dynamics dynamics_plain
 #define LIMBER_EACH_PROCESSOR
 #include "dynamics/arm_kernel.cc"
+#include "dynamics/geometric_mean.cc"
 #include "tests/dynamics/kernel_terms.h"

@@ -1,5 +1,6 @@
-// All terms of random chains, by one build of the kernel: included behind arm_kernel.cc, whose
-// namespace `dynamics` the includer renames, and whose functions it gives a kind of processor.
+// All terms of random chains, by one build of the kernel: included behind arm_kernel.cc and
+// geometric_mean.cc, whose namespace `dynamics` the includer renames, and whose functions it gives
+// a kind of processor.
 #pragma once
 
 #include <random>
@@ -52,7 +53,10 @@ std::vector<double> terms_of_random_chains() {
             kernel.jacobian(&J);
           },
           any);
-      keep(M), keep(tau), keep(CTv), keep(g), keep(J);
+      MatrixJ mean(n, n);
+      const MatrixJ spring = v.cwiseAbs().asDiagonal();
+      if (!geometric_mean(M, spring, mean)) mean.setZero();
+      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean);
     }
   }
   return numbers;

@@ -1,0 +1,92 @@
+#include "dynamics/geometric_mean.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/joints.h"
+#include "dynamics/each_processor.h"
+#include "dynamics/row_solve.h"
+
+namespace limber::dynamics {
+namespace {
+
+constexpr int kSteps = 12;
+// What A and B may differ by in the last step: half its square is left in their mean.
+constexpr double kClose = 1e-7;
+
+/// A matrix by rows, n of them.
+template <int N>
+using Rows = Row<N>[N];
+
+template <int N>
+[[gnu::always_inline]] inline bool mean_rows(const Eigen::Ref<const Eigen::MatrixXd>& P,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& Q,
+                                             Eigen::Ref<Eigen::MatrixXd> G) noexcept {
+  const int n = static_cast<int>(P.rows());
+  Rows<N> A = {}, B = {}, S, X;
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k <= i; ++k) {
+      A[i][k] = A[k][i] = P(i, k);
+      B[i][k] = B[k][i] = Q(i, k);
+    }
+  }
+  for (int step = 0; step < kSteps; ++step) {
+    double least = A[0][0] / B[0][0], most = least;
+    for (int i = 1; i < n; ++i) {
+      const double ratio = A[i][i] / B[i][i];
+      least = std::min(least, ratio), most = std::max(most, ratio);
+    }
+    if (!(least > 0.0 && std::isfinite(most))) return false;
+    // From the first step on A - B is positive semidefinite: no entry exceeds its diagonal.
+    if (step > 0 && most - 1.0 <= kClose) {
+      for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < n; ++k) G(k, i) = 0.5 * (A[i][k] + B[i][k]);
+      }
+      return true;
+    }
+    const double c = std::sqrt(std::sqrt(least * most));
+    for (int i = 0; i < n; ++i) {
+      A[i] *= 1.0 / c;
+      X[i] = B[i] *= c;
+      S[i] = A[i] + B[i];
+    }
+    solve_rows<N, N>(n, S, X);
+    // 2 A X is symmetric but for rounding, which must not grow.
+    for (int i = 0; i < n; ++i) {
+      Row<N> row = Row<N>{};
+      for (int k = 0; k < n; ++k) row += A[i][k] * X[k];
+      S[i] = 2.0 * row;
+    }
+    for (int i = 0; i < n; ++i) A[i] = 0.5 * (A[i] + B[i]);
+    for (int i = 0; i < n; ++i) {
+      B[i] = S[i];
+      for (int k = 0; k < i; ++k) B[k][i] = S[i][k];
+    }
+  }
+  return false;
+}
+
+template <int N>
+bool mean_of(const Eigen::Ref<const Eigen::MatrixXd>& P, const Eigen::Ref<const Eigen::MatrixXd>& Q,
+             Eigen::Ref<Eigen::MatrixXd> G) noexcept;
+
+#define LIMBER_MEAN_OF(N)                                                           \
+  template <>                                                                       \
+  LIMBER_EACH_PROCESSOR bool mean_of<N>(const Eigen::Ref<const Eigen::MatrixXd>& P, \
+                                        const Eigen::Ref<const Eigen::MatrixXd>& Q, \
+                                        Eigen::Ref<Eigen::MatrixXd> G) noexcept {   \
+    return mean_rows<N>(P, Q, G);                                                   \
+  }
+LIMBER_MEAN_OF(8)
+LIMBER_MEAN_OF(kMaxJoints)
+#undef LIMBER_MEAN_OF
+
+}  // namespace
+
+bool geometric_mean(const Eigen::Ref<const Eigen::MatrixXd>& P,
+                    const Eigen::Ref<const Eigen::MatrixXd>& Q,
+                    Eigen::Ref<Eigen::MatrixXd> G) noexcept {
+  return P.rows() <= 8 ? mean_of<8>(P, Q, G) : mean_of<kMaxJoints>(P, Q, G);
+}
+
+}  // namespace limber::dynamics
