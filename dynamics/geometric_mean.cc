@@ -13,10 +13,25 @@ namespace {
 constexpr int kSteps = 12;
 // What A and B may differ by in the last step: half its square is left in their mean.
 constexpr double kClose = 1e-7;
+// Share of a row that rounding leaves where there is nothing.
+constexpr double kSingular = 1e-13;
 
 /// A matrix by rows, n of them.
 template <int N>
 using Rows = Row<N>[N];
+
+/// Whether elimination leaves something of each row; S is lost.
+template <int N>
+[[gnu::always_inline]] inline bool regular_rows(int n, Rows<N>& S) noexcept {
+  for (int k = 0; k < n; ++k) {
+    for (int i = k + 1; i < n; ++i) {
+      const double before = S[i][i];
+      S[i] -= S[i][k] / S[k][k] * S[k];
+      if (!(S[i][i] > kSingular * before)) return false;
+    }
+  }
+  return true;
+}
 
 template <int N>
 [[gnu::always_inline]] inline bool mean_rows(const Eigen::Ref<const Eigen::MatrixXd>& P,
@@ -30,6 +45,8 @@ template <int N>
       B[i][k] = B[k][i] = Q(i, k);
     }
   }
+  for (int i = 0; i < n; ++i) S[i] = B[i];
+  if (!regular_rows<N>(n, S)) return false;
   for (int step = 0; step < kSteps; ++step) {
     double least = A[0][0] / B[0][0], most = least;
     for (int i = 1; i < n; ++i) {
