@@ -128,11 +128,11 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
   const ArmTerms& terms = cycle_.terms();
-  const MatrixJ& M = terms.M_total;
   const LoadWatch::Model model{cycle_.gravity(), terms.Cv, terms.M, terms.B, terms.J};
   if (const int joint = load_watch_.wrong(state, model, dt_s); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
-  if (const int joint = encoder_watch_.stopped(state, cycle_.gravity(), M, dt_s); joint >= 0)
+  const EncoderWatch::Model arm{cycle_.gravity(), terms.CTv, terms.M_total};
+  if (const int joint = encoder_watch_.stopped(state, arm, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);
   const EnergyWatch::Model bodies{terms.M, terms.B, cycle_.link_gravity(), cycle_.spring_torque()};
   if (energy_watch_.exceeded(state, bodies, dt_s)) supervisor_.raise(Event::kEnergy);

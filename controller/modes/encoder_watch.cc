@@ -6,14 +6,27 @@
 #include "controller/modes/friction_bound.h"
 
 namespace limber::controller {
+namespace {
 
-EncoderWatch::EncoderWatch(const Robot& robot) {
+constexpr double kObserver_per_s = 50.0;
+
+VectorJ joints_of(const double* values, int n) noexcept {
+  return Eigen::Map<const VectorJ>(values, n);
+}
+
+}  // namespace
+
+EncoderWatch::EncoderWatch(const Robot& robot)
+    : observer_(VectorJ::Constant(robot.size(), std::min(kObserver_per_s, robot.rate_hz)),
+                1.0 / robot.rate_hz) {
   for (const JointConfig& joint : robot.joints)
     joints_.push_back({friction_bound(joint), joint.torque_limit_Nm, std::nullopt});
 }
 
 void EncoderWatch::reset() noexcept {
   for (Joint& joint : joints_) joint.rest.reset();
+  observer_.reset();
+  observed_s_ = 0.0;
 }
 
 bool EncoderWatch::Rest::continues(const joint_state_t& state, int i) const noexcept {
@@ -36,28 +49,53 @@ void EncoderWatch::Rest::move(double acceleration, double friction, double dt_s)
   stood_s += dt_s;
 }
 
-int EncoderWatch::stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
-                          double dt_s) noexcept {
-  for (int i = 0; i < state.num_joints; ++i) {
+bool EncoderWatch::held_by_push(const joint_state_t& state, int i, double load_Nm,
+                                const MatrixJ& M) const noexcept {
+  const Rest& rest = *joints_[static_cast<std::size_t>(i)].rest;
+  for (int k = 0; k < state.num_joints; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const double way = state.theta[k] - rest.thetas[at];
+    if (std::abs(way) <= kOthers || std::abs(state.theta_dot[k]) > kYields) continue;
+    const double along = std::copysign(1.0, way);
+    const double residual = observer_.residual()[k];
+    const double push_Nm = std::min(along * residual, along * (residual - rest.residual[k]));
+    if (push_Nm > kFeltShare * joints_[at].friction_Nm &&
+        push_Nm * std::sqrt(M(i, i)) >= std::abs(load_Nm) * std::sqrt(M(k, k)))
+      return true;
+  }
+  return false;
+}
+
+int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept {
+  const int n = state.num_joints;
+  observer_.update(model.M * joints_of(state.v, n), joints_of(state.tau_applied, n),
+                   model.CTv - model.gravity);
+  observed_s_ += dt_s;
+  for (int i = 0; i < n; ++i) {
     if (state.age_cycles[i] > 0) continue;
     auto& [friction_Nm, limit_Nm, rest] = joints_[static_cast<std::size_t>(i)];
-    const double M_ii = M(i, i);
-    const double load_Nm = state.tau_applied[i] - gravity[i];
+    const double M_ii = model.M(i, i);
+    const double load_Nm = state.tau_applied[i] - model.gravity[i];
     if (!rest || !rest->continues(state, i)) {
       const double speed = rest ? rest->theta_dot : 0.0;
       const bool sudden =
           std::abs(speed) >= std::max(kSudden, (limit_Nm + friction_Nm) / M_ii * dt_s);
-      rest = {state.theta[i], state.q[i], state.theta_dot[i],
-              state.v[i],     load_Nm,    std::to_array(state.theta),
-              sudden,         speed};
+      rest = {state.theta[i],       state.q[i], state.theta_dot[i],
+              state.v[i],           load_Nm,    std::to_array(state.theta),
+              observer_.residual(), sudden,     speed};
       continue;
     }
+    if (observed_s_ < kSettled_s) rest->residual = observer_.residual();
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
     rest->move(tau / M_ii, rest->sudden ? 0.0 : friction_Nm / M_ii, dt_s);
-    const bool counts = rest->sudden ? rest->stood_s >= kStood_s : rest->arm_moved(state);
-    if (counts && std::abs(rest->expected_angle) >= (rest->sudden ? kCoasted : kExpected)) return i;
+    const double angle = std::abs(rest->expected_angle);
+    if (rest->sudden) {
+      if (rest->stood_s >= kStood_s && angle >= kCoasted) return i;
+    } else if (angle >= kExpected && rest->arm_moved(state)) {
+      if (angle >= kPushed || !held_by_push(state, i, tau, model.M)) return i;
+    }
   }
   return -1;
 }

@@ -8,6 +8,7 @@
 
 #include "common/joints.h"
 #include "common/types.h"
+#include "controller/observers/momentum_observer.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {
@@ -31,6 +32,17 @@ namespace limber::controller {
 ///     does when this one swings unseen, and does not when the whole arm leans against something. A
 ///     wrist that hangs on to nothing may turn without moving another joint: not found.
 ///
+/// A hand may push joint k out of the way and hold this joint to a single count meanwhile, so that
+/// its torque grows as well. While that may be, kPushed is expected instead of kExpected. The push
+/// is what moves k on, along the way that it has gone since: of the momentum residual r_k, and of
+/// its growth since, the lesser. It may hold this joint if k has gone kOthers at least, is no
+/// faster than kYields, and
+///
+///   push > kFeltShare tau_friction_k,   push / sqrt(M_kk) >= abs(tau - g - balanced) / sqrt(M_ii)
+///
+/// The swing of this joint alone drives k by less: by M_ki a_i, and M_ki^2 < M_kk M_ii. What r is
+/// kSettled_s after a reset hung on the arm before.
+///
 /// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
 class EncoderWatch {
  public:
@@ -39,6 +51,10 @@ class EncoderWatch {
   static constexpr double kStood_s = 0.01;
   static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;  ///< likewise
+  static constexpr double kYields = 0.5;   ///< rad/s (m/s)
+  static constexpr double kPushed = 2.0;   ///< rad (m)
+  static constexpr double kFeltShare = 0.7;
+  static constexpr double kSettled_s = 0.125;
 
   /// For set-up.
   explicit EncoderWatch(const Robot& robot);
@@ -47,10 +63,14 @@ class EncoderWatch {
 
   /// Forgets what was seen.
   void reset() noexcept;
-  /// Once a cycle with drives that follow: the joint whose encoder has stopped, -1: none. `gravity`
-  /// and `M`: of the model, N m and kg m^2; `dt_s`: since the last call.
-  int stopped(const joint_state_t& state, const VectorJ& gravity, const MatrixJ& M,
-              double dt_s) noexcept;
+  struct Model {
+    const VectorJ& gravity;  ///< torque that holds the arm's weight, N m
+    const VectorJ& CTv;      ///< see MomentumObserver, N m
+    const MatrixJ& M;        ///< of links and rotors, kg m^2
+  };
+  /// Once a cycle with drives that follow: the joint whose encoder has stopped, -1: none. `dt_s`:
+  /// since the last call.
+  int stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept;
 
  private:
   /// Since a joint's reading changed last.
@@ -66,6 +86,7 @@ class EncoderWatch {
     double v;
     double load_Nm;                         ///< tau - g then
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
+    VectorJ residual;                       ///< likewise, N m
     bool sudden;
     double expected_speed;  ///< rad/s, from what was reported before on
     double stood_s = 0.0;
@@ -77,7 +98,13 @@ class EncoderWatch {
     std::optional<Rest> rest;
   };
 
+  /// May a push that moves another joint hold joint i against `load_Nm`?
+  bool held_by_push(const joint_state_t& state, int i, double load_Nm,
+                    const MatrixJ& M) const noexcept;
+
   std::vector<Joint> joints_;
+  MomentumObserver observer_;
+  double observed_s_ = 0.0;
 };
 
 }  // namespace limber::controller

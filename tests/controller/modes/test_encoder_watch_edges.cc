@@ -25,7 +25,8 @@ class Bench {
   /// The joint that is found in a state `dt_s` later; `gravity`: of joint 1, N m.
   int next(double dt_s = kLong_s, double gravity = 0.0) {
     const MatrixJ M = MatrixJ::Identity(kJoints, kJoints) * kInertia;
-    return watch_.stopped(state_, VectorJ::Unit(kJoints, 1) * gravity, M, dt_s);
+    const VectorJ g = VectorJ::Unit(kJoints, 1) * gravity;
+    return watch_.stopped(state_, {g, VectorJ::Zero(kJoints), M}, dt_s);
   }
   joint_state_t& state() { return state_; }
 

@@ -78,11 +78,11 @@ class EncoderWatchTest : public ::testing::Test {
     VectorJ gravity = VectorJ::Zero(2);
     gravity[joint] = kGravity;
     state.tau_applied[joint] = kGravity + kLoad;
-    watch_.stopped(state, gravity, M_, kPeriod_s);
+    watch_.stopped(state, {gravity, CTv_, M_}, kPeriod_s);
     state.tau_applied[joint] = tau + kLoad;
     for (int cycle = 1; cycle < 5000; ++cycle) {
       state.theta[1 - joint] = state.q[1 - joint] += other * kPeriod_s;
-      const int found = watch_.stopped(state, gravity, M_, kPeriod_s);
+      const int found = watch_.stopped(state, {gravity, CTv_, M_}, kPeriod_s);
       if (found >= 0) {
         EXPECT_EQ(found, joint);
         return cycle;
@@ -100,6 +100,7 @@ class EncoderWatchTest : public ::testing::Test {
   static constexpr double kLoad = 9.0;  ///< carried from the start, unknown to the model
   EncoderWatch watch_;
   MatrixJ M_ = MatrixJ::Zero(2, 2);
+  VectorJ CTv_ = VectorJ::Zero(2);
   bool moves_ = false;
 };
 
