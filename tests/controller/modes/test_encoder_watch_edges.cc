@@ -187,6 +187,7 @@ TEST(EncoderWatchEdges, ASuddenStopIsFoundAfterAHundredthOfARadian) {
     EXPECT_EQ(cycles_after(sign * 0.41), 25);
     EXPECT_EQ(cycles_after(sign * 0.0625), 160);
     EXPECT_NEAR(cycles_after(sign * 0.05), 200, 1);
+    EXPECT_EQ(cycles_after(sign, 0.01), 1);
     EXPECT_EQ(cycles_after(sign * std::nextafter(0.05, 0.0)), -1) << "friction may have stopped it";
   }
 }

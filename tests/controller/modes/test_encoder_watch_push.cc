@@ -72,18 +72,20 @@ struct Push {
   double load_Nm = kLoad_Nm;
   double speed = 0.0;  ///< of joint 0, rad/s
   double M_00 = 2.0;
+  double start = 0.0;  ///< of joint 0, rad
 };
 
 int periods_until_found(const Push& push) {
   Bench bench;
   bench.M()(0, 0) = push.M_00;
   bench.push(push.before_Nm);
+  bench.state().theta[0] = push.start;
   bench.settle();
   bench.state().tau_applied[1] = push.load_before_Nm;
   bench.count();
   bench.next();
   bench.push(push.hand_Nm);
-  bench.state().theta[0] = push.way;
+  bench.state().theta[0] = push.start + push.way;
   bench.state().theta_dot[0] = push.speed;
   bench.state().theta[2] = 0.1;  // the arm has moved in any case
   bench.state().tau_applied[1] = push.load_Nm;
@@ -126,6 +128,7 @@ TEST(EncoderWatchPush, WithinFrictionThereNeedBeNoHand) {
 TEST(EncoderWatchPush, AJointThatMovesAgainstTheHandIsNotPushedByIt) {
   EXPECT_EQ(periods_until_found({.hand_Nm = -8.0}), kUnexplained);
   EXPECT_EQ(periods_until_found({.way = -0.1}), kUnexplained);
+  EXPECT_EQ(periods_until_found({.way = -0.1, .start = 1.0}), kUnexplained);
 }
 
 TEST(EncoderWatchPush, WhatHungOnTheArmBeforeIsNoPush) {
@@ -185,6 +188,19 @@ TEST(EncoderWatchPush, ATorqueThatSlowsTheJointDownIsNoPush) {
     ++n;
   }
   EXPECT_EQ(n, kUnexplained);
+}
+
+// 4098 N m less 2 of friction, on 2 kg m^2: 2 rad in the first period, to the bit.
+TEST(EncoderWatchPush, NoPushHidesTwoRadians) {
+  for (const double load_Nm : {4097.0, 4098.0}) {
+    Bench bench;
+    bench.settle();
+    bench.push(5000.0);
+    bench.state().theta[0] = 0.1;
+    EXPECT_EQ(bench.next(), -1);
+    bench.state().tau_applied[1] = load_Nm;
+    EXPECT_EQ(bench.next(), load_Nm < 4098.0 ? -1 : 1);
+  }
 }
 
 TEST(EncoderWatchPush, AHandThatLetsGoHoldsNothing) {
