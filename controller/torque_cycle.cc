@@ -189,7 +189,7 @@ TorqueCycle::Doubts TorqueCycle::doubts_about(const Gains& gains, const LawEntry
   JointElasticity elastic = *arm_.elastic();
   elastic.K_J = arm_.springs().at_rest();
   elastic.position = arm_.resolve(gains.settings.position_feedback, law.potential);
-  const Gains here = gains_.here(gains, elastic.position, goals_.goal(), arm_);
+  const Gains here = gains_.here(gains, law, goals_.goal(), arm_);
   return {stability_.check(here, arm_.terms(), &elastic),
           damping_.check(here, law, arm_.terms(), elastic)};
 }

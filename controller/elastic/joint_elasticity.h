@@ -8,15 +8,16 @@
 namespace limber::controller {
 
 struct JointElasticity {
-  /// Springs at rest, for a law that receives the motors' position.
+  /// Springs at rest, for a law that receives the motors' position. Two motors a joint are one
+  /// rotor of both, which their equilibrium has, and one spring: that of the preload and of the
+  /// deflection there are. Every law but the one that has no damping to design keeps the preload at
+  /// rest.
   JointElasticity(const Robot& robot, const JointSprings& springs);
 
   VectorJ K_J;  ///< n, N m/rad; rigid joints: JointSprings::kRigid_Nm_per_rad
   VectorJ D_J;  ///< of the dampers beside the springs, n, N m s/rad
   PositionFeedback position = PositionFeedback::kMotor;  ///< that the law receives; never kAuto
   double period_s;                                       ///< of the controller
-  /// False for rigid arms, and for pairs of motors, whose springs change with the preload.
-  bool designed_for;
 };
 
 }  // namespace limber::controller

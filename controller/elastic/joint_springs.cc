@@ -10,6 +10,8 @@ namespace {
 
 // Below it the secant is the tangent.
 constexpr double kNoDeflection_rad = 1e-6;
+// Of a spring, where the weight takes all of it: no law can help, and none shall let go at once.
+constexpr double kLeastBesideWeight = 0.05;
 
 }  // namespace
 
@@ -51,37 +53,36 @@ VectorJ JointSprings::torque(const VectorJ& d, const VectorJ& preload) const noe
   return tau;
 }
 
-const char* JointSprings::check(const MatrixJ& K_q, const VectorJ& K_J) const noexcept {
-  for (Eigen::Index i = 0; i < K_J.size(); ++i) {
-    if (!(K_q(i, i) <= kHighestShare * K_J[i])) {
-      return "K_q must be at most 0.9 times the stiffness of each joint's spring: the link cannot "
-             "be made stiffer than its spring (position_feedback: motor takes more, in series with "
-             "it)";
-    }
+// With c = K_J^-1/2 and the weight's eigenvalues w < 0 along V, the most is 1 along V c of
+//   c (0.9 K_J + V min(w, 0) V^T) c.
+double JointSprings::taken(const MatrixJ& K, const VectorJ& K_J, const MatrixJ& dg_dq,
+                           Eigen::Index* most) noexcept {
+  const auto c = K_J.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixJ> weight(MatrixJ(c * dg_dq * c));
+  const VectorJ left =
+      (kHighestShare + weight.eigenvalues().array().min(0.0)).max(kLeastBesideWeight);
+  const MatrixJ bent = c * weight.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixJ> eigen(MatrixJ(bent.transpose() * K * bent));
+  if (most != nullptr) {
+    const VectorJ motion = bent * eigen.eigenvectors().rightCols<1>();
+    (K * motion).cwiseProduct(motion).cwiseAbs().maxCoeff(most);
   }
-  return nullptr;
+  return eigen.eigenvalues().maxCoeff();
 }
 
-MatrixJ JointSprings::within(const MatrixJ& K_q, const VectorJ& K_J) const noexcept {
+double JointSprings::allowed_share(const MatrixJ& K, const VectorJ& K_J,
+                                   const MatrixJ& dg_dq) noexcept {
+  const auto c = K_J.cwiseSqrt().cwiseInverse().asDiagonal();
+  // Far from the bound, which is most of the time, the eigenvalues need not be known.
+  if (MatrixJ(c * K * c).trace() + MatrixJ(c * dg_dq * c).norm() <= kHighestShare) return 1.0;
+  return 1.0 / std::max(taken(K, K_J, dg_dq), 1.0);
+}
+
+MatrixJ JointSprings::within(const MatrixJ& K_q, const VectorJ& K_J,
+                             const MatrixJ& dg_dq) noexcept {
   MatrixJ K = K_q;
   K.diagonal() = K.diagonal().cwiseMin(kHighestShare * K_J);
-  return K;
-}
-
-double JointSprings::allowed_share(const Matrix6& K_x, const Matrix6J& J,
-                                   const VectorJ& K_J) noexcept {
-  const Matrix6J bent = J * K_J.cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatrixJ taken = bent.transpose() * K_x * bent;
-  const Eigen::SelfAdjointEigenSolver<MatrixJ> eigen(taken, Eigen::EigenvaluesOnly);
-  return kHighestShare / std::max(eigen.eigenvalues().maxCoeff(), kHighestShare);
-}
-
-const char* JointSprings::check(const Matrix6& K_x, const Matrix6J& J,
-                                const VectorJ& K_J) const noexcept {
-  if (!any_ || !(allowed_share(K_x, J, K_J) < 1.0)) return nullptr;
-  return "K_x takes more than 0.9 times the stiffness of the joints' springs in this pose: the tip "
-         "cannot be made stiffer than they are (position_feedback: motor takes more, in series "
-         "with them)";
+  return allowed_share(K, K_J, dg_dq) * K;
 }
 
 }  // namespace limber::controller

@@ -32,16 +32,16 @@ class JointSprings {
   /// The stiffness of unloaded joints at the preload they rest at.
   const VectorJ& at_rest() const noexcept { return at_rest_; }
 
-  /// nullptr if the link can be given K_q, n x n diagonal, else why not. In the cycle.
-  const char* check(const MatrixJ& K_q, const VectorJ& K_J) const noexcept;
-  /// K_q, or as much of it as the springs allow. In the cycle.
-  MatrixJ within(const MatrixJ& K_q, const VectorJ& K_J) const noexcept;
-
-  /// Share of a stiffness at the tip, 6 x 6, N/m and N m/rad, that the springs allow, at most 1:
-  /// kHighestShare over the greatest eigenvalue of K_J^-1/2 J^T K_x J K_J^-1/2. In the cycle.
-  static double allowed_share(const Matrix6& K_x, const Matrix6J& J, const VectorJ& K_J) noexcept;
-  /// nullptr if the link can be given K_x, else why not. In the cycle.
-  const char* check(const Matrix6& K_x, const Matrix6J& J, const VectorJ& K_J) const noexcept;
+  /// K, n x n at the joints, N m/rad (K_q, or J^T K_x J), over the most that the links can be given
+  /// through springs K_J: kHighestShare K_J, less what the weight takes in the directions in which
+  /// it would buckle them. dg_dq: gradient of the weight that the law carries, n x n; zero if it
+  /// carries none. `most`: the joint whose spring is asked most of. In the cycle.
+  static double taken(const MatrixJ& K, const VectorJ& K_J, const MatrixJ& dg_dq,
+                      Eigen::Index* most = nullptr) noexcept;
+  /// Share of K that the springs allow, at most 1. In the cycle.
+  static double allowed_share(const MatrixJ& K, const VectorJ& K_J, const MatrixJ& dg_dq) noexcept;
+  /// K_q, n x n diagonal, or as much of it as the springs allow. In the cycle.
+  static MatrixJ within(const MatrixJ& K_q, const VectorJ& K_J, const MatrixJ& dg_dq) noexcept;
 
  private:
   struct OneJoint {

@@ -24,10 +24,23 @@ void check_joint_springs(const Robot& robot, const MatrixJ& K_q, const JointSpri
   }
 }
 
+// Of the weight that a law carries with these settings.
+MatrixJ carried_gradient(const LawEntry& law, const LawSettings& settings,
+                         const ArmView& arm) noexcept {
+  const MatrixJ& gradient = arm.gravity_gradient();
+  const bool carried = chosen_compensation(law.compensation, settings.model_compensation).gravity;
+  return carried ? gradient : MatrixJ(MatrixJ::Zero(gradient.rows(), gradient.cols()));
+}
+
+MatrixJ at_joints(const Matrix6& K_x, const ArmView& arm) noexcept {
+  return arm.terms().J.transpose() * K_x * arm.terms().J;
+}
+
 }  // namespace
 
 GainScheduler::GainScheduler(const Robot& robot, const JointSprings& springs)
-    : ramp_(default_gains(robot)),
+    : springs_check_(robot),
+      ramp_(default_gains(robot)),
       effective_(ramp_.now()),
       tank_({0.0, 0.0, 0.0, 0.0}, ramp_.now().K_x) {
   check_joint_springs(robot, ramp_.now().K_q, springs);
@@ -66,11 +79,13 @@ void GainScheduler::reduce_to_springs(const LawEntry& law, bool holding,
                                       const ArmView& arm) noexcept {
   reduced_ = false;
   if (!arm.springs().any() || position(law, holding, arm) == PositionFeedback::kMotor) return;
+  const MatrixJ weight = carried_gradient(law, effective_.settings, arm);
   if (law.potential == Potential::kJointSpring) {
-    effective_.K_q = arm.springs().within(effective_.K_q, arm.K_J());
+    effective_.K_q = JointSprings::within(effective_.K_q, arm.K_J(), weight);
   }
   if (law.potential != Potential::kTipSpring) return;
-  const double share = JointSprings::allowed_share(effective_.K_x, arm.terms().J, arm.K_J());
+  const double share =
+      JointSprings::allowed_share(at_joints(effective_.K_x, arm), arm.K_J(), weight);
   effective_.K_x *= share;
   reduced_ = share < 1.0;
 }
@@ -86,28 +101,30 @@ void GainScheduler::draw_from_tank(const Goal& goal, const ArmView& arm, double 
   effective_.K_x = tank_.update(effective_.K_x, D, error.e, V, period_s);
 }
 
-Gains GainScheduler::here(const Gains& gains, PositionFeedback position, const Goal& goal,
+Gains GainScheduler::here(const Gains& gains, const LawEntry& law, const Goal& goal,
                           const ArmView& arm) const noexcept {
   Gains here = gains;
   turn_to_base(goal.X_BD.Q.toRotationMatrix(), &here);
-  if (position != PositionFeedback::kMotor) {
-    here.K_q = arm.springs().within(here.K_q, arm.springs().at_rest());
+  if (arm.resolve(gains.settings.position_feedback, law.potential) != PositionFeedback::kMotor) {
+    const VectorJ& K_J = arm.springs().at_rest();
+    const MatrixJ weight = carried_gradient(law, gains.settings, arm);
+    here.K_q = JointSprings::within(here.K_q, K_J, weight);
+    here.K_x *= JointSprings::allowed_share(at_joints(here.K_x, arm), K_J, weight);
   }
   return here;
 }
 
 const char* GainScheduler::check_springs(const Gains& gains, const LawEntry& law, const Goal& goal,
-                                         const ArmView& arm) const noexcept {
-  const PositionFeedback position = arm.resolve(gains.settings.position_feedback, law.potential);
-  if (position == PositionFeedback::kMotor) return nullptr;
-  const JointSprings& springs = arm.springs();
-  if (law.potential == Potential::kJointSpring) {
-    return springs.check(gains.K_q, springs.at_rest());
+                                         const ArmView& arm) noexcept {
+  const bool joints = law.potential == Potential::kJointSpring;
+  if (!arm.springs().any() || (!joints && law.potential != Potential::kTipSpring)) return nullptr;
+  if (arm.resolve(gains.settings.position_feedback, law.potential) == PositionFeedback::kMotor) {
+    return nullptr;
   }
-  if (law.potential != Potential::kTipSpring) return nullptr;
   Gains here = gains;
   turn_to_base(goal.X_BD.Q.toRotationMatrix(), &here);
-  return springs.check(here.K_x, arm.terms().J, springs.at_rest());
+  return springs_check_.check(joints ? "K_q" : "K_x", joints ? here.K_q : at_joints(here.K_x, arm),
+                              arm.springs().at_rest(), carried_gradient(law, gains.settings, arm));
 }
 
 }  // namespace limber::controller

@@ -3,6 +3,7 @@
 
 #include "controller/gains/energy_tank.h"
 #include "controller/gains/gain_ramp.h"
+#include "controller/gains/springs_check.h"
 #include "controller/laws/law.h"
 #include "controller/model/arm_view.h"
 
@@ -40,17 +41,19 @@ class GainScheduler {
   void set_dissipated(double power_W) noexcept { last_dissipated_W_ = power_W; }
 
   double tank_energy_J() const noexcept { return settings().tank_J > 0.0 ? tank_.energy_J() : 0.0; }
-  /// Requested gains in base axes, K_q as the springs at rest allow: what they would be now.
-  Gains here(const Gains& gains, PositionFeedback position, const Goal& goal,
+  /// Requested gains in base axes, as the springs at rest allow them: what they would be now.
+  Gains here(const Gains& gains, const LawEntry& law, const Goal& goal,
              const ArmView& arm) const noexcept;
-  /// nullptr if the links can be given these gains with this law, at this goal, else why not.
+  /// nullptr if the links can be given these gains with this law, at this goal, else why not. The
+  /// text lasts until the next call.
   const char* check_springs(const Gains& gains, const LawEntry& law, const Goal& goal,
-                            const ArmView& arm) const noexcept;
+                            const ArmView& arm) noexcept;
 
  private:
   void reduce_to_springs(const LawEntry& law, bool holding, const ArmView& arm) noexcept;
   void draw_from_tank(const Goal& goal, const ArmView& arm, double period_s) noexcept;
 
+  SpringsCheck springs_check_;
   GainRamp ramp_;
   Gains effective_;
   EnergyTank tank_;

@@ -18,12 +18,14 @@ ArmView::ArmView(const LoadedRobot& robot)
       springs_(robot.robot),
       link_measured_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
       elastic_(robot.robot, springs_),
+      gravity_gradient_(MatrixJ::Zero(model_.size(), model_.size())),
       deflection_(VectorJ::Zero(model_.size())),
       qbar_(&model_, elastic_.K_J, kInTheCycle) {
   VectorJ home = VectorJ::Zero(model_.size());
   for (Eigen::Index i = 0; i < home.size(); ++i)
     home[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
   model_.evaluate(home, VectorJ::Zero(home.size()), &terms_);
+  if (springs_.any()) gravity_gradient_ = model_.gravity_gradient(home);
 }
 
 PositionFeedback ArmView::resolve(PositionFeedback choice, Potential potential) const noexcept {
@@ -47,6 +49,7 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
     }
     elastic_.position = solved_ ? resolved : PositionFeedback::kMotor;
     deflection_ = state.theta - (link_measured_ ? state.q : point_.q);
+    gravity_gradient_ = model_.gravity_gradient(point_.q);
   }
   model_.evaluate(point_.q, point_.v, due, &terms_);
 }

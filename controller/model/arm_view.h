@@ -42,11 +42,10 @@ class ArmView {
   const JointSprings& springs() const noexcept { return springs_; }
   /// Stiffness of the springs as they are stretched now, n, N m/rad.
   const VectorJ& K_J() const noexcept { return elastic_.K_J; }
-  /// The springs, and the position that the law received last; nullptr where no damping is designed
-  /// for them (JointElasticity::designed_for).
-  const JointElasticity* elastic() const noexcept {
-    return elastic_.designed_for ? &elastic_ : nullptr;
-  }
+  /// The springs, and the position that the law received last; nullptr for rigid arms.
+  const JointElasticity* elastic() const noexcept { return springs_.any() ? &elastic_ : nullptr; }
+  /// dg/dq at the control point, n x n, N m/rad; zero for rigid arms, which no weight buckles.
+  const MatrixJ& gravity_gradient() const noexcept { return gravity_gradient_; }
   /// What acts on the links as they are measured, n, N m: the springs (zero for rigid joints), and
   /// the torque that would hold the weight, which terms() has at the control point.
   VectorJ spring_torque(const ArmState& state) const noexcept {
@@ -69,6 +68,7 @@ class ArmView {
   JointSprings springs_;
   bool link_measured_;
   JointElasticity elastic_;
+  MatrixJ gravity_gradient_;
   VectorJ deflection_;
   QbarSolver qbar_;
   bool solved_ = true;

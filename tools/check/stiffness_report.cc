@@ -20,23 +20,41 @@ using controller::StiffnessModes;
 
 constexpr double kClose = 0.5;
 
-StiffnessReport report(double at_s, const compliance_gains_t& fields,
-                       const controller::ArmTerms& terms, const Robot& robot) {
-  controller::Gains gains(robot.size());
-  controller::read_gains(fields, &gains);
-  const double T = 1.0 / robot.rate_hz;
-  const controller::JointSprings springs(robot);
-  controller::JointElasticity elastic(robot, springs);
-  if (!elastic.designed_for) {
-    return {at_s, tip_modes(gains, terms, T), joint_modes(gains, terms, T)};
+class StartPose {
+ public:
+  StartPose(const Scenario& scenario, const LoadedRobot& robot)
+      : robot_(robot.robot), terms_(robot_.size()), springs_(robot_) {
+    controller::ArmModel model(robot);
+    const VectorJ q = Eigen::Map<const Eigen::VectorXd>(scenario.start_q.data(), model.size());
+    model.evaluate(q, VectorJ::Zero(model.size()), &terms_);
+    gravity_gradient_ = model.gravity_gradient(q);
   }
-  elastic.position = gains.settings.position_feedback;
-  if (elastic.position == PositionFeedback::kAuto) elastic.position = PositionFeedback::kStatic;
-  if (elastic.position != PositionFeedback::kMotor) {
-    gains.K_q = springs.within(gains.K_q, elastic.K_J);
+
+  StiffnessReport report(double at_s, const compliance_gains_t& fields) const {
+    controller::Gains gains(robot_.size());
+    controller::read_gains(fields, &gains);
+    const double T = 1.0 / robot_.rate_hz;
+    if (!springs_.any()) return {at_s, tip_modes(gains, terms_, T), joint_modes(gains, terms_, T)};
+    controller::JointElasticity elastic(robot_, springs_);
+    elastic.position = gains.settings.position_feedback;
+    if (elastic.position == PositionFeedback::kAuto) elastic.position = PositionFeedback::kStatic;
+    double asked = 0.0;
+    if (elastic.position != PositionFeedback::kMotor) {
+      const MatrixJ K = terms_.J.transpose() * gains.K_x * terms_.J;
+      asked = controller::JointSprings::taken(K, elastic.K_J, gravity_gradient_);
+      gains.K_x *= controller::JointSprings::allowed_share(K, elastic.K_J, gravity_gradient_);
+      gains.K_q = controller::JointSprings::within(gains.K_q, elastic.K_J, gravity_gradient_);
+    }
+    return {at_s, tip_modes(gains, terms_, T, &elastic), joint_modes(gains, terms_, T, &elastic),
+            asked};
   }
-  return {at_s, tip_modes(gains, terms, T, &elastic), joint_modes(gains, terms, T, &elastic)};
-}
+
+ private:
+  const Robot& robot_;
+  controller::ArmTerms terms_;
+  controller::JointSprings springs_;
+  MatrixJ gravity_gradient_;
+};
 
 std::span<const controller::StiffnessMode> each(const StiffnessModes& modes) {
   return std::span(modes.modes).first(static_cast<std::size_t>(modes.count));
@@ -69,18 +87,14 @@ const char* verdict(double share) {
 
 std::vector<StiffnessReport> make_stiffness_reports(const Scenario& scenario,
                                                     const LoadedRobot& robot) {
-  controller::ArmModel model(robot);
-  controller::ArmTerms terms(model.size());
-  const VectorJ q = Eigen::Map<const Eigen::VectorXd>(scenario.start_q.data(), model.size());
-  model.evaluate(q, VectorJ::Zero(model.size()), &terms);
+  const StartPose pose(scenario, robot);
   compliance_gains_t present = default_gains(robot.robot);
-  std::vector<StiffnessReport> reports{report(0.0, present, terms, robot.robot)};
+  std::vector<StiffnessReport> reports{pose.report(0.0, present)};
   for (const TimedMessage& timed : scenario.timeline) {
     const auto* gains = std::get_if<compliance_gains_t>(&timed.message);
     if (gains == nullptr) continue;
     merge_gains(*gains, &present);
-    reports.push_back(
-        report(static_cast<double>(timed.time_ns) * 1e-9, present, terms, robot.robot));
+    reports.push_back(pose.report(static_cast<double>(timed.time_ns) * 1e-9, present));
   }
   return reports;
 }
@@ -98,6 +112,12 @@ std::vector<std::string> stiffness_warnings(const std::vector<StiffnessReport>& 
       warnings.push_back(fmt::format("gains at {:g} s: {} is {} at {:g} Hz at the start pose",
                                      report.at_s, name, much, rate_hz));
     }
+    // What the timeline asks of the springs is among the requests that would be refused.
+    if (report.at_s > 0.0 || report.springs <= 1.0) continue;
+    warnings.push_back(fmt::format(
+        "gains at {:g} s: K_x is {:.2g} % more than the joints' springs, less the weight, allow at "
+        "the start pose: lower it, or choose position_feedback motor",
+        report.at_s, 100.0 * (report.springs - 1.0)));
   }
   return warnings;
 }
