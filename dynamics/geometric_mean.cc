@@ -33,12 +33,44 @@ template <int N>
   return true;
 }
 
+/// The least and the greatest ratio of the diagonals' entries, A over B.
+struct Ratios {
+  double least, most;
+};
+template <int N>
+[[gnu::always_inline]] inline Ratios ratios(int n, const Rows<N>& A, const Rows<N>& B) noexcept {
+  Ratios r = {A[0][0] / B[0][0], A[0][0] / B[0][0]};
+  for (int i = 1; i < n; ++i) {
+    const double ratio = A[i][i] / B[i][i];
+    r = {std::min(r.least, ratio), std::max(r.most, ratio)};
+  }
+  return r;
+}
+
+/// A, B <- (A + B) / 2, 2 A (A + B)^-1 B.
+template <int N>
+[[gnu::always_inline]] inline void step(int n, Rows<N>& A, Rows<N>& B) noexcept {
+  Rows<N> S, X;
+  for (int i = 0; i < n; ++i) S[i] = A[i] + B[i], X[i] = B[i];
+  solve_rows<N, N>(n, S, X);
+  for (int i = 0; i < n; ++i) {
+    S[i] = Row<N>{};
+    for (int k = 0; k < n; ++k) S[i] += A[i][k] * X[k];
+  }
+  // What the product lacks of symmetry is rounding, which must not grow.
+  for (int i = 0; i < n; ++i) {
+    A[i] = 0.5 * (A[i] + B[i]);
+    B[i] = 2.0 * S[i];
+    for (int k = 0; k < i; ++k) B[k][i] = B[i][k];
+  }
+}
+
 template <int N>
 [[gnu::always_inline]] inline bool mean_rows(const Eigen::Ref<const Eigen::MatrixXd>& P,
                                              const Eigen::Ref<const Eigen::MatrixXd>& Q,
                                              Eigen::Ref<Eigen::MatrixXd> G) noexcept {
   const int n = static_cast<int>(P.rows());
-  Rows<N> A = {}, B = {}, S, X;
+  Rows<N> A = {}, B = {}, S;
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k <= i; ++k) {
       A[i][k] = A[k][i] = P(i, k);
@@ -47,38 +79,19 @@ template <int N>
   }
   for (int i = 0; i < n; ++i) S[i] = B[i];
   if (!regular_rows<N>(n, S)) return false;
-  for (int step = 0; step < kSteps; ++step) {
-    double least = A[0][0] / B[0][0], most = least;
-    for (int i = 1; i < n; ++i) {
-      const double ratio = A[i][i] / B[i][i];
-      least = std::min(least, ratio), most = std::max(most, ratio);
-    }
-    if (!(least > 0.0 && std::isfinite(most))) return false;
+  for (int steps = 0; steps < kSteps; ++steps) {
+    const Ratios r = ratios<N>(n, A, B);
+    if (!(r.least > 0.0 && std::isfinite(r.most))) return false;
     // From the first step on A - B is positive semidefinite: no entry exceeds its diagonal.
-    if (step > 0 && most - 1.0 <= kClose) {
+    if (steps > 0 && r.most - 1.0 <= kClose) {
       for (int i = 0; i < n; ++i) {
         for (int k = 0; k < n; ++k) G(k, i) = 0.5 * (A[i][k] + B[i][k]);
       }
       return true;
     }
-    const double c = std::sqrt(std::sqrt(least * most));
-    for (int i = 0; i < n; ++i) {
-      A[i] *= 1.0 / c;
-      X[i] = B[i] *= c;
-      S[i] = A[i] + B[i];
-    }
-    solve_rows<N, N>(n, S, X);
-    // 2 A X is symmetric but for rounding, which must not grow.
-    for (int i = 0; i < n; ++i) {
-      Row<N> row = Row<N>{};
-      for (int k = 0; k < n; ++k) row += A[i][k] * X[k];
-      S[i] = 2.0 * row;
-    }
-    for (int i = 0; i < n; ++i) A[i] = 0.5 * (A[i] + B[i]);
-    for (int i = 0; i < n; ++i) {
-      B[i] = S[i];
-      for (int k = 0; k < i; ++k) B[k][i] = S[i][k];
-    }
+    const double c = std::sqrt(std::sqrt(r.least * r.most));
+    for (int i = 0; i < n; ++i) A[i] *= 1.0 / c, B[i] *= c;
+    step<N>(n, A, B);
   }
   return false;
 }

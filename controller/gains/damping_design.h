@@ -10,7 +10,8 @@ namespace limber::controller {
 /// Damping for the joints, n x n, N m s/rad, from M (n x n positive definite, rotors included) and
 /// K (n x n symmetric positive semidefinite), so that the modes of M s^2 + D s + K have the damping
 /// ratio zeta (Albu-Schaeffer, Ott, Frese, Hirzinger, ICRA 2003):
-///   double diagonalisation  M = L L^T, S = L^-1 K L^-T, D = 2 zeta L sqrt(S) L^T: every mode
+///   double diagonalisation  M = L L^T, S = L^-1 K L^-T, D = 2 zeta L sqrt(S) L^T: every mode. That
+///                           is 2 zeta M # K (dynamics/geometric_mean.h), found so if K is regular
 ///   factorisation           D = zeta (sqrt(M) sqrt(K) + sqrt(K) sqrt(M)): if M and K commute;
 ///                           negative eigenvalues, which the sum can have, are set to zero
 ///   without inertia         D = 2 zeta sqrt(K): off by the root of the inertia
@@ -27,8 +28,7 @@ MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept;
 
-/// The same from J and M^-1 J^T. Any L with G = L L^T gives the same D: away from singularities it
-/// is the Cholesky factor.
+/// The same from J and M^-1 J^T: away from singularities the design for the inertia G^-1.
 Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
                     const Matrix6& K, double ratio) noexcept;
 

@@ -94,9 +94,10 @@ def test_a_long_pause_is_shortened_and_told(tmp_path):
 
 def test_refused_where_a_stack_runs(stack, log):
     stack.start_all()
-    before = len(stack.user.raw["JOINT_STATE"])
+    before = stack.user.count("JOINT_STATE")
     process = replay(log)
     out, errors = process.communicate(timeout=20)
+    stack.until(lambda: stack.user.count("JOINT_STATE") > before, 5, "a state of the stack")
     assert process.returncode == 3 and out == ""
     assert "a stack, or another replay, is running there" in errors
     sessions = {
