@@ -155,11 +155,8 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
 Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
                     const Matrix6& K, double ratio) noexcept {
   if (design == DampingDesign::kDoubleDiagonalisation) {
-    const Matrix6 G = scaled_mobility(J, Minv_JT);
-    if (const auto inverse = regular_inverse(G, kRegular * G.norm())) {
-      const Matrix6 Lambda = row_scale().asDiagonal() * *inverse * row_scale().asDiagonal();
-      return doubly_diagonalised<Matrix6>(Lambda, K, ratio);
-    }
+    if (const auto Lambda = regular_tip_inertia(J, Minv_JT, kRegular))
+      return doubly_diagonalised<Matrix6>(*Lambda, K, ratio);
   }
   return tip_damping(design, tip_mobility(J, Minv_JT), K, ratio);
 }

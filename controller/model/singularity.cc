@@ -28,6 +28,15 @@ Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
   return 0.5 * (G + G.transpose());
 }
 
+std::optional<Matrix6> regular_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT,
+                                           double lost_share) noexcept {
+  const Matrix6 G = scaled_mobility(J, Minv_JT);
+  const auto inverse = regular_inverse(G, lost_share * G.norm());
+  if (!inverse) return std::nullopt;
+  const Vector6 S = row_scale();
+  return Matrix6(S.asDiagonal() * *inverse * S.asDiagonal());
+}
+
 TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
   TipMobility mobility;
   mobility.S = row_scale();
@@ -50,11 +59,7 @@ Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexce
 }
 
 Matrix6 damped_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT, double lost_share) noexcept {
-  const Matrix6 G = scaled_mobility(J, Minv_JT);
-  if (const auto inverse = regular_inverse(G, lost_share * G.norm())) {
-    const Vector6 S = row_scale();
-    return S.asDiagonal() * *inverse * S.asDiagonal();
-  }
+  if (const auto Lambda = regular_tip_inertia(J, Minv_JT, lost_share)) return *Lambda;
   const TipMobility mobility = tip_mobility(J, Minv_JT);
   if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
   return damped_tip_inertia(mobility, mobility.threshold(lost_share));

@@ -34,6 +34,11 @@ struct TipMobility {
 /// cycle.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept;
 
+/// Tip inertia Lambda = (J M^-1 J^T)^-1, kg and kg m^2, if no direction of it has less than
+/// `lost_share` of the mobility of all. May be called in the cycle.
+std::optional<Matrix6> regular_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT,
+                                           double lost_share) noexcept;
+
 /// S of TipMobility.
 Vector6 row_scale() noexcept;
 

@@ -1,6 +1,6 @@
-// All terms of random chains, by one build of the kernel: included behind arm_kernel.cc and
-// geometric_mean.cc, whose namespace `dynamics` the includer renames, and whose functions it gives
-// a kind of processor.
+// All terms of random chains, by one build of the kernel: included behind arm_kernel.cc,
+// geometric_mean.cc and spd_solve.cc, whose namespace `dynamics` the includer renames, and whose
+// functions it gives a kind of processor.
 #pragma once
 
 #include <random>
@@ -56,7 +56,11 @@ std::vector<double> terms_of_random_chains() {
       MatrixJ mean(n, n);
       const MatrixJ spring = v.cwiseAbs().asDiagonal();
       if (!geometric_mean(M, spring, mean)) mean.setZero();
-      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean);
+      MatrixJ6 Minv_JT = J.transpose();
+      VectorJ Minv_tau = tau;
+      solve_spd(M, &Minv_JT);
+      solve_spd(M, &Minv_tau);
+      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean), keep(Minv_JT), keep(Minv_tau);
     }
   }
   return numbers;

@@ -6,9 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "common/types.h"
+#include "common/joints.h"
 #include "dynamics/geometric_mean.h"
-#include "tests/support/allocation_counter.h"
 
 namespace limber::dynamics::test_geometric_mean {
 namespace {
