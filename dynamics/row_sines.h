@@ -14,13 +14,12 @@ struct RowSines {
 };
 
 /// c0 + x (c1 + x (c2 + ...)).
-template <int N>
-[[gnu::always_inline]] inline Row<N> series(const Row<N>&, double last) noexcept {
-  return Row<N>{} + last;
-}
 template <int N, typename... More>
 [[gnu::always_inline]] inline Row<N> series(const Row<N>& x, double first, More... more) noexcept {
-  return first + x * series<N>(x, more...);
+  if constexpr (sizeof...(more) == 0)
+    return Row<N>{} + first;
+  else
+    return first + x * series<N>(x, more...);
 }
 
 /// Of angles in rad. Off by less than 3e-16 up to a million rad; of no meaning beyond 1e15. In the

@@ -1,5 +1,7 @@
 #include "sim/plant/force_model.h"
 
+#include <algorithm>
+
 namespace limber::sim {
 
 ForceModel::ForceModel(const Robot& robot, const Robot& believed, bool friction)
@@ -49,20 +51,21 @@ void ForceModel::soften_wall(LinkDynamics* arm, double h) noexcept {
 }
 
 bool ForceModel::couple_passive(const ArmState& x, double h) noexcept {
-  bool passive = false;
+  const auto end = motors_.begin() + motor_count_;
+  bool passive = std::any_of(motors_.begin(), end, [](const Motor& m) { return m.passive(); });
   for (int i = 0; i < size_; ++i) {
     const AffineForce force = passive_force(i, x.q[i], x.v[i], v_guess_[i], h);
     tau_[i] = -force.offset - force.slope * x.v[i];
     inertia_[i] = h * force.slope;
     passive = passive || force.offset != 0.0 || force.slope != 0.0;
   }
+  if (!passive) return false;
   for (int k = 0; k < motor_count_; ++k) {
     couplings_[k] = motors_[k].couple(point(x, k), theta_dot_guess_[k], h);
     tau_[joint_of_[k]] += couplings_[k].link_torque();
     inertia_[joint_of_[k]] += couplings_[k].link_inertia();
-    passive = passive || motors_[k].passive();
   }
-  return passive;
+  return true;
 }
 
 void ForceModel::begin_step(LinkDynamics* arm, const ArmState& x, double h,

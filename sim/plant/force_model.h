@@ -101,6 +101,7 @@ class ForceModel {
  private:
   void soften_wall(LinkDynamics* arm, double h) noexcept;
   AffineForce passive_force(int joint, double q, double v, double v_guess, double h) const noexcept;
+  /// False: no passive force acts, so that the step needs no solution of its own.
   bool couple_passive(const ArmState& x, double h) noexcept;
   void finish_step(const ArmState& x, double h) noexcept;
 
