@@ -31,8 +31,8 @@ def test_each_event_of_the_demo_has_a_sentence(demo):
     assert "wall is put up" in told[17.5]
     assert "70 mm along +x" in told[18.0] and "presses" in told[18.0]
     assert "wall" not in told[22.5], "on its way back"
-    assert story.at(lines, 0.1) is None
-    assert story.at(lines, 3.0).time_s == 2.0
+    assert story.until(lines, 0.1) == []
+    assert story.until(lines, 3.0)[-1].time_s == 2.0
 
 
 def test_without_friction_nothing_is_held_back(demo):
@@ -89,6 +89,23 @@ def test_it_fits_the_terminal(demo):
     console.print(view.render())
     text = console.export_text()
     assert "9.0 N" in text and "11.0 mm" in text and "ACTIVE" in text
+
+
+def test_no_sentence_is_lost_between_two_pictures():
+    """In lock step a picture may come after 1.5 s of the arm's time."""
+    demo = load_scenario(ROOT / "scenarios" / "demo_short.yaml")
+    receiver = Receiver(demo.robot)
+    view = DemoView(receiver, demo)
+    seen = ""
+    for time_s in np.arange(0.7, demo.duration_s, 1.5):
+        receiver.records["JOINT_STATE"]["time_ns"] = time_s * 1e9
+        console = Console(width=80, record=True, file=io.StringIO())
+        console.print(view.render())
+        lines = console.export_text().splitlines()
+        assert len(lines) == 17, "the picture keeps its height"
+        seen += " ".join(line[37:-1].strip(" │") for line in lines) + " "
+    for line in view.lines:
+        assert line.text in " ".join(seen.split())
 
 
 def test_a_stick_figure_shows_where_the_arm_is(demo):

@@ -2,6 +2,8 @@
 way.
 """
 
+import textwrap
+
 import numpy as np
 from rich.console import Group
 from rich.panel import Panel
@@ -16,7 +18,7 @@ from limber.run import story
 
 SHOWN = ("JOINT_STATE", "CONTROLLER_STATUS", "SIM_TRUTH")
 FIGURE = (32, 14)  # columns, rows
-WORDS = 38  # columns of the other panel's text
+WORDS = (38, 15)  # the other panel's text: columns, rows
 LONGEST_mm = 40.0
 GOOD, WARN = "green", "yellow"
 
@@ -36,10 +38,12 @@ class DemoView:
         truth = self.receiver.newest("SIM_TRUTH")
         row = Table.grid(padding=(0, 1))
         figure = Group(*self._figure(state))
-        words = Group(*self._happens(state), Text(), *self._numbers(status, truth))
+        numbers = self._numbers(status, truth)
+        happens = self._happens(state, WORDS[1] - 1 - len(numbers))
+        words = Group(*happens, Text(), *numbers)
         row.add_row(
-            Panel(figure, title="the arm, from the side", width=FIGURE[0] + 4, height=17),
-            Panel(words, title="what happens", width=WORDS + 4, height=17),
+            Panel(figure, title="the arm, from the side", width=FIGURE[0] + 4, height=WORDS[1] + 2),
+            Panel(words, title="what happens", width=WORDS[0] + 4, height=WORDS[1] + 2),
         )
         return row
 
@@ -49,14 +53,22 @@ class DemoView:
         points = stick_figure.arm_points(robot, q)
         return [Text(line) for line in stick_figure.draw(self.window, points, *FIGURE)]
 
-    def _happens(self, state: np.void | None) -> list[Text]:
+    def _happens(self, state: np.void | None, rows: int) -> list[Text]:
+        """The latest sentences that fit. Lock step may go through several between two pictures."""
         if state is None:
             return [Text("starting ...", style=WARN)]
-        now_s = float(state["time_ns"]) * 1e-9
-        line = story.at(self.lines, now_s)
-        if line is None:
+        told = story.until(self.lines, float(state["time_ns"]) * 1e-9)
+        if not told:
             return [Text("The motors are being found on the bus.")]
-        return [Text(f"{line.time_s:.1f} s", style="dim"), Text(line.text)]
+        *before, newest = told
+        happens = [Text(f"{newest.time_s:.1f} s", style="dim"), Text(newest.text)]
+        rows -= 1 + _rows(newest.text)
+        for line in reversed(before):
+            rows -= _rows(line.text)
+            if rows < 0:
+                break
+            happens.insert(0, Text(line.text, style="dim"))
+        return happens
 
     def _numbers(self, status: np.void | None, truth: np.void | None) -> list[Text]:
         if status is None or truth is None:
@@ -77,6 +89,10 @@ class DemoView:
             moved = float(away @ direction)
             lines.append(Text(f"         {moved:.1f} mm along the push", style="dim"))
         return lines
+
+
+def _rows(text: str) -> int:
+    return len(textwrap.wrap(text, WORDS[0]))
 
 
 def _bar(name: str, value: float, unit: str, most: float) -> Text:

@@ -42,9 +42,9 @@ def story(scenario: Scenario) -> list[Line]:
     return sorted(lines, key=lambda line: line.time_s)
 
 
-def at(lines: list[Line], time_s: float) -> Line | None:
-    """The latest that has happened."""
-    return next((line for line in reversed(lines) if line.time_s <= time_s), None)
+def until(lines: list[Line], time_s: float) -> list[Line]:
+    """Those that have happened."""
+    return [line for line in lines if line.time_s <= time_s]
 
 
 def _entry(scenario: Scenario, entry: dict) -> str | None:
