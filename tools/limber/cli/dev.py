@@ -111,7 +111,7 @@ def coverage(
 
 @app.command(epilog="Example: limber fuzz --minutes 10")
 def fuzz(
-    target: Annotated[str | None, typer.Argument(help="One target; all if there is none.")] = None,
+    target: Annotated[list[str] | None, typer.Argument(help="All if there is none.")] = None,
     inputs: Annotated[int, typer.Option(min=0, help="libFuzzer: inputs a target.")] = 0,
     minutes: Annotated[float, typer.Option(min=0, help="libFuzzer: minutes a target.")] = 0,
     seed: Annotated[int, typer.Option(min=0, help="Of the mutations that are replayed.")] = 1,
@@ -120,7 +120,7 @@ def fuzz(
     --inputs or --minutes, whatever libFuzzer (clang) finds."""
     from limber.dev import fuzz as module
 
-    names = module.targets(target)
+    names = module.targets(target or [])
     if inputs or minutes:
         passed = module.search(names, console, inputs, minutes)
     else:

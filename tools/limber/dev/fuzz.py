@@ -64,22 +64,24 @@ class Outcome:
     failure: str = ""
 
 
-def targets(name: str | None = None) -> list[str]:
-    """All, or the one with this name."""
-    if name is not None and name not in WHAT:
-        raise InputError(f"no fuzz target '{name}'; there are {', '.join(WHAT)}")
-    return list(WHAT) if name is None else [name]
+def targets(names: list[str]) -> list[str]:
+    """Those with these names; all if there are none."""
+    for name in names:
+        if name not in WHAT:
+            raise InputError(f"no fuzz target '{name}'; there are {', '.join(WHAT)}")
+    return names or list(WHAT)
 
 
 def mutations_of(target: str) -> int:
     return FILE_MUTATIONS if target in SLOW else MUTATIONS
 
 
-def _build(preset: str) -> Path:
+def _build(preset: str, names: list[str]) -> Path:
     """Returns the folder of the targets' programs."""
+    programs = ["fuzz_targets"] if names == list(WHAT) else [f"fuzz_{name}" for name in names]
     commands = (
         ["cmake", "--preset", preset],
-        ["cmake", "--build", "--preset", preset, "--target", "fuzz_targets"],
+        ["cmake", "--build", "--preset", preset, "--target", *programs],
     )
     for command in commands:
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -90,7 +92,7 @@ def _build(preset: str) -> Path:
 
 def replay(names: list[str], console: Console, mutations: int | None = None, seed: int = 1) -> bool:
     """Kept inputs and mutations of them, under sanitizers; True if nothing was found."""
-    folder = _build("asan")
+    folder = _build("asan", names)
     OUT.mkdir(parents=True, exist_ok=True)
 
     def one(target: str) -> Outcome:
@@ -109,7 +111,7 @@ def replay(names: list[str], console: Console, mutations: int | None = None, see
 
 def search(names: list[str], console: Console, inputs: int, minutes: float) -> bool:
     """libFuzzer, until so many inputs or minutes a target; 0: no such bound."""
-    folder = _build("fuzz")
+    folder = _build("fuzz", names)
 
     def one(target: str) -> Outcome:
         found = OUT / target
