@@ -55,6 +55,9 @@ class SwitchedBus final : public CanBus {
     return count;
   }
   int descriptor() const noexcept override { return bus_->descriptor(); }
+  bool something_waits() const noexcept override { return bus_->something_waits(); }
+  void about_to_sleep() noexcept override { bus_->about_to_sleep(); }
+  bool polls() const noexcept override { return bus_->polls(); }
   const CanStatistics& statistics() const noexcept override { return bus_->statistics(); }
 
   std::vector<CanFrame> commands;

@@ -1,7 +1,8 @@
 // Simulator, driver and controller, the real processes in lock step without a log: time per cycle,
 // beside a bare UDP unicast ping-pong of the messages' sizes between two processes. The two take
-// turns: the driver is stopped while the ping-pong runs. LIMBER_ARM_URL chooses the arm plane.
-// Prints one JSON line; the figure that travels between machines is the ratio.
+// turns: the driver is stopped while the ping-pong runs. LIMBER_ARM_URL and
+// LIMBER_VIRTUAL_BUS choose what carries messages and frames. Prints one JSON line; the figure that
+// travels between machines is the ratio.
 //
 //   limber-bench-whole-loop --bin build/release/bin --scenario FILE [--turns 20]
 #include <fmt/format.h>

@@ -1,11 +1,13 @@
 #include "sim/sim_process.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "common/clock.h"
 #include "common/realtime.h"
@@ -57,7 +59,9 @@ void run_sim(const LoadedRobot& robot, const std::vector<TimedMessage>& timeline
   const std::string scheduling = schedule(options);
   sim::SimPort port(robot, &timeline, options.simulator);
   port.set_black_box(black_box.get());
-  spdlog::info("{}, {} at {:g} us, {}", robot.robot.name,
+  std::vector<std::string> buses;
+  for (const BusConfig& bus : robot.robot.buses) buses.push_back(bus_text(bus.can));
+  spdlog::info("{} on {}, {} at {:g} us, {}", robot.robot.name, fmt::join(buses, ", "),
                options.simulator.integrator == Integrator::kOde ? "ode" : "reference",
                1e6 * options.simulator.step_s, scheduling);
   const std::int64_t end_ns = options.duration_s > 0.0 ? std::llround(options.duration_s * 1e9)

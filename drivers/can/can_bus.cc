@@ -1,10 +1,13 @@
 #include "drivers/can/can_bus.h"
 
+#include <algorithm>
 #include <array>
 
 #include "common/config_error.h"
 #include "common/joints.h"
+#include "common/shared_memory/spin.h"
 #include "common/wait_readable.h"
+#include "drivers/can/shared_bus.h"
 #include "drivers/can/socketcan.h"
 #include "drivers/can/virtual_bus.h"
 
@@ -15,19 +18,32 @@ std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd, Stamps
   const std::string kind = address.substr(0, colon);
   const std::string name = colon == std::string::npos ? "" : address.substr(colon + 1);
   if (kind == "socketcan" && !name.empty()) return open_socketcan(name, fd);
-  if (kind == "virtual" && !name.empty()) return open_virtual_bus(name, fd, stamps);
+  if (kind == "virtual" && !name.empty()) {
+    const auto shared = shared_bus_options();
+    return shared ? open_shared_bus(name, fd, stamps, *shared) : open_virtual_bus(name, fd, stamps);
+  }
   throw ConfigError(
       "CAN bus '" + address +
       "': expected socketcan:INTERFACE (socketcan:can0) or virtual:NAME (virtual:default)");
 }
 
-bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns) noexcept {
-  std::array<int, kMaxBuses> descriptors{};
-  std::size_t count = 0;
-  for (const CanBus* bus : buses) {
+std::string bus_text(const std::string& address) {
+  const bool shared = address.starts_with("virtual:") && shared_bus_options().has_value();
+  return shared ? address + " in shared memory" : address;
+}
+
+bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns,
+                   int other_descriptor) noexcept {
+  const auto arrived = [buses] { return std::ranges::any_of(buses, &CanBus::something_waits); };
+  if (std::ranges::any_of(buses, &CanBus::polls) && spin_until(deadline_ns, arrived)) return true;
+  std::array<int, kMaxBuses + 1> descriptors{other_descriptor};
+  std::size_t count = 1;
+  for (CanBus* bus : buses) {
+    bus->about_to_sleep();
     if (count < descriptors.size()) descriptors[count++] = bus->descriptor();
   }
-  return wait_readable(std::span<const int>(descriptors.data(), count), deadline_ns);
+  // Behind about_to_sleep(): what comes from here on wakes.
+  return arrived() || wait_readable(std::span<const int>(descriptors.data(), count), deadline_ns);
 }
 
 }  // namespace limber

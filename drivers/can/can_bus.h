@@ -50,6 +50,15 @@ class CanBus {
   /// (in-memory).
   virtual int descriptor() const noexcept = 0;
 
+  // For carriers whose descriptor wakes only an end that has told that it will sleep. See
+  // wait_readable().
+  /// receive() would return something.
+  virtual bool something_waits() const noexcept { return false; }
+  /// From here on the descriptor polls readable when something arrives.
+  virtual void about_to_sleep() noexcept {}
+  /// This end has a core for itself, and had rather spin than sleep.
+  virtual bool polls() const noexcept { return false; }
+
   virtual const CanStatistics& statistics() const noexcept = 0;
 
   /// From here on only error frames and what one of the filters passes need be received; a carrier
@@ -65,12 +74,20 @@ class CanBus {
 ///
 /// virtual:NAME speaks python-can's udp_multicast format. NAME "default" is python-can's own group
 /// 239.74.163.2; another NAME selects a group 239.74.x.y by hash, an address "239.1.2.3" is taken
-/// as it is; port 43113, TTL 0. Environment LIMBER_VIRTUAL_BUS_PORT overrides the port.
+/// as it is; port 43113, TTL 0. Environment LIMBER_VIRTUAL_BUS_PORT overrides the port, and
+/// LIMBER_VIRTUAL_BUS moves all virtual buses of a process into shared memory (shared_bus.h).
 std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd,
                                      Stamps stamps = Stamps::kOnArrival);
 
-/// Waits until one of the buses is readable or the absolute CLOCK_MONOTONIC time is reached (ns; <=
-/// 0: return at once). Returns false on time-out. May be called inside the cycle.
-bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns) noexcept;
+/// The address as logs name it: "virtual:NAME in shared memory" where that carries it.
+std::string bus_text(const std::string& address);
+
+/// Waits until one of the buses, or another descriptor (-1: none), is readable, or the absolute
+/// CLOCK_MONOTONIC time is reached (ns; <= 0: return at once). Returns false on time-out. True does
+/// not promise a frame: like poll(2) it may wake in vain, as when a frame has been read before the
+/// wake for it arrives. The other descriptor does not end the spinning of a bus that polls. May be
+/// called inside the cycle.
+bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns,
+                   int other_descriptor = -1) noexcept;
 
 }  // namespace limber

@@ -175,9 +175,9 @@ void DriverProcess::measure_delay() {
 void DriverProcess::log_start() const {
   std::string buses;
   for (std::size_t b = 0; b < robot_.buses.size(); ++b) {
-    buses +=
-        fmt::format("{}{} = {} ({:.0f} % predicted load)", b == 0 ? "" : ", ", robot_.buses[b].name,
-                    robot_.buses[b].can, 100.0 * expected_bus_load(robot_, static_cast<int>(b)));
+    buses += fmt::format("{}{} = {} ({:.0f} % predicted load)", b == 0 ? "" : ", ",
+                         robot_.buses[b].name, bus_text(robot_.buses[b].can),
+                         100.0 * expected_bus_load(robot_, static_cast<int>(b)));
   }
   spdlog::info("{}, {} joints, {:g} Hz {}, session {}; {}; {}", robot_.name, robot_.size(),
                robot_.rate_hz, options_.lockstep ? "in lock step" : "in real time",

@@ -35,11 +35,10 @@ SimPort::SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* time
                  const SimulatorOptions& options)
     : locks_(lock_buses(robot.robot)),
       buses_(open_buses(robot.robot)),
-      simulator_(robot, pointers(buses_), options),
+      bus_pointers_(pointers(buses_)),
+      simulator_(robot, bus_pointers_, options),
       user_(user_plane_url()) {
   simulator_.set_timeline(timeline);
-  for (const auto& bus : buses_) descriptors_.push_back(bus->descriptor());
-  descriptors_.push_back(user_.descriptor());
   user_.subscribe<push_t>(channels::kPush, kUserQueue, [this](const push_t& push) {
     if (!simulator_.push(push)) complain("a PUSH was refused (values, link, or no free slot)");
   });

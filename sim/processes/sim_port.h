@@ -30,7 +30,9 @@ class SimPort {
   void subscribe_joint_state(Handler handler);
 
   /// Until a frame or a message waits, or the absolute CLOCK_MONOTONIC time has come.
-  void wait(std::int64_t deadline_ns) noexcept { wait_readable(descriptors_, deadline_ns); }
+  void wait(std::int64_t deadline_ns) noexcept {
+    wait_readable(bus_pointers_, deadline_ns, user_.descriptor());
+  }
   void handle_messages() noexcept { user_.handle_waiting(kMessagesAtOnce); }
   void publish_truth() noexcept;
   /// Keeps what is published and heard from now on, as an incident when driver or controller has a
@@ -47,9 +49,9 @@ class SimPort {
 
   std::vector<RunLock> locks_;  ///< a second simulator's drives would answer to the same ids
   std::vector<std::unique_ptr<CanBus>> buses_;
+  std::vector<CanBus*> bus_pointers_;
   Simulator simulator_;
   LcmPort user_;
-  std::vector<int> descriptors_;
   std::int64_t complained_ns_ = 0;
   BlackBox* black_box_ = nullptr;
   int fault_ = joint_state_t::FAULT_NONE;

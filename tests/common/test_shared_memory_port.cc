@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "common/arm_plane/arm_plane.h"
-#include "common/arm_plane/shared_object.h"
+#include "common/arm_plane/shared_memory_address.h"
 #include "common/clock.h"
 #include "common/config_error.h"
 
@@ -34,7 +34,7 @@ class SharedMemoryArmPlane : public testing::Test {
     static const std::string name = "shm:test-" + std::to_string(getpid());  // its children's, too
     return name + options;
   }
-  static std::string path() { return parse_shared_memory_address(url()).path(); }
+  static std::string path() { return parse_shared_memory_address(url()).place.path; }
   static std::string refusal(const std::string& at) {
     try {
       ArmPlane plane(at, ArmPlaneEnd::kDriver);

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/arm_plane/shared_ring.h"
+#include "common/arm_plane/shared_memory_address.h"
 
 namespace limber::test_shared_ring {
 namespace {
@@ -17,22 +17,22 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// A message whose bytes all follow from its number.
 Bytes message(std::uint32_t number) {
-  return Bytes(1 + number % kLongestInRing, static_cast<std::uint8_t>(number));
+  return Bytes(1 + number % ArmRing::kLongest, static_cast<std::uint8_t>(number));
 }
 
 class SharedRingTest : public testing::Test {
  protected:
   /// The next message; empty if none waits.
-  static Bytes read(RingReader& reader) {
-    Bytes room(kLongestInRing, 0xEE);
+  static Bytes read(RingReader<ArmRing>& reader) {
+    Bytes room(ArmRing::kLongest, 0xEE);
     const int size = reader.read(room);
     room.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
     return room;
   }
-  SharedRing& ring() { return *memory_; }
+  ArmRing& ring() { return *memory_; }
 
  private:
-  std::unique_ptr<SharedRing> memory_ = std::make_unique<SharedRing>();
+  std::unique_ptr<ArmRing> memory_ = std::make_unique<ArmRing>();
 };
 
 TEST_F(SharedRingTest, MessagesOfAnyLengthComeInOrder) {
@@ -40,14 +40,14 @@ TEST_F(SharedRingTest, MessagesOfAnyLengthComeInOrder) {
   RingReader reader(&ring());
   EXPECT_FALSE(reader.something_waits());
   EXPECT_EQ(read(reader), Bytes());
-  for (std::uint32_t number = 0; number < 3 * kLongestInRing; ++number) {
+  for (std::uint32_t number = 0; number < 3 * ArmRing::kLongest; ++number) {
     ASSERT_TRUE(writer.write(message(number)));
     ASSERT_TRUE(reader.something_waits());
     ASSERT_EQ(read(reader), message(number)) << number;
   }
   EXPECT_EQ(read(reader), Bytes());
   EXPECT_EQ(reader.dropped(), 0);
-  EXPECT_FALSE(writer.write(Bytes(kLongestInRing + 1)));
+  EXPECT_FALSE(writer.write(Bytes(ArmRing::kLongest + 1)));
   EXPECT_FALSE(reader.something_waits());
 }
 
@@ -63,8 +63,9 @@ TEST_F(SharedRingTest, NumbersMayWrapAround) {
 TEST_F(SharedRingTest, WhatWasOverwrittenIsCounted) {
   RingWriter writer(&ring());
   RingReader reader(&ring());
-  for (std::uint32_t number = 0; number < kRingSlots + 7; ++number) writer.write(message(number));
-  for (std::uint32_t number = 7; number < kRingSlots + 7; ++number)
+  for (std::uint32_t number = 0; number < ArmRing::kSlots + 7; ++number)
+    writer.write(message(number));
+  for (std::uint32_t number = 7; number < ArmRing::kSlots + 7; ++number)
     EXPECT_EQ(read(reader), message(number));
   EXPECT_EQ(read(reader), Bytes());
   EXPECT_EQ(reader.dropped(), 7);
@@ -75,7 +76,8 @@ TEST_F(SharedRingTest, AMessageThatIsBeingWrittenIsNone) {
   RingReader reader(&ring());
   writer.write(message(1));
   writer.write(message(2));
-  ring().slots[1].number = kRingSlots;  // as write() has it while message kRingSlots + 1 is written
+  ring().slots[1].number =
+      ArmRing::kSlots;  // as write() has it while message ArmRing::kSlots + 1 is written
   EXPECT_EQ(read(reader), message(2));
   EXPECT_EQ(reader.dropped(), 1);
 }
@@ -118,17 +120,17 @@ TEST_F(SharedRingTest, GarbageIsNoMessageThatDoesNotFitAndPasses) {
   for (int round = 0; round < 3000; ++round) {
     ring().newest = static_cast<std::uint32_t>(random());
     const bool near = round % 2 == 0;  // numbers that fit, with sizes that do not
-    for (SharedRing::Slot& slot : ring().slots) {
+    for (ArmRing::Slot& slot : ring().slots) {
       const auto offset = static_cast<std::uint32_t>(&slot - ring().slots.data());
-      slot.number = near ? ring().newest / kRingSlots * kRingSlots + offset
+      slot.number = near ? ring().newest / ArmRing::kSlots * ArmRing::kSlots + offset
                          : static_cast<std::uint32_t>(random());
       slot.bytes = static_cast<std::uint32_t>(random() >> (32 + random() % 32));
     }
-    Bytes room(kLongestInRing);
+    Bytes room(ArmRing::kLongest);
     std::uint32_t found = 0;
     for (int size = 0; (size = reader.read(room)) >= 0; ++found)
-      ASSERT_LE(static_cast<std::size_t>(size), kLongestInRing);
-    ASSERT_LE(found, kRingSlots);
+      ASSERT_LE(static_cast<std::size_t>(size), ArmRing::kLongest);
+    ASSERT_LE(found, ArmRing::kSlots);
     writer.write(message(1));  // goes on with its own number
     RingReader next(&ring());
     writer.write(message(2));
@@ -155,7 +157,7 @@ TEST_F(SharedRingTest, NoTornMessageIsReadWhileTheWriterOvertakes) {
   });
   std::uint32_t last = 0;
   std::int64_t received = 0;
-  Bytes room(kLongestInRing);
+  Bytes room(ArmRing::kLongest);
   while (last < kMessages) {
     if (reader.read(room) < 0) continue;
     std::uint32_t number = 0;

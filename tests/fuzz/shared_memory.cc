@@ -8,7 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "common/arm_plane/shared_object.h"
+#include "common/arm_plane/datagram_port.h"
+#include "common/arm_plane/shared_memory_address.h"
 #include "common/clock.h"
 #include "tests/fuzz/support/fuzz_input.h"
 #include "tests/fuzz/support/require.h"
@@ -33,7 +34,7 @@ struct Peer {
     munmap(memory, sizeof(SharedMemory));
     std::filesystem::remove(path);
   }
-  std::string path = parse_shared_memory_address(kUrl).path();
+  std::string path = parse_shared_memory_address(kUrl).place.path;
   SharedMemory* memory = nullptr;
 };
 
@@ -45,8 +46,8 @@ std::uint32_t spoilt(std::uint32_t was, fuzz::FuzzInput& in) {
 
 void spoil(SharedMemory& memory, fuzz::FuzzInput& in) {
   const auto which = in.take<std::uint8_t>();
-  SharedRing& ring = memory.rings[which % 2];
-  SharedRing::Slot& slot = ring.slots[in.take<std::uint8_t>() % kRingSlots];
+  ArmRing& ring = memory.rings[which % 2];
+  ArmRing::Slot& slot = ring.slots[in.take<std::uint8_t>() % ArmRing::kSlots];
   switch (which / 2 % 5) {
     case 0:
       ring.newest = spoilt(ring.newest, in);
@@ -55,13 +56,13 @@ void spoil(SharedMemory& memory, fuzz::FuzzInput& in) {
       slot.number = spoilt(ring.newest, in);
       return;
     case 2:
-      slot.bytes = spoilt(kLongestInRing, in);
+      slot.bytes = spoilt(ArmRing::kLongest, in);
       return;
     case 3:
-      ring.sleeping = in.take<std::uint32_t>();
+      memory.sleeping[which % 2] = in.take<std::uint32_t>();
       return;
     default:
-      slot.words[in.take<std::uint8_t>() % kRingWords] = in.take<std::uint64_t>();
+      slot.words[in.take<std::uint8_t>() % slot.words.size()] = in.take<std::uint64_t>();
   }
 }
 
@@ -71,7 +72,7 @@ bool receive(DatagramPort& port, std::size_t room) {
   std::vector<std::uint8_t> bytes(room);  // what is beyond it, the address sanitizer watches
   const std::int64_t dropped = port.dropped();
   const int size = port.receive(bytes);
-  fuzz::require(size >= -1 && size <= static_cast<int>(kLongestInRing), "a slot holds no more");
+  fuzz::require(size >= -1 && size <= static_cast<int>(ArmRing::kLongest), "a slot holds no more");
   fuzz::require(port.dropped() >= dropped, "what is dropped is counted");
   std::vector<std::uint8_t> guarded(room + 1, kUntouched);
   port.receive(std::span(guarded).first(room));
@@ -81,11 +82,11 @@ bool receive(DatagramPort& port, std::size_t room) {
 
 void drain(DatagramPort& port) {
   std::uint32_t received = 0;
-  while (receive(port, kLongestInRing)) ++received;
-  fuzz::require(received <= kRingSlots, "no more than the ring holds");
+  while (receive(port, ArmRing::kLongest)) ++received;
+  fuzz::require(received <= ArmRing::kSlots, "no more than the ring holds");
 }
 
-void require_heard(DatagramPort& port, RingWriter peer, std::size_t size) {
+void require_heard(DatagramPort& port, RingWriter<ArmRing> peer, std::size_t size) {
   const std::vector<std::uint8_t> message(size, 0x5A);
   peer.write(message);
   fuzz::require(port.wait(0), "what was sent waits");
@@ -103,10 +104,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::FuzzInput in(data, size);
   const std::string options = in.take<std::uint8_t>() % 8 == 0 ? "?poll" : "";
   const auto port = open_shared_memory_port(kUrl + options, ArmPlaneEnd::kDriver);
-  SharedRing& incoming = peer.memory->rings[1];
+  ArmRing& incoming = peer.memory->rings[1];
   while (!in.empty()) {
     const auto action = in.take<std::uint8_t>();
-    const std::size_t length = in.take<std::uint16_t>() % (kLongestInRing + 64);
+    const std::size_t length = in.take<std::uint16_t>() % (ArmRing::kLongest + 64);
     switch (action % 8) {
       case 0:
         receive(*port, length);
@@ -115,8 +116,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         port->wait(length % 4 == 0 ? monotonic_ns() + 1000 : 0);
         break;
       case 2:
-        fuzz::require(port->send(std::vector<std::uint8_t>(length)) == (length <= kLongestInRing),
-                      "what fits is sent");
+        fuzz::require(
+            port->send(std::vector<std::uint8_t>(length)) == (length <= ArmRing::kLongest),
+            "what fits is sent");
         break;
       case 3:
         RingWriter(&incoming).write(std::vector<std::uint8_t>(length, action));
@@ -126,6 +128,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   drain(*port);
-  require_heard(*port, RingWriter(&incoming), size % kLongestInRing);
+  require_heard(*port, RingWriter(&incoming), size % ArmRing::kLongest);
   return 0;
 }

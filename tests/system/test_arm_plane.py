@@ -1,4 +1,6 @@
-"""The arm plane between two processes only: the same bytes as over multicast, and recoveries."""
+"""The arm plane between two processes only, and the bus in memory: the same bytes as over
+multicast, and recoveries.
+"""
 
 import os
 from pathlib import Path
@@ -10,7 +12,8 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from same_bytes import expect_equal, of_the_lab, of_three_processes
 from stack import ROOT
 
-KINDS = ("unix", "shm", "shm, polled")
+KINDS = ("unix", "shm", "shm, bus as well", "shm, polled", "shm, bus as well, polled")
+BUS_PORT = "43219"
 
 
 @pytest.fixture(params=KINDS)
@@ -23,9 +26,15 @@ def arm_plane(request, tmp_path, monkeypatch):
         yield folder
         return
     name = f"system-test-{os.getpid()}"
-    monkeypatch.setenv("LIMBER_ARM_URL", f"shm:{name}{'?poll' * ('polled' in request.param)}")
+    poll = "?poll" if "polled" in request.param else ""
+    monkeypatch.setenv("LIMBER_ARM_URL", f"shm:{name}{poll}")
+    if "bus" in request.param:
+        monkeypatch.setenv("LIMBER_VIRTUAL_BUS", f"shm{poll}")
+        monkeypatch.setenv("LIMBER_VIRTUAL_BUS_PORT", BUS_PORT)
     yield None
-    Path(f"/dev/shm/limber-arm-{name}").unlink(missing_ok=True)
+    for pattern in (f"limber-arm-{name}", f"limber-bus-*-{BUS_PORT}*"):
+        for left in Path("/dev/shm").glob(pattern):
+            left.unlink()
 
 
 def test_the_bytes_are_those_of_the_lab(arm_plane, tmp_path):
@@ -37,7 +46,7 @@ def test_the_bytes_are_those_of_the_lab(arm_plane, tmp_path):
 
 
 @pytest.mark.flaky(reruns=2)
-@pytest.mark.parametrize("arm_plane", KINDS[:2], indirect=True)
+@pytest.mark.parametrize("arm_plane", KINDS[:3], indirect=True)
 def test_a_killed_controller_is_replaced(arm_plane, stack):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
@@ -50,7 +59,7 @@ def test_a_killed_controller_is_replaced(arm_plane, stack):
 
 
 @pytest.mark.flaky(reruns=2)
-@pytest.mark.parametrize("arm_plane", KINDS[:2], indirect=True)
+@pytest.mark.parametrize("arm_plane", KINDS[:3], indirect=True)
 def test_a_killed_driver_is_replaced(arm_plane, stack):
     """What it has left in the memory is not taken for a state of the new one."""
     stack.start_all()
@@ -74,3 +83,16 @@ def test_a_second_controller_is_refused(arm_plane, stack):
     del stack.processes["second"]
     assert f"process {stack.processes['controller'].pid}" in text
     assert stack.mode == Status.MODE_HOLD
+
+
+@pytest.mark.flaky(reruns=2)
+@pytest.mark.parametrize("arm_plane", KINDS[2:3], indirect=True)
+def test_a_killed_simulator_is_replaced(arm_plane, stack):
+    """Its place on the bus is free at once, and what it has left there is not taken for replies."""
+    stack.start_all()
+    stack.bring_to(Status.MODE_ACTIVE)
+    stack.kill("sim")
+    stack.until(lambda: stack.state.fault != State.FAULT_NONE, 10, "the driver to miss its drives")
+    stack.start("sim")
+    stack.acknowledge()
+    stack.bring_to(Status.MODE_ACTIVE)

@@ -1,5 +1,5 @@
 // The virtual bus over real sockets, alone and together with python-can, in a network of its own
-// where the system allows it.
+// where the system allows it; and in shared memory.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -55,7 +56,20 @@ std::vector<CanFrame> receive(CanBus* bus, std::size_t count, std::int64_t timeo
 
 bool is_silent(CanBus* bus) { return receive(bus, 1, kSecond / 50).empty(); }
 
-TEST(VirtualBus, FramesReachEveryOtherEndInOrderAndNotTheSender) {
+/// Over both carriers.
+class VirtualBus : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { setenv("LIMBER_VIRTUAL_BUS", GetParam().c_str(), 1); }
+  void TearDown() override {
+    unsetenv("LIMBER_VIRTUAL_BUS");
+    for (const auto& file : std::filesystem::directory_iterator("/dev/shm"))
+      if (file.path().string().find(std::string("-") + kPort) != std::string::npos)
+        std::filesystem::remove(file.path());
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, VirtualBus, ::testing::Values("udp", "shm", "shm?poll"));
+
+TEST_P(VirtualBus, FramesReachEveryOtherEndInOrderAndNotTheSender) {
   const auto a = open_can_bus("virtual:order", true);
   const auto b = open_can_bus("virtual:order", true);
   const auto c = open_can_bus("virtual:order", true);
@@ -75,7 +89,7 @@ TEST(VirtualBus, FramesReachEveryOtherEndInOrderAndNotTheSender) {
   EXPECT_EQ(b->statistics().received, 100);
 }
 
-TEST(VirtualBus, BusesOfOtherNamesStayApart) {
+TEST_P(VirtualBus, BusesOfOtherNamesStayApart) {
   const auto a = open_can_bus("virtual:left", true);
   const auto b = open_can_bus("virtual:right", true);
   const auto c = open_can_bus("virtual:default", true);
@@ -84,7 +98,7 @@ TEST(VirtualBus, BusesOfOtherNamesStayApart) {
   EXPECT_TRUE(is_silent(c.get()));
 }
 
-TEST(VirtualBus, AnEndWithoutFdNeitherSendsNorHearsFd) {
+TEST_P(VirtualBus, AnEndWithoutFdNeitherSendsNorHearsFd) {
   const auto classic = open_can_bus("virtual:mixed", false);
   const auto fd = open_can_bus("virtual:mixed", true);
   CanFrame frame = numbered(1);
@@ -99,7 +113,7 @@ TEST(VirtualBus, AnEndWithoutFdNeitherSendsNorHearsFd) {
   EXPECT_EQ(classic->statistics().malformed, 0);
 }
 
-TEST(VirtualBus, ImpossibleFramesAreRefusedAndTheOthersSent) {
+TEST_P(VirtualBus, ImpossibleFramesAreRefusedAndTheOthersSent) {
   const auto a = open_can_bus("virtual:refusal", true);
   const auto b = open_can_bus("virtual:refusal", true);
   EXPECT_EQ(a->send(std::array{numbered(1), numbered(0x800), numbered(2)}), 2);
@@ -107,7 +121,7 @@ TEST(VirtualBus, ImpossibleFramesAreRefusedAndTheOthersSent) {
   EXPECT_EQ(receive(b.get(), 2).size(), 2U);
 }
 
-TEST(VirtualBus, StampsAreMonotonicTimeOfArrival) {
+TEST_P(VirtualBus, StampsAreMonotonicTimeOfArrival) {
   const auto a = open_can_bus("virtual:time", true);
   const auto b = open_can_bus("virtual:time", true);
   const std::int64_t before_ns = monotonic_ns();
@@ -140,7 +154,7 @@ std::vector<std::uint8_t> good_datagram() {
   return bytes;
 }
 
-TEST(VirtualBus, MalformedDatagramsAreCountedAndDoNoHarm) {
+TEST(VirtualBusDatagrams, MalformedDatagramsAreCountedAndDoNoHarm) {
   const auto a = open_can_bus("virtual:noise", true);
   const auto b = open_can_bus("virtual:noise", true);
   const std::string group = virtual_bus_group("noise");
@@ -167,7 +181,7 @@ TEST(VirtualBus, MalformedDatagramsAreCountedAndDoNoHarm) {
   EXPECT_EQ(b->statistics().malformed, 4);
 }
 
-TEST(VirtualBus, OnlyTheGroupIsHeard) {
+TEST(VirtualBusDatagrams, OnlyTheGroupIsHeard) {
   const auto bus = open_can_bus("virtual:group", true);
   send_raw("127.0.0.1", good_datagram());
   EXPECT_TRUE(is_silent(bus.get()));
@@ -175,7 +189,7 @@ TEST(VirtualBus, OnlyTheGroupIsHeard) {
   EXPECT_FALSE(is_silent(bus.get()));
 }
 
-TEST(VirtualBus, LossesInTheReceiveQueueAreCounted) {
+TEST_P(VirtualBus, LossesInTheReceiveQueueAreCounted) {
   const auto a = open_can_bus("virtual:flood", true);
   const auto b = open_can_bus("virtual:flood", true);
   std::array<CanFrame, 64> many;
@@ -190,7 +204,7 @@ TEST(VirtualBus, LossesInTheReceiveQueueAreCounted) {
   EXPECT_EQ(b->statistics().received, got);
 }
 
-TEST(VirtualBus, WaitingEndsWithAFrameOrAtTheDeadline) {
+TEST_P(VirtualBus, WaitingEndsWithAFrameOrAtTheDeadline) {
   const auto a = open_can_bus("virtual:wait", true);
   const auto b = open_can_bus("virtual:wait", true);
   CanBus* both[] = {a.get(), b.get()};
@@ -202,7 +216,7 @@ TEST(VirtualBus, WaitingEndsWithAFrameOrAtTheDeadline) {
   EXPECT_TRUE(wait_readable(both, monotonic_ns() + kSecond));
 }
 
-TEST(VirtualBus, DoesNotAllocateOnceOpen) {
+TEST_P(VirtualBus, DoesNotAllocateOnceOpen) {
   const auto a = open_can_bus("virtual:heap", true);
   const auto b = open_can_bus("virtual:heap", true);
   std::array<CanFrame, 64> frames;
@@ -240,6 +254,14 @@ void expect_refused(const std::function<void()>& call, const std::string& reason
 TEST(VirtualBusName, BadNamesAreRefusedWithWhatIsAllowed) {
   expect_refused([] { virtual_bus_group("10.0.0.1"); }, "224.0.0.0 to 239.255.255.255");
   expect_refused([] { virtual_bus_group("left arm"); }, "letters, digits");
+}
+
+TEST(VirtualBusName, BadCarriersAreRefused) {
+  for (const char* carrier : {"", "tcp", "shm?spin"}) {
+    setenv("LIMBER_VIRTUAL_BUS", carrier, 1);
+    expect_refused([] { open_can_bus("virtual:default", true); }, "udp, shm and shm?poll are");
+  }
+  unsetenv("LIMBER_VIRTUAL_BUS");
 }
 
 TEST(VirtualBusName, BadPortsAreRefused) {
