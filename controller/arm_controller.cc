@@ -134,7 +134,8 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   const EncoderWatch::Model arm{cycle_.gravity(), terms.CTv, terms.M_total};
   if (const int joint = encoder_watch_.stopped(state, arm, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);
-  const EnergyWatch::Model bodies{terms.M, terms.B, cycle_.link_gravity(), cycle_.spring_torque()};
+  const EnergyWatch::Model bodies{cycle_.link_inertia(), terms.B, cycle_.link_gravity(),
+                                  cycle_.spring_torque()};
   if (energy_watch_.exceeded(state, bodies, dt_s)) supervisor_.raise(Event::kEnergy);
 }
 

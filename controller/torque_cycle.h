@@ -67,9 +67,10 @@ class TorqueCycle {
   const VectorJ& gravity() const noexcept { return gravity_; }
   /// As of measure().
   const ArmTerms& terms() const noexcept { return arm_.terms(); }
-  /// Likewise: ArmView::spring_torque(), ArmView::link_gravity().
+  /// Likewise, of ArmView.
   VectorJ spring_torque() const noexcept { return arm_.spring_torque(state_); }
   VectorJ link_gravity() noexcept { return arm_.link_gravity(state_); }
+  const MatrixJ& link_inertia() noexcept { return arm_.link_inertia(state_); }
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:

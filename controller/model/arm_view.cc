@@ -1,5 +1,7 @@
 #include "controller/model/arm_view.h"
 
+#include <algorithm>
+
 #include "controller/laws/registry.h"
 
 namespace limber::controller {
@@ -19,6 +21,7 @@ ArmView::ArmView(const LoadedRobot& robot)
       link_measured_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
       elastic_(robot.robot, springs_),
       gravity_gradient_(MatrixJ::Zero(model_.size(), model_.size())),
+      link_inertia_(gravity_gradient_),
       deflection_(VectorJ::Zero(model_.size())),
       qbar_(&model_, elastic_.K_J, kInTheCycle) {
   VectorJ home = VectorJ::Zero(model_.size());
@@ -44,8 +47,12 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
     solved_ = true;
     if (resolved != PositionFeedback::kLink) point_.q = state.theta;
     if (resolved == PositionFeedback::kStatic) {
-      solved_ = solve(state.theta, statics);
-      point_.q = qbar_.q_bar();
+      unsolved_cycles_ =
+          solve(state.theta, statics) ? std::max(unsolved_cycles_ - 1, 0) : kUnsolvedCycles;
+      solved_ = unsolved_cycles_ == 0;
+      point_.q = solved_ ? qbar_.q_bar() : state.theta;
+    } else {
+      unsolved_cycles_ = 0;
     }
     elastic_.position = solved_ ? resolved : PositionFeedback::kMotor;
     deflection_ = state.theta - (link_measured_ ? state.q : point_.q);

@@ -46,20 +46,32 @@ class ArmView {
   const JointElasticity* elastic() const noexcept { return springs_.any() ? &elastic_ : nullptr; }
   /// dg/dq at the control point, n x n, N m/rad; zero for rigid arms, which no weight buckles.
   const MatrixJ& gravity_gradient() const noexcept { return gravity_gradient_; }
-  /// What acts on the links as they are measured, n, N m: the springs (zero for rigid joints), and
-  /// the torque that would hold the weight, which terms() has at the control point.
+  // The links as they are measured now; terms() of an arm with springs are those of the control
+  // point.
+  /// Torque of the springs on the links, n, N m; zero for rigid joints.
   VectorJ spring_torque(const ArmState& state) const noexcept {
-    return springs_.torque(deflection_, state.preload);
+    return springs_.torque(link_measured_ ? VectorJ(state.theta - state.q) : deflection_,
+                           state.preload);
   }
+  /// Torque that would hold their weight, n, N m.
   VectorJ link_gravity(const ArmState& state) noexcept {
     return springs_.any() ? model_.gravity(state.q) : terms_.g;
   }
+  /// Their inertia, n x n, kg m^2. Stays valid until the next call.
+  const MatrixJ& link_inertia(const ArmState& state) noexcept {
+    if (!springs_.any()) return terms_.M;
+    link_inertia_ = model_.mass(state.q);
+    return link_inertia_;
+  }
   /// theta - q, n, rad: measured, or with q at the control point.
   const VectorJ& deflection() const noexcept { return deflection_; }
-  /// False while q_bar has no solution: the control point is then the motor's.
+  /// False while q_bar has no solution, and for kUnsolvedCycles after: the control point is then
+  /// the motor's, so that it does not change back and forth where solutions come and go.
   bool solved() const noexcept { return solved_; }
 
  private:
+  static constexpr int kUnsolvedCycles = 50;
+
   bool solve(const VectorJ& theta, const Statics& statics) noexcept;
 
   ArmModel model_;
@@ -69,8 +81,10 @@ class ArmView {
   bool link_measured_;
   JointElasticity elastic_;
   MatrixJ gravity_gradient_;
+  MatrixJ link_inertia_;
   VectorJ deflection_;
   QbarSolver qbar_;
+  int unsolved_cycles_ = 0;  ///< to come
   bool solved_ = true;
 };
 

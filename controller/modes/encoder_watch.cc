@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "controller/modes/friction_bound.h"
 
@@ -9,9 +11,27 @@ namespace limber::controller {
 namespace {
 
 constexpr double kObserver_per_s = 50.0;
+constexpr double kNoise = 6.0;  // standard deviations
+constexpr double kCounts = 4.0;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 VectorJ joints_of(const double* values, int n) noexcept {
   return Eigen::Map<const VectorJ>(values, n);
+}
+
+/// The change of the spring's torque that standing encoders exclude, N m.
+double stretch_bound(const JointConfig& joint) {
+  const SpringConfig& spring = joint.transmission.spring;
+  const bool linear =
+      joint.transmission.kind == TransmissionKind::kElastic && spring.law == SpringLaw::kLinear;
+  if (!linear || !joint.link_encoder.present || !joint.torque_sensor.present)
+    return std::numeric_limits<double>::infinity();
+  const double count_rad =
+      kTurn / joint.drive.counts_per_turn + std::ldexp(kTurn, -joint.link_encoder.bits);
+  const TorqueSensorConfig& sensor = joint.torque_sensor;
+  return std::max({EncoderWatch::kStretchShare * joint.torque_limit_Nm,
+                   kNoise * sensor.noise_Nm + sensor.resolution_Nm,
+                   kCounts * count_rad * spring.stiffness_Nm_per_rad});
 }
 
 }  // namespace
@@ -20,7 +40,8 @@ EncoderWatch::EncoderWatch(const Robot& robot)
     : observer_(VectorJ::Constant(robot.size(), std::min(kObserver_per_s, robot.rate_hz)),
                 1.0 / robot.rate_hz) {
   for (const JointConfig& joint : robot.joints)
-    joints_.push_back({friction_bound(joint), joint.torque_limit_Nm, std::nullopt});
+    joints_.push_back(
+        {friction_bound(joint), joint.torque_limit_Nm, stretch_bound(joint), std::nullopt});
 }
 
 void EncoderWatch::reset() noexcept {
@@ -49,6 +70,15 @@ void EncoderWatch::Rest::move(double acceleration, double friction, double dt_s)
   stood_s += dt_s;
 }
 
+// What the sensor filters or delays has arrived kStood_s after the last motion.
+bool EncoderWatch::Rest::stretched(double sensor_Nm, double most_Nm, double dt_s) noexcept {
+  const double change_Nm = sensor_Nm - spring_Nm;
+  const bool arriving = stood_s <= kStood_s;
+  spring_Nm += arriving ? change_Nm : change_Nm * std::min(1.0, dt_s / kDrift_s);
+  stretched_s = arriving || std::abs(change_Nm) <= most_Nm ? 0.0 : stretched_s + dt_s;
+  return stretched_s >= kStood_s;
+}
+
 bool EncoderWatch::held_by_push(const joint_state_t& state, int i, double load_Nm,
                                 const MatrixJ& M) const noexcept {
   const Rest& rest = *joints_[static_cast<std::size_t>(i)].rest;
@@ -73,7 +103,7 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
   observed_s_ += dt_s;
   for (int i = 0; i < n; ++i) {
     if (state.age_cycles[i] > 0) continue;
-    auto& [friction_Nm, limit_Nm, rest] = joints_[static_cast<std::size_t>(i)];
+    auto& [friction_Nm, limit_Nm, stretch_Nm, rest] = joints_[static_cast<std::size_t>(i)];
     const double M_ii = model.M(i, i);
     const double load_Nm = state.tau_applied[i] - model.gravity[i];
     if (!rest || !rest->continues(state, i)) {
@@ -90,6 +120,7 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
     rest->move(tau / M_ii, rest->sudden ? 0.0 : friction_Nm / M_ii, dt_s);
+    if (rest->stretched(state.tau[i], stretch_Nm, dt_s)) return i;
     const double angle = std::abs(rest->expected_angle);
     if (rest->sudden) {
       if (rest->stood_s >= kStood_s && angle >= kCoasted) return i;

@@ -43,6 +43,17 @@ namespace limber::controller {
 /// The swing of this joint alone drives k by less: by M_ki a_i, and M_ki^2 < M_kk M_ii. What r is
 /// kSettled_s after a reset hung on the arm before.
 ///
+/// A joint with a spring K, an encoder on either side of it and a torque sensor is found in a third
+/// way, with no regard to friction or load: while neither reading changes by a bit, the spring is
+/// stretched by the same angle, and its torque is the same. Found is a torque that has changed by
+///
+///   kStretchShare torque limit,   6 noise_Nm + resolution_Nm of the sensor,   4 counts of both
+///   encoders times K: the most of these
+///
+/// for kStood_s, beginning kStood_s after the reading's last change. A change that takes longer
+/// than kDrift_s is the sensor's own drift. Joints whose spring is not linear or that have two
+/// motors are not watched so.
+///
 /// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
 class EncoderWatch {
  public:
@@ -54,6 +65,8 @@ class EncoderWatch {
   static constexpr double kYields = 0.5;   ///< rad/s (m/s)
   static constexpr double kPushed = 2.0;   ///< rad (m)
   static constexpr double kFeltShare = 0.7;
+  static constexpr double kStretchShare = 0.01;
+  static constexpr double kDrift_s = 5.0;
   static constexpr double kSettled_s = 0.125;
 
   /// For set-up.
@@ -79,6 +92,8 @@ class EncoderWatch {
     bool arm_moved(const joint_state_t& state) const noexcept;
     /// Of the joint: by its torque and by its friction, rad/s^2.
     void move(double acceleration, double friction, double dt_s) noexcept;
+    /// Whether the spring's torque contradicts the readings; after move().
+    bool stretched(double sensor_Nm, double most_Nm, double dt_s) noexcept;
 
     double theta;  ///< the reading
     double q;
@@ -91,10 +106,13 @@ class EncoderWatch {
     double expected_speed;  ///< rad/s, from what was reported before on
     double stood_s = 0.0;
     double expected_angle = 0.0;  ///< since then, rad
+    double spring_Nm = 0.0;       ///< of the sensor, less what changes slowly
+    double stretched_s = 0.0;     ///< in a row
   };
   struct Joint {
     double friction_Nm;
     double limit_Nm;
+    double stretch_Nm;  ///< of the spring's torque; infinite for joints that are not watched so
     std::optional<Rest> rest;
   };
 

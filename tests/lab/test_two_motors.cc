@@ -28,13 +28,19 @@ timeline:
   - {at_s: 3.2, mode: hold}
 )";
 
+LoadedRobot weightless(LoadedRobot robot) {
+  std::ranges::fill(robot.robot.gravity, 0.0);
+  return robot;
+}
+
 struct TwoMotorLab {
-  explicit TwoMotorLab(const char* text)
-      : scenario(
+  explicit TwoMotorLab(const std::string& text, const LoadedRobot& arm = load_robot("antagonist2r"))
+      : robot(arm),
+        scenario(
             load_scenario(folder.write("scenario.yaml", text), robot, &controller::law_catalog())),
         lab(robot, scenario) {}
   testing::TemporaryFolder folder;
-  LoadedRobot robot = load_robot("antagonist2r");
+  LoadedRobot robot;
   Scenario scenario;
   Lab lab;
 };
@@ -107,6 +113,74 @@ TEST(TwoMotors, AreWoundUpBeforeALawMovesThem) {
   EXPECT_LT(least, -0.2) << "the springs were slack";
   EXPECT_TRUE(active) << "mode " << int{lab.controller_status().mode} << ", fault "
                       << int{lab.state().fault};
+}
+
+/// The drives are off from 2 s on, and hold again from `hold_s` on.
+std::string off_until(double hold_s) {
+  return "format: limber-scenario/1\n"
+         "name: off\n"
+         "description: the springs unwind while the drives are off\n"
+         "robot: antagonist2r\n"
+         "duration_s: 10\n"
+         "timeline:\n"
+         "  - {at_s: 0.3, mode: hold}\n"
+         "  - {at_s: 2.0, mode: idle}\n"
+         "  - {at_s: " +
+         std::to_string(hold_s) + ", mode: hold}\n";
+}
+
+// An arm that somebody supports meanwhile.
+TEST(TwoMotors, AreWoundUpHoweverLongTheyWereOff) {
+  const LoadedRobot robot = weightless(load_robot("antagonist2r"));
+  for (const double hold_s : {2.06, 2.1, 2.3, 4.0}) {
+    TwoMotorLab run(off_until(hold_s), robot);
+    Lab& lab = run.lab;
+    while (lab.time_ns() < std::llround((hold_s + 3.0) * 1e9)) lab.step();
+    EXPECT_EQ(lab.controller_status().mode, +controller_status_t::MODE_HOLD) << hold_s;
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(lab.state().preload[i], 0.25, 0.01) << hold_s;
+  }
+}
+
+// HOLD cannot catch an arm that falls between slack springs. What it does there is explained all
+// the same: links and motors are half a radian apart, and each has its own energy.
+TEST(TwoMotors, AFallBetweenSlackSpringsHasNoEnergyOfUnknownOrigin) {
+  TwoMotorLab run(off_until(2.06));
+  Lab& lab = run.lab;
+  double most_apart_rad = 0.0;
+  double most_kinetic_J = 0.0;
+  while (lab.time_ns() < 2'450'000'000) {
+    lab.step();
+    const controller_status_t& status = lab.controller_status();
+    ASSERT_NE(status.reason, +controller_status_t::REASON_ENERGY) << 1e-9 * lab.time_ns();
+    EXPECT_LT(status.unexplained_energy_J, 0.3);
+    most_kinetic_J = std::max(most_kinetic_J, status.kinetic_energy_J);
+    for (int i = 0; i < 2; ++i)
+      most_apart_rad = std::max(most_apart_rad, std::abs(lab.state().theta[i] - lab.state().q[i]));
+  }
+  EXPECT_GT(most_apart_rad, 0.4);
+  EXPECT_GT(most_kinetic_J, 4.0);
+}
+
+// Where springs are nearly slack, a static equilibrium is there in one cycle and gone in the next.
+TEST(TwoMotors, TheLawsPositionDoesNotChangeBackAndForth) {
+  TwoMotorLab run(off_until(2.06));
+  Lab& lab = run.lab;
+  int changes = 0;
+  int since = 1000;
+  bool last = true;
+  while (lab.time_ns() < 2'450'000'000) {
+    lab.step();
+    if (lab.time_ns() < 2'080'000'000) continue;
+    const bool solved =
+        (lab.controller_status().limits & controller_status_t::LIMIT_STATIC_UNSOLVED) == 0;
+    ++since;
+    if (solved == last) continue;
+    if (solved) EXPECT_GE(since, 50) << 1e-9 * lab.time_ns();
+    since = 0;
+    last = solved;
+    ++changes;
+  }
+  EXPECT_GE(changes, 1);
 }
 
 }  // namespace
