@@ -28,7 +28,7 @@ class Arm:
 
     plan: list[dict[int, float]]
     wires: dict[int, tuple[int, int]] = field(default_factory=dict)
-    fails_at: int = 10**9
+    fails_at: int = 2000
     readings: int = 0
     q: np.ndarray = field(default_factory=lambda: np.array([0.3, 0.8]))
     awaited = "nothing"

@@ -74,7 +74,7 @@ class Check:
                 way = -step.way if found == OTHER_WAY else way
                 continue
             row = self._row(step, found)
-            screen.tell(_line(row), GOOD if found.verdict is Verdict.OK else BAD)
+            screen.tell(_told(row), GOOD if found.verdict is Verdict.OK else BAD)
             if found.verdict is Verdict.SEVERAL:
                 continue
             if found.verdict is Verdict.OK or self._ask(row, screen, person) != REPEAT:
@@ -165,7 +165,7 @@ class Check:
         return ENTER
 
 
-def _line(row: Row) -> str:
-    told = f"{row.joint}: {row.verdict}, moved by {row.moved_words()}"
-    changes = "; ".join(wiring.change_words(change) for change in row.changes)
-    return ". ".join(part for part in (told, row.text.rstrip("."), changes) if part)
+def _told(row: Row) -> str:
+    lines = [f"{row.joint}: {row.verdict}, moved by {row.moved_words()}", row.text]
+    lines += [wiring.change_words(change) for change in row.changes]
+    return "\n  ".join(line for line in lines if line)

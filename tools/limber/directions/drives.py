@@ -89,7 +89,7 @@ class Drives:
         enabled = np.flatnonzero(state["joint_flags"] & kinds.JOINT_ENABLED)
         if number == kinds.DRIVE_OFF and not len(enabled):
             self._off = True
-        elif self._off or number not in (kinds.DRIVE_CONFIGURING, kinds.DRIVE_OFF):
+        elif self._off or number != kinds.DRIVE_CONFIGURING:
             raise RunError(self._not_off(state, number, enabled))
         else:
             self.awaited = "the driver reads and writes the drives' settings"
