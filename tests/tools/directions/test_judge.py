@@ -104,6 +104,28 @@ def test_one_wild_reading_is_no_turn():
     assert arm.hold(1.0) is None
 
 
+def test_a_knock_is_no_turn():
+    """Three readings, a tenth of a second in all."""
+    arm = hand(1, 5)
+    for _ in range(10):
+        arm.q[1] += 0.3
+        assert arm.hold(3 * PERIOD_S) is None
+        arm.q[1] -= 0.3
+        assert arm.hold(3 * PERIOD_S) is None
+    arm.q[1] += 0.3
+    assert arm.hold(0.3).verdict is Verdict.OK
+
+
+def test_the_driver_was_started_again():
+    """Its time begins anew: what was heard before no longer counts."""
+    arm = Hand(Step(0, 1, np.full(2, 0.2)))
+    arm.hold(0.3)
+    arm.time_s = 0.0
+    assert arm.hold(0.4) is None and not arm.step.at_rest
+    arm.hold(0.3)
+    assert arm.step.at_rest
+
+
 def test_the_arm_has_to_be_at_rest_first():
     arm = Hand(Step(0, 1, np.full(2, 0.2)))
     assert arm.hold(3.0, np.array([0.3, 0.0])) is None
