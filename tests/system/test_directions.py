@@ -127,8 +127,11 @@ def test_powered_arms_are_left_alone(stack):
     assert "running already" in process.stdout.readline()
     assert "A controller runs, too" in process.stdout.readline()
     stack.bring_to(Status.MODE_HOLD)
+    end = threading.Timer(60, process.kill)
+    end.start()
     rest = process.stdout.read()
-    assert process.wait(20) == 3
+    end.cancel()
+    assert process.wait(20) == 3, rest
     assert re.search(r"the drives have become (ENABLING|ON), not OFF: take your hands off", rest)
     assert stack.state.drive_state == State.DRIVE_ON
     refused = started("openarm")
