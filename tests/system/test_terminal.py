@@ -15,8 +15,13 @@ COLUMNS, ROWS = 80, 24
 ANSI = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[()][A-Z0-9]")
 
 
-def in_terminal(*arguments: str, timeout_s: float = 120) -> tuple[int, str]:
-    """Exit code and all that was written to the terminal."""
+def in_terminal(
+    *arguments: str, timeout_s: float = 120, answers: dict[str, str] | None = None
+) -> tuple[int, str]:
+    """Exit code and all that was written to the terminal. `answers`: what is typed once a text has
+    been written, each once.
+    """
+    waiting = dict(answers or {})
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
     environment = {**os.environ, "TERM": "xterm-256color"}
@@ -40,6 +45,8 @@ def in_terminal(*arguments: str, timeout_s: float = 120) -> tuple[int, str]:
         if not piece:
             break
         written += piece
+        for text in [text for text in waiting if text.encode() in written]:
+            os.write(ours, waiting.pop(text).encode())
     os.close(ours)
     return process.wait(timeout_s), written.decode(errors="replace")
 

@@ -12,6 +12,7 @@ from limber import __version__
 from limber.cli import (
     can,
     dev,
+    directions,
     experiment,
     export,
     faults,
@@ -34,7 +35,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for group in (run, live, monitor, log, referee, dev):
+for group in (run, directions, live, monitor, log, referee, dev):
     app.add_typer(group.app)
 app.add_typer(can.app, name="can")
 app.add_typer(experiment.app, name="experiment")

@@ -164,6 +164,20 @@ def process_group(folder: Path) -> Iterator[ProcessGroup]:
         group.stop_all()
 
 
+@contextmanager
+def sigterm_as_interrupt() -> Iterator[None]:
+    """`kill` ends a run as Ctrl-C does: the arm first, the log last."""
+
+    def interrupt(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
 def _wait_or_kill(process: subprocess.Popen, timeout_s: float) -> None:
     try:
         process.wait(timeout_s)

@@ -4,8 +4,8 @@ import json
 import shutil
 import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from rich.console import Console
@@ -17,7 +17,7 @@ from limber.model.scenario import Scenario
 from limber.paths import program
 from limber.run.display import display
 from limber.run.options import CAN_LOG_NAME, LOG_NAME, FinishedRun, RunOptions
-from limber.run.processes import Child, ProcessGroup, process_group
+from limber.run.processes import Child, ProcessGroup, process_group, sigterm_as_interrupt
 
 START_TIMEOUT_S = 10.0
 STOP_TIMEOUT_S = 5.0
@@ -38,7 +38,7 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
     copy_inputs(scenario, folder)
     mode = "lockstep" if lockstep else "realtime"
     result = FinishedRun(folder, mode, recorded=recorded, log_name=options.log_name)
-    with process_group(folder) as group, _sigterm_as_interrupt():
+    with process_group(folder) as group, sigterm_as_interrupt():
         for name, command in commands.items():
             _start(group, name, command, console)
         driver = group.children["limber-driver"]
@@ -66,7 +66,7 @@ def lab(
     command = [str(program("limber-lab")), path, "--log", str(result.log), "--progress"]
     if record_can:
         command += ["--can", str(result.can_log)]
-    with process_group(folder) as group, _sigterm_as_interrupt():
+    with process_group(folder) as group, sigterm_as_interrupt():
         child = group.start("limber-lab", command)
         with console.status(f"{scenario.name} in the lab") as status:
             code = group.run_until("limber-lab", lambda: status.update(_last_line(child)))
@@ -182,17 +182,3 @@ def _stop_others(group: ProcessGroup) -> dict:
         return json.loads(recorder.last_lines(1)[0])
     except (IndexError, json.JSONDecodeError) as error:
         raise RunError(f"limber-record left no report: see {recorder.log}") from error
-
-
-@contextmanager
-def _sigterm_as_interrupt() -> Iterator[None]:
-    """`kill` ends a run as Ctrl-C does: the arm first, the log last."""
-
-    def interrupt(_number: int, _frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
