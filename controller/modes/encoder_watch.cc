@@ -75,8 +75,10 @@ bool EncoderWatch::Rest::stretched(double sensor_Nm, double most_Nm, double dt_s
   const double change_Nm = sensor_Nm - spring_Nm;
   const bool arriving = stood_s <= kStood_s;
   spring_Nm += arriving ? change_Nm : change_Nm * std::min(1.0, dt_s / kDrift_s);
-  stretched_s = arriving || std::abs(change_Nm) <= most_Nm ? 0.0 : stretched_s + dt_s;
-  return stretched_s >= kStood_s;
+  const bool before = contradicts;
+  contradicts = !arriving && !(std::abs(change_Nm) <= most_Nm);
+  contradicts_s = before && contradicts ? contradicts_s + dt_s : 0.0;
+  return contradicts_s >= kStood_s;
 }
 
 bool EncoderWatch::held_by_push(const joint_state_t& state, int i, double load_Nm,
@@ -110,9 +112,9 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
       const double speed = rest ? rest->theta_dot : 0.0;
       const bool sudden =
           std::abs(speed) >= std::max(kSudden, (limit_Nm + friction_Nm) / M_ii * dt_s);
-      rest = {state.theta[i],       state.q[i], state.theta_dot[i],
-              state.v[i],           load_Nm,    std::to_array(state.theta),
-              observer_.residual(), sudden,     speed};
+      rest = {state.theta[i], state.q[i],   state.theta_dot[i],         state.v[i],
+              load_Nm,        state.tau[i], std::to_array(state.theta), observer_.residual(),
+              sudden,         speed};
       continue;
     }
     if (observed_s_ < kSettled_s) rest->residual = observer_.residual();

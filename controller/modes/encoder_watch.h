@@ -100,14 +100,15 @@ class EncoderWatch {
     double theta_dot;
     double v;
     double load_Nm;                         ///< tau - g then
+    double spring_Nm;                       ///< of the sensor then, less what changes slowly
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
     VectorJ residual;                       ///< likewise, N m
     bool sudden;
     double expected_speed;  ///< rad/s, from what was reported before on
     double stood_s = 0.0;
     double expected_angle = 0.0;  ///< since then, rad
-    double spring_Nm = 0.0;       ///< of the sensor, less what changes slowly
-    double stretched_s = 0.0;     ///< in a row
+    bool contradicts = false;     ///< the sensor did last time
+    double contradicts_s = 0.0;   ///< in a row
   };
   struct Joint {
     double friction_Nm;
