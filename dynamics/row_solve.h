@@ -14,10 +14,11 @@ namespace limber::dynamics {
 }
 
 /// Eliminates the n rows [S X] of A, S symmetric positive definite, two at a time without pivoting:
-/// what divisions there are wait for one another, and so they are half as many. Lanes n to N have
-/// to be zero, as has row n if n is odd. A becomes D^-1 L^-1 [S X], S = L D L^T by blocks of two.
-/// each_pair(x, y, Dx, Dy): two rows of L^-1 [S X], and what they become; the sum of their products
-/// is X^T S^-1 X. Gives values that are not finite where S is not positive definite or not finite.
+/// what divisions there are wait for one another, and so they are half as many. Row n has
+/// to be zero if n is odd; lanes n to N count for nothing. A becomes D^-1 L^-1 [S X], S = L D L^T
+/// by blocks of two. each_pair(x, y, Dx, Dy): two rows of L^-1 [S X], and what they become; the sum
+/// of their products is X^T S^-1 X. Gives values that are not finite where S is not positive
+/// definite or not finite.
 template <int N, int Lanes, typename EachPair>
 [[gnu::always_inline]] inline void eliminate(int n, double (&A)[N][Lanes],
                                              const EachPair& each_pair) noexcept {
