@@ -72,12 +72,14 @@ class Ours {
   explicit Ours(const Problem& problem)
       : problem_(problem), model_(problem.chain, kGravity, problem.B), terms_(problem.n) {}
 
-  void terms(int i) { model_.evaluate(problem_.q[at(i)], problem_.v[at(i)], &terms_); }
+  void terms(int i) {
+    model_.evaluate(problem_.q[at(i)], problem_.v[at(i)], {.tip_inertia = false}, &terms_);
+  }
 
   VectorJ torque(int i) {
-    terms(i);
+    model_.evaluate(problem_.q[at(i)], problem_.v[at(i)], &terms_);
     const VectorJ tau_0 = -problem_.q[at(i)] - problem_.v[at(i)];
-    const Matrix6 inertia = controller::damped_tip_inertia(terms_.J, terms_.Minv_JT, kLostShare);
+    const Matrix6 inertia = controller::damped_tip_inertia(terms_.tip, kLostShare);
     const Vector6 F = wrench(problem_, terms_.X_BT, terms_.V_BT) - inertia * terms_.Jdot_v -
                       inertia * (terms_.Minv_JT.transpose() * tau_0);
     return terms_.J.transpose() * F + tau_0 + terms_.Cv + terms_.g;

@@ -14,6 +14,7 @@ using MatrixJ =
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix6J = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
-using MatrixJ6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxJoints, 6>;
+/// By rows: one joint's six numbers lie together, as the columns of Matrix6J do.
+using MatrixJ6 = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, kMaxJoints, 6>;
 
 }  // namespace limber

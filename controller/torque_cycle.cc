@@ -226,7 +226,8 @@ void TorqueCycle::evaluate_model(Potential potential, const VectorJ& tau_constan
   arm_.evaluate(position(), state_, {potential, gravity, goals_.goal(), gains, tau_constant},
                 {.jacobian = first || due(Term::kJacobian),
                  .inertia = first || due(Term::kInertia),
-                 .coriolis = first || due(Term::kCoriolis)});
+                 .coriolis = first || due(Term::kCoriolis),
+                 .tip_inertia = law.compensation.null_space});
   const VectorJ& most = output_.torque_limit();
   if (arm_.terms().g.allFinite()) gravity_ = arm_.terms().g.cwiseMax(-most).cwiseMin(most);
 }
@@ -254,8 +255,12 @@ VectorJ TorqueCycle::friction_torque(GoalType type) noexcept {
     return zero_;
   }
   const Goal& goal = goals_.goal();
-  const VectorJ v_d =
-      follows_joints(type) ? goal.v_d : VectorJ(damped_pseudo_inverse(arm_.terms().J) * goal.V_BD);
+  VectorJ v_d = zero_;
+  if (follows_joints(type)) {
+    v_d = goal.v_d;
+  } else if (!goal.V_BD.isZero(0.0)) {
+    v_d = damped_pseudo_inverse(arm_.terms().J) * goal.V_BD;
+  }
   return observers_.friction(v_d, arm_.point().v, arm_.terms());
 }
 

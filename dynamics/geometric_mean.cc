@@ -16,17 +16,18 @@ constexpr double kClose = 1e-7;
 // Share of a row that rounding leaves where there is nothing.
 constexpr double kSingular = 1e-13;
 
-/// A matrix by rows, n of them.
+/// A matrix by rows, n of them; what is beyond is zero.
 template <int N>
-using Rows = Row<N>[N];
+using Rows = double[N][N];
 
 /// Whether elimination leaves something of each row; S is lost.
 template <int N>
 [[gnu::always_inline]] inline bool regular_rows(int n, Rows<N>& S) noexcept {
   for (int k = 0; k < n; ++k) {
+    const double over = 1.0 / S[k][k];
     for (int i = k + 1; i < n; ++i) {
-      const double before = S[i][i];
-      S[i] -= S[i][k] / S[k][k] * S[k];
+      const double before = S[i][i], factor = S[i][k] * over;
+      for (int l = 0; l < N; ++l) S[i][l] -= factor * S[k][l];
       if (!(S[i][i] > kSingular * before)) return false;
     }
   }
@@ -50,17 +51,25 @@ template <int N>
 /// A, B <- (A + B) / 2, 2 A (A + B)^-1 B.
 template <int N>
 [[gnu::always_inline]] inline void step(int n, Rows<N>& A, Rows<N>& B) noexcept {
-  Rows<N> S, X;
-  for (int i = 0; i < n; ++i) S[i] = A[i] + B[i], X[i] = B[i];
-  solve_rows<N, N>(n, S, X);
-  for (int i = 0; i < n; ++i) {
-    S[i] = Row<N>{};
-    for (int k = 0; k < n; ++k) S[i] += A[i][k] * X[k];
+  double S[N][3 * N];  // [A + B, A, B]
+  Rows<N> product = {};
+  for (int i = 0; i < N; ++i) {
+    for (int l = 0; l < N; ++l) {
+      S[i][l] = A[i][l] + B[i][l], S[i][N + l] = A[i][l], S[i][2 * N + l] = B[i][l];
+    }
   }
-  // What the product lacks of symmetry is rounding, which must not grow.
+  eliminate(n, S, [&](const auto& x, const auto& y, const auto& Dx, const auto& Dy) {
+    for (int i = 0; i < n; ++i) {
+      const double f = x[N + i], g = y[N + i];
+      for (int l = 0; l < N; ++l) product[i][l] += f * Dx[2 * N + l] + g * Dy[2 * N + l];
+    }
+  });
   for (int i = 0; i < n; ++i) {
-    A[i] = 0.5 * (A[i] + B[i]);
-    B[i] = 2.0 * S[i];
+    for (int l = 0; l < N; ++l) {
+      A[i][l] = 0.5 * (A[i][l] + B[i][l]);
+      B[i][l] = 2.0 * product[i][l];
+    }
+    // What the product lacks of symmetry is rounding, which must not grow.
     for (int k = 0; k < i; ++k) B[k][i] = B[i][k];
   }
 }
@@ -70,14 +79,13 @@ template <int N>
                                              const Eigen::Ref<const Eigen::MatrixXd>& Q,
                                              Eigen::Ref<Eigen::MatrixXd> G) noexcept {
   const int n = static_cast<int>(P.rows());
-  Rows<N> A = {}, B = {}, S;
+  Rows<N> A = {}, B = {}, S = {};
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k <= i; ++k) {
       A[i][k] = A[k][i] = P(i, k);
-      B[i][k] = B[k][i] = Q(i, k);
+      S[i][k] = S[k][i] = B[i][k] = B[k][i] = Q(i, k);
     }
   }
-  for (int i = 0; i < n; ++i) S[i] = B[i];
   if (!regular_rows<N>(n, S)) return false;
   for (int steps = 0; steps < kSteps; ++steps) {
     const Ratios r = ratios<N>(n, A, B);
@@ -90,7 +98,9 @@ template <int N>
       return true;
     }
     const double c = std::sqrt(std::sqrt(r.least * r.most));
-    for (int i = 0; i < n; ++i) A[i] *= 1.0 / c, B[i] *= c;
+    for (int i = 0; i < n; ++i) {
+      for (int l = 0; l < N; ++l) A[i][l] *= 1.0 / c, B[i][l] *= c;
+    }
     step<N>(n, A, B);
   }
   return false;

@@ -41,13 +41,19 @@ double pair_deflection(const SpringPair& pair, double c, double tau) noexcept {
 }
 
 double least_preload(const SpringPair& pair, double tau) noexcept {
-  return 0.5 * reach(0.0, kFarthest_rad, std::abs(tau), [&](double d) { return pair.pull(d); });
+  return 0.5 * std::min(spring_deflection(pair.spring, std::abs(tau)), kFarthest_rad);
 }
 
 double pair_preload(const SpringPair& pair, double sigma, double tau, double c_max) noexcept {
+  // Of the spring that is stretched more, by how far the other is.
+  const auto stretched = [&](double slacker) {
+    return spring_deflection(pair.spring, pair.pull(slacker) + std::abs(tau));
+  };
+  const double slacker = reach(0.0, 2.0 * c_max, sigma,
+                               [&](double d) { return pair.slope(stretched(d)) + pair.slope(d); });
   const double least = std::min(least_preload(pair, tau), c_max);
-  return reach(least, c_max, sigma,
-               [&](double c) { return pair.stiffness(c, pair_deflection(pair, c, tau)); });
+  // The bound first: it also holds where the other is not a number.
+  return std::min(std::max(least, 0.5 * (stretched(slacker) + slacker)), c_max);
 }
 
 }  // namespace limber::controller

@@ -44,6 +44,29 @@ inline double spring_stiffness(const SpringConfig& spring, double d) noexcept {
   return 0.0;
 }
 
+/// d with f(d) = tau, rad. May be called in the cycle.
+inline double spring_deflection(const SpringConfig& spring, double tau) noexcept {
+  const double size = std::abs(tau);
+  const double K = spring.stiffness_Nm_per_rad, k3 = spring.k3_Nm_per_rad3;
+  switch (spring.law) {
+    case SpringLaw::kLinear:
+      return tau / K;
+    case SpringLaw::kQuadratic:
+      return std::copysign(std::sqrt(2.0 * size / spring.k2_Nm_per_rad2), tau);
+    case SpringLaw::kCubic: {
+      // d = 2 r sinh(z), as 4 sinh(z)^3 + 3 sinh(z) = sinh(3 z).
+      if (!(k3 > 0.0)) return tau / K;
+      const double r = std::sqrt(K / (3.0 * k3));
+      return 2.0 * r * std::sinh(std::asinh(1.5 * tau / (K * r)) / 3.0);
+    }
+    case SpringLaw::kExponential:
+      return std::copysign(std::log1p(size / spring.force_Nm) / spring.rate_per_rad, tau);
+    case SpringLaw::kSinh:
+      return std::asinh(tau / spring.force_Nm) / spring.rate_per_rad;
+  }
+  return 0.0;
+}
+
 /// Two springs that pull against each other: c is the preload, x the equilibrium's distance from
 /// the link, so that they are stretched by c + x and c - x. A pull-only law is slack below zero.
 /// For quadratic springs that are taut tau = 2 k2 c x and sigma = 2 k2 c. May be called in the
@@ -61,13 +84,12 @@ struct SpringPair {
   double torque(double c, double x) const noexcept { return pull(c + x) - pull(c - x); }
   /// Against winding up the preload, N m: what tau_1 + tau_2 has to hold.
   double preload_torque(double c, double x) const noexcept { return pull(c + x) + pull(c - x); }
-  /// d tau / d x, N m/rad.
-  double stiffness(double c, double x) const noexcept {
-    const auto slope = [this](double d) {
-      return stretch(d) == d ? spring_stiffness(spring, d) : 0.0;
-    };
-    return slope(c + x) + slope(c - x);
+  /// d pull / d d, N m/rad.
+  double slope(double d) const noexcept {
+    return stretch(d) == d ? spring_stiffness(spring, d) : 0.0;
   }
+  /// d tau / d x, N m/rad.
+  double stiffness(double c, double x) const noexcept { return slope(c + x) + slope(c - x); }
 };
 
 }  // namespace limber::controller

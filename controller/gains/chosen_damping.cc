@@ -48,7 +48,7 @@ Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms,
   if (reckons_with(elastic, design)) {
     return elastic_tip_damping(*elastic, terms, gains.K_x, gains.damping_ratio);
   }
-  return tip_damping(design, terms.J, terms.Minv_JT, gains.K_x, gains.damping_ratio);
+  return tip_damping(design, terms.tip, gains.K_x, gains.damping_ratio);
 }
 
 }  // namespace limber::controller

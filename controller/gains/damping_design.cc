@@ -90,8 +90,8 @@ struct Reach {
     inverse_transpose = mobility.S.asDiagonal() * mobility.U * inverse.asDiagonal();
   }
   /// From the Cholesky factor; only for |G| |G^-1| up to 1 / kRegular, else empty.
-  static std::optional<Reach> regular(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
-    const Matrix6 G = scaled_mobility(J, Minv_JT);
+  static std::optional<Reach> regular(const Matrix6& mobility) noexcept {
+    const Matrix6 G = scaled_mobility(mobility);
     const Eigen::LLT<Matrix6> cholesky(G);
     if (cholesky.info() != Eigen::Success) return std::nullopt;
     Matrix6 inverse = Matrix6::Identity();
@@ -152,18 +152,16 @@ Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Mat
   return Matrix6::Zero();
 }
 
-Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
-                    const Matrix6& K, double ratio) noexcept {
-  if (design == DampingDesign::kDoubleDiagonalisation) {
-    if (const auto Lambda = regular_tip_inertia(J, Minv_JT, kRegular))
-      return doubly_diagonalised<Matrix6>(*Lambda, K, ratio);
-  }
-  return tip_damping(design, tip_mobility(J, Minv_JT), K, ratio);
+Matrix6 tip_damping(DampingDesign design, const TipInertia& tip, const Matrix6& K,
+                    double ratio) noexcept {
+  if (design == DampingDesign::kDoubleDiagonalisation && tip.regular(kRegular))
+    return doubly_diagonalised<Matrix6>(tip.Lambda, K, ratio);
+  return tip_damping(design, tip_mobility(tip.G), K, ratio);
 }
 
-TipModes tip_modes_of(const Matrix6J& J, const MatrixJ6& Minv_JT, const Matrix6& K) noexcept {
-  std::optional<Reach> reach = Reach::regular(J, Minv_JT);
-  if (!reach) reach.emplace(tip_mobility(J, Minv_JT));
+TipModes tip_modes_of(const Matrix6& G, const Matrix6& K) noexcept {
+  std::optional<Reach> reach = Reach::regular(G);
+  if (!reach) reach.emplace(tip_mobility(G));
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(reach->stiffness(K));
   return {eigen.eigenvalues().cwiseMax(0.0), reach->inverse_transpose * eigen.eigenvectors()};
 }

@@ -28,9 +28,9 @@ MatrixJ joint_damping(DampingDesign design, const MatrixJ& M, const MatrixJ& K,
 Matrix6 tip_damping(DampingDesign design, const TipMobility& mobility, const Matrix6& K,
                     double ratio) noexcept;
 
-/// The same from J and M^-1 J^T: away from singularities the design for the inertia G^-1.
-Matrix6 tip_damping(DampingDesign design, const Matrix6J& J, const MatrixJ6& Minv_JT,
-                    const Matrix6& K, double ratio) noexcept;
+/// The same: away from singularities the design for the inertia G^-1.
+Matrix6 tip_damping(DampingDesign design, const TipInertia& tip, const Matrix6& K,
+                    double ratio) noexcept;
 
 /// The factorisation as it stands, with the negative eigenvalues it may have.
 Matrix6 factorised_tip_damping(const TipMobility& mobility, const Matrix6& K,
@@ -48,7 +48,7 @@ struct TipModes {
   Matrix6 force;      ///< columns L^-T v_i, N or N m for 1 m/s^2 of the mode
 };
 /// In the cycle.
-TipModes tip_modes_of(const Matrix6J& J, const MatrixJ6& Minv_JT, const Matrix6& K) noexcept;
+TipModes tip_modes_of(const Matrix6& G, const Matrix6& K) noexcept;
 
 /// Stiffness of each double-diagonalised mode, ascending, 1/s^2: squares of the natural
 /// frequencies; zero for directions out of reach.

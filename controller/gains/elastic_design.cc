@@ -95,7 +95,7 @@ MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& ter
 Matrix6 elastic_tip_damping(const JointElasticity& joints, const ArmTerms& terms, const Matrix6& K,
                             double ratio, ElasticDesign* design) noexcept {
   if (design != nullptr) *design = ElasticDesign();
-  const TipModes modes = tip_modes_of(terms.J, terms.Minv_JT, K);
+  const TipModes modes = tip_modes_of(terms.tip.G, K);
   const MatrixJ6 U = terms.Minv_JT * modes.force;
   const MatrixJ6 P = terms.J.transpose() * modes.force;
   Vector6 d = Vector6::Zero();

@@ -55,17 +55,30 @@ bool GainScheduler::start(const Gains& requested, double ramp_s) noexcept {
   const bool switched = requested.settings != now.settings || requested.M_x != now.M_x ||
                         requested.parameters.jumps_from(now.parameters);
   ramp_.start(requested, ramp_s);
+  changed_ = true;
   return switched;
 }
 
 const Gains& GainScheduler::update(const Goal& goal, const LawEntry& law, bool holding,
                                    const ArmView& arm, double period_s) noexcept {
-  effective_ = ramp_.now();
+  take_ramped();
   if (holding) effective_.settings = default_settings();
   turn_to_base(goal.X_BD.Q.toRotationMatrix(), &effective_);
   reduce_to_springs(law, holding, arm);
   if (effective_.settings.tank_J > 0.0) draw_from_tank(goal, arm, period_s);
   return effective_;
+}
+
+// While the ramp rests only what update() changes: the laws' parameters are many.
+void GainScheduler::take_ramped() noexcept {
+  const Gains& now = ramp_.now();
+  if (changed_) effective_ = now;
+  changed_ = false;
+  effective_.settings = now.settings;
+  effective_.K_x = now.K_x;
+  effective_.D_x = now.D_x;
+  effective_.M_x = now.M_x;
+  effective_.K_q = now.K_q;
 }
 
 PositionFeedback GainScheduler::position(const LawEntry& law, bool holding,

@@ -32,7 +32,10 @@ class GainScheduler {
   /// K_x is less than requested: the joints' springs allow no more.
   bool reduced() const noexcept { return reduced_; }
   /// Moves the ramp along.
-  void advance(double dt_s) noexcept { ramp_.advance(dt_s); }
+  void advance(double dt_s) noexcept {
+    changed_ = changed_ || ramp_.moving();
+    ramp_.advance(dt_s);
+  }
   /// Makes the effective gains for this goal and law, `holding` with the default settings.
   const Gains& update(const Goal& goal, const LawEntry& law, bool holding, const ArmView& arm,
                       double period_s) noexcept;
@@ -50,12 +53,14 @@ class GainScheduler {
                             const ArmView& arm) noexcept;
 
  private:
+  void take_ramped() noexcept;
   void reduce_to_springs(const LawEntry& law, bool holding, const ArmView& arm) noexcept;
   void draw_from_tank(const Goal& goal, const ArmView& arm, double period_s) noexcept;
 
   SpringsCheck springs_check_;
   GainRamp ramp_;
   Gains effective_;
+  bool changed_ = false;  // the ramp's, since effective_ took them
   EnergyTank tank_;
   double last_dissipated_W_ = 0.0;
   bool reduced_ = false;

@@ -21,13 +21,6 @@ Matrix6J TaskRows::of(Matrix6J J) const noexcept {
   return J;
 }
 
-MatrixJ6 TaskRows::of(MatrixJ6 Minv_JT) const noexcept {
-  for (int i = 0; i < 6; ++i) {
-    if (!stiff[i]) Minv_JT.col(i).setZero();
-  }
-  return Minv_JT;
-}
-
 Matrix6 on_task(const TaskRows& rows, Matrix6 M) noexcept {
   for (int i = 0; i < 6; ++i) {
     if (rows.stiff[i]) continue;
@@ -61,8 +54,13 @@ const char* check_tip_inertia(const Gains& gains) noexcept {
                     "frame: goal, in the whole block)";
 }
 
+TipInertia task_tip(const ArmTerms& terms, const TaskRows& rows) noexcept {
+  if (rows.count() == 6 && terms.tip.least_share > 0.0) return terms.tip;
+  return TipInertia(on_task(rows, terms.tip.G));
+}
+
 TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept {
-  return tip_mobility(rows.of(terms.J), rows.of(terms.Minv_JT));
+  return tip_mobility(on_task(rows, terms.tip.G));
 }
 
 Vector6 TaskRows::of(Vector6 F) const noexcept {
@@ -73,7 +71,7 @@ Vector6 TaskRows::of(Vector6 F) const noexcept {
 }
 
 Matrix6 task_inertia(const ArmTerms& terms, const TaskRows& rows, double lost_share) noexcept {
-  return damped_tip_inertia(rows.of(terms.J), rows.of(terms.Minv_JT), lost_share);
+  return damped_tip_inertia(task_tip(terms, rows), lost_share);
 }
 
 namespace {
@@ -83,11 +81,13 @@ template <typename Matrix>
 Matrix projected(const ArmTerms& terms, const TaskRows& rows, Projector projector,
                  double lost_share, const Matrix& X) noexcept {
   if (projector == Projector::kNone) return X;
-  const Matrix6J J = rows.of(terms.J);
-  MatrixJ6 Minv_JT = J.transpose();  // unit inertia
-  if (projector == Projector::kDynamic) Minv_JT = rows.of(terms.Minv_JT);
-  const Matrix6 inertia = damped_tip_inertia(J, Minv_JT, lost_share);
-  return X - J.transpose() * (inertia * (Minv_JT.transpose() * X));
+  const bool dynamic = projector == Projector::kDynamic;
+  const MatrixJ6 JT = terms.J.transpose();
+  const MatrixJ6& Minv_JT = dynamic ? terms.Minv_JT : JT;  // of unit inertia
+  const TipInertia tip =
+      dynamic ? task_tip(terms, rows) : TipInertia(on_task(rows, terms.J.lazyProduct(JT)));
+  const Matrix6 inertia = on_task(rows, damped_tip_inertia(tip, lost_share));
+  return X - JT * (inertia * (Minv_JT.transpose() * X));
 }
 
 }  // namespace

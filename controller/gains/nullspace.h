@@ -20,8 +20,6 @@ struct TaskRows {
   /// M with the rows that are not stiff set to zero.
   Matrix6J of(Matrix6J J) const noexcept;
   Vector6 of(Vector6 F) const noexcept;
-  /// The same for the columns of M^-1 J^T.
-  MatrixJ6 of(MatrixJ6 Minv_JT) const noexcept;
 
   bool stiff[6];
 };
@@ -40,6 +38,9 @@ Matrix6 invertible_on_task(const TaskRows& rows, const Matrix6& M) noexcept;
 /// nullptr if M_x is zero or positive definite wherever K_x has entries; in the goal's axes an
 /// entry in one row may turn into any of its block. In the cycle.
 const char* check_tip_inertia(const Gains& gains) noexcept;
+
+/// The tip's inertia over the task's rows alone. In the cycle.
+TipInertia task_tip(const ArmTerms& terms, const TaskRows& rows) noexcept;
 
 /// Of the task's rows alone; zero out of them. In the cycle.
 TipMobility task_mobility(const ArmTerms& terms, const TaskRows& rows) noexcept;

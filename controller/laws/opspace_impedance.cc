@@ -63,8 +63,7 @@ class OpspaceImpedance : public Law {
     const DampingDesign design = gains.settings.damping;
     if (design == DampingDesign::kGiven) return gains.D_x;
     if (gains.M_x.isZero(0.0)) {
-      return tip_damping(design, rows.of(in.terms.J), rows.of(in.terms.Minv_JT), gains.K_x,
-                         gains.damping_ratio);
+      return tip_damping(design, task_tip(in.terms, rows), gains.K_x, gains.damping_ratio);
     }
     return inertia_damping(design, invertible_on_task(rows, gains.M_x), gains.K_x,
                            gains.damping_ratio);

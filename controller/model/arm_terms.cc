@@ -59,8 +59,10 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
     terms->M_total.diagonal() += terms->B;
   }
   if (due.inertia || due.jacobian) {
-    terms->Minv_JT = terms->J.transpose();
-    dynamics::solve_spd(terms->M_total, &terms->Minv_JT);
+    Matrix6 G;
+    dynamics::solve_spd(terms->M_total, terms->J, &terms->Minv_JT, &G);
+    terms->tip = due.tip_inertia ? TipInertia(G) : TipInertia();
+    terms->tip.G = G;
   }
 }
 

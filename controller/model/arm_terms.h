@@ -6,6 +6,7 @@
 
 #include "common/types.h"
 #include "controller/model/pose.h"
+#include "controller/model/singularity.h"
 #include "dynamics/arm_kernel.h"
 #include "robots/loader/load_robot.h"
 
@@ -25,6 +26,7 @@ struct ArmTerms {
                    ///< sum, which their equilibrium has; kg m^2 (constant)
   MatrixJ M_total;   ///< M + diag(B): what a rigidly geared joint has to accelerate
   MatrixJ6 Minv_JT;  ///< M_total^-1 J^T, n x 6: joint acceleration by a wrench at the tip
+  TipInertia tip;    ///< by M_total: the tip's inertia, and its inverse J Minv_JT
   VectorJ Cv;        ///< Coriolis and centrifugal torque, N m
   VectorJ CTv;       ///< C^T v = (dM/dt) v - C v: what momentum has and acceleration has not, N m
   VectorJ g;         ///< torque that holds the arm still against gravity, N m
@@ -36,8 +38,10 @@ struct ArmTerms {
 /// What is to be evaluated anew in a cycle.
 struct TermsDue {
   bool jacobian = true;  ///< J, Jdot_v
-  bool inertia = true;   ///< M, M_total, Minv_JT
+  bool inertia = true;   ///< M, M_total, Minv_JT, tip.G
   bool coriolis = true;  ///< Cv, CTv
+  /// tip.Lambda wherever tip.G is; else what needs it makes it.
+  bool tip_inertia = true;
 };
 
 /// Computes the terms, for 1 to kMaxJoints joints, revolute and prismatic. All members but the

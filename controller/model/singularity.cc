@@ -15,33 +15,30 @@ Vector6 row_scale() noexcept {
 
 // |G^-1| is at least 1 over the least eigenvalue, whatever norm.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept {
-  MatrixJ6 inverse = Matrix6::Identity();
-  dynamics::solve_spd(G, &inverse);  // not finite where G is not positive definite
+  const Matrix6 inverse = dynamics::inverse_spd(G);  // not finite where G is not positive definite
   if (!(least * inverse.norm() <= 1.0)) return std::nullopt;
-  return Matrix6(inverse);
+  return inverse;
 }
 
-Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
+Matrix6 scaled_mobility(const Matrix6& G) noexcept {
   const Vector6 S = row_scale();
-  Matrix6 G = J.lazyProduct(Minv_JT);
-  G = (S.asDiagonal() * G * S.asDiagonal()).eval();
-  return 0.5 * (G + G.transpose());
+  return S.asDiagonal() * G * S.asDiagonal();
 }
 
-std::optional<Matrix6> regular_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT,
-                                           double lost_share) noexcept {
-  const Matrix6 G = scaled_mobility(J, Minv_JT);
-  const auto inverse = regular_inverse(G, lost_share * G.norm());
-  if (!inverse) return std::nullopt;
+// As in regular_inverse().
+TipInertia::TipInertia(const Matrix6& inverse_inertia) noexcept
+    : G(inverse_inertia), Lambda(dynamics::inverse_spd(G)) {
   const Vector6 S = row_scale();
-  return Matrix6(S.asDiagonal() * *inverse * S.asDiagonal());
+  const Vector6 inverse = S.cwiseInverse();
+  least_share = 1.0 / (G.cwiseProduct(S * S.transpose()).norm() *
+                       Lambda.cwiseProduct(inverse * inverse.transpose()).norm());
 }
 
-TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept {
+TipMobility tip_mobility(const Matrix6& G) noexcept {
   TipMobility mobility;
   mobility.S = row_scale();
-  const Matrix6 G = scaled_mobility(J, Minv_JT);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(G);
+  const Matrix6 scaled = scaled_mobility(G);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(scaled);
   mobility.U = eigen.eigenvectors();
   mobility.s = eigen.eigenvalues().cwiseMax(0.0);
   return mobility;
@@ -58,9 +55,9 @@ Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexce
   return scaled * inverse.asDiagonal() * scaled.transpose();
 }
 
-Matrix6 damped_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT, double lost_share) noexcept {
-  if (const auto Lambda = regular_tip_inertia(J, Minv_JT, lost_share)) return *Lambda;
-  const TipMobility mobility = tip_mobility(J, Minv_JT);
+Matrix6 damped_tip_inertia(const TipInertia& tip, double lost_share) noexcept {
+  if (tip.regular(lost_share)) return tip.Lambda;
+  const TipMobility mobility = tip_mobility(tip.G);
   if (!(mobility.s[5] > 0.0)) return Matrix6::Zero();
   return damped_tip_inertia(mobility, mobility.threshold(lost_share));
 }

@@ -29,35 +29,44 @@ struct TipMobility {
   }
 };
 
-/// G^-1 by solve_spd(), if that proves that no eigenvalue of G is below `least`; an
+/// G^-1 by inverse_spd(), if that proves that no eigenvalue of G is below `least`; an
 /// order of magnitude cheaper than the eigenvalues themselves. G: symmetric. May be called in the
 /// cycle.
 std::optional<Matrix6> regular_inverse(const Matrix6& G, double least) noexcept;
 
-/// Tip inertia Lambda = (J M^-1 J^T)^-1, kg and kg m^2, if no direction of it has less than
-/// `lost_share` of the mobility of all. May be called in the cycle.
-std::optional<Matrix6> regular_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT,
-                                           double lost_share) noexcept;
+/// The tip as a body. To be made in the cycle.
+struct TipInertia {
+  TipInertia() = default;
+  explicit TipInertia(const Matrix6& inverse_inertia) noexcept;
+
+  Matrix6 G = Matrix6::Zero();       ///< J M^-1 J^T, 1/kg and 1/(kg m^2)
+  Matrix6 Lambda = Matrix6::Zero();  ///< G^-1, kg and kg m^2; of no meaning unless regular
+  /// No direction has less of the mobility of all, in scaled rows; not a number, or zero, where
+  /// nothing is known.
+  double least_share = 0.0;
+
+  bool regular(double lost_share) const noexcept { return least_share >= lost_share; }
+};
 
 /// S of TipMobility.
 Vector6 row_scale() noexcept;
 
-/// diag(S) J M^-1 J^T diag(S), see TipMobility. May be called in the cycle.
-Matrix6 scaled_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
+/// diag(S) G diag(S), see TipMobility. May be called in the cycle.
+Matrix6 scaled_mobility(const Matrix6& G) noexcept;
 
-/// J (6 x n), M^-1 J^T (n x 6). Rows of J that are zero count as directions out of reach. May be
-/// called in the cycle.
-TipMobility tip_mobility(const Matrix6J& J, const MatrixJ6& Minv_JT) noexcept;
+/// G = J M^-1 J^T. Rows of it that are zero count as directions out of reach. May be called in the
+/// cycle.
+TipMobility tip_mobility(const Matrix6& G) noexcept;
 
 /// Damped pseudo-inverse of G: the tip inertia Lambda within reach, kg and kg m^2. Exact for
 /// eigenvalues above the threshold; below, 1/s is faded out with 3 x^2 - 2 x^3, x = s / threshold,
 /// so that it stays finite and continuous through a singularity. May be called in the cycle.
 Matrix6 damped_tip_inertia(const TipMobility& mobility, double threshold) noexcept;
 
-/// The same from J and M^-1 J^T, with the threshold TipMobility::threshold(lost_share); zero where
-/// the tip cannot move at all. The eigenvalues are only formed where a direction may be lost. May
-/// be called in the cycle.
-Matrix6 damped_tip_inertia(const Matrix6J& J, const MatrixJ6& Minv_JT, double lost_share) noexcept;
+/// The same with the threshold TipMobility::threshold(lost_share); zero where the tip cannot move
+/// at all. The eigenvalues are only formed where a direction may be lost. May be called in the
+/// cycle.
+Matrix6 damped_tip_inertia(const TipInertia& tip, double lost_share) noexcept;
 
 /// Damped pseudo-inverse of J (Nakamura, Hanafusa 1986), n x 6:
 ///   J^T (J J^T + lambda^2 I)^-1,  lambda^2 = lambda_max^2 (1 - (sigma_min / sigma_0)^2)

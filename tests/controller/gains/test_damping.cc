@@ -63,8 +63,8 @@ TEST(DampingDesign, EveryTipModeHasTheRatio) {
   for (int i = 0; i < 20; ++i) {
     const ArmTerms& terms = arm.at(VectorJ::Constant(7, 0.6) + random_vector(7, 0.3, generator));
     const Matrix6 K = limber::testing::random_stiffness(500.0, 20.0, generator);
-    const Matrix6 D = tip_damping(DampingDesign::kDoubleDiagonalisation,
-                                  tip_mobility(terms.J, terms.Minv_JT), K, 0.7);
+    const Matrix6 D =
+        tip_damping(DampingDesign::kDoubleDiagonalisation, tip_mobility(terms.tip.G), K, 0.7);
     const Matrix6 Lambda = (terms.J * terms.Minv_JT).inverse();
     const auto ratios = modal_ratios(Lambda, D, K);
     EXPECT_EQ(ratios.size(), 12u);
@@ -81,8 +81,8 @@ TEST(DampingDesign, ModesOfAPlanarArmHaveTheRatio) {
     const VectorJ q = (VectorJ(2) << 0.3, 1.2).finished() + random_vector(2, 0.4, generator);
     const ArmTerms& terms = arm.at(q);
     const Matrix6 K = limber::testing::random_stiffness(500.0, 20.0, generator);
-    const Matrix6 D = tip_damping(DampingDesign::kDoubleDiagonalisation,
-                                  tip_mobility(terms.J, terms.Minv_JT), K, 0.6);
+    const Matrix6 D =
+        tip_damping(DampingDesign::kDoubleDiagonalisation, tip_mobility(terms.tip.G), K, 0.6);
     EXPECT_TRUE(D.allFinite());
     EXPECT_LT(D.cwiseAbs().maxCoeff(), 1e4) << "nothing grows without bound out of reach";
     const auto ratios = modal_ratios(terms.M_total, terms.J.transpose() * D * terms.J,
@@ -95,7 +95,7 @@ TEST(DampingDesign, ModesOfAPlanarArmHaveTheRatio) {
 TEST(DampingDesign, IsPositiveSemidefiniteEvenWithoutStiffness) {
   Pendulum arm(limber::testing::seven_joint_arm());
   const ArmTerms& terms = arm.at(VectorJ::Constant(7, 0.6));
-  const TipMobility mobility = tip_mobility(terms.J, terms.Minv_JT);
+  const TipMobility mobility = tip_mobility(terms.tip.G);
   EXPECT_EQ(
       tip_damping(DampingDesign::kDoubleDiagonalisation, mobility, Matrix6::Zero(), 0.7).norm(),
       0.0);
@@ -134,7 +134,7 @@ TEST(DampingFloor, ActsWhereThereIsNoStiffnessOnly) {
 TEST(Mobility, IsTheTipsInverseInertia) {
   Pendulum arm(limber::testing::seven_joint_arm());
   const ArmTerms& terms = arm.at(VectorJ::Constant(7, 0.6));
-  const TipMobility mobility = tip_mobility(terms.J, terms.Minv_JT);
+  const TipMobility mobility = tip_mobility(terms.tip.G);
   const Matrix6 Lambda = damped_tip_inertia(mobility, mobility.threshold(1e-9));
   EXPECT_LT((Lambda * terms.J * terms.Minv_JT - Matrix6::Identity()).norm(), 1e-9);
 }
@@ -144,7 +144,7 @@ TEST(Mobility, InertiaStaysBoundedAndContinuousThroughASingularity) {
   Matrix6 before = Matrix6::Zero();
   for (double elbow = 0.3; elbow > -0.3; elbow -= 1e-4) {
     const ArmTerms& terms = arm.at((VectorJ(2) << 0.2, elbow).finished());
-    const TipMobility mobility = tip_mobility(terms.J, terms.Minv_JT);
+    const TipMobility mobility = tip_mobility(terms.tip.G);
     const double threshold = mobility.threshold(1e-3);
     const Matrix6 Lambda = damped_tip_inertia(mobility, threshold);
     ASSERT_TRUE(Lambda.allFinite());
@@ -222,7 +222,7 @@ TEST(Design, DoesNotAllocate) {
     const VectorJ ones = VectorJ::Ones(n);
     const MatrixJ K = MatrixJ::Identity(n, n);
     const auto before = limber::testing::allocations();
-    const TipMobility mobility = tip_mobility(terms.J, terms.Minv_JT);
+    const TipMobility mobility = tip_mobility(terms.tip.G);
     const Matrix6 D =
         tip_damping(DampingDesign::kDoubleDiagonalisation, mobility, Matrix6::Identity(), 0.7);
     const MatrixJ D_q = joint_damping(DampingDesign::kDoubleDiagonalisation, terms.M_total, K, 0.7);

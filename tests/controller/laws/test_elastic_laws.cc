@@ -5,6 +5,7 @@
 #include <string>
 
 #include "controller/elastic/pair_inverse.h"
+#include "controller/elastic/spring_law.h"
 #include "controller/goals/smooth_motion.h"
 #include "tests/controller/law_bench.h"
 #include "tests/controller/one_joint.h"
@@ -173,6 +174,23 @@ TEST(PairInverse, OfOtherSprings) {
     EXPECT_NEAR(pair.torque(c, x), 4.0, 1e-9);
     const double slope = (pair.torque(c, x + 1e-6) - pair.torque(c, x - 1e-6)) / 2e-6;
     EXPECT_NEAR(slope, sigma, 1e-4 * sigma);
+  }
+}
+
+TEST(SpringLaw, DeflectionUndoesTheTorque) {
+  for (const SpringConfig& spring :
+       {SpringConfig{.law = SpringLaw::kLinear, .stiffness_Nm_per_rad = 20.0},
+        SpringConfig{.law = SpringLaw::kQuadratic, .k2_Nm_per_rad2 = 400.0},
+        SpringConfig{.law = SpringLaw::kExponential, .force_Nm = 2.0, .rate_per_rad = 6.0},
+        SpringConfig{
+            .law = SpringLaw::kCubic, .stiffness_Nm_per_rad = 20.0, .k3_Nm_per_rad3 = 300.0},
+        SpringConfig{.law = SpringLaw::kCubic, .stiffness_Nm_per_rad = 20.0},
+        SpringConfig{.law = SpringLaw::kSinh, .force_Nm = 0.5, .rate_per_rad = 8.0}}) {
+    for (const double d : {-0.7, -1e-3, 0.0, 1e-6, 0.02, 0.4, 1.5}) {
+      const double tau = controller::spring_torque(spring, d);
+      EXPECT_NEAR(controller::spring_deflection(spring, tau), d, 1e-13)
+          << static_cast<int>(spring.law);
+    }
   }
 }
 
