@@ -43,7 +43,7 @@ class Arm:
                 self.q[joint] += change
         wires = [self.wires.get(i, (i, 1)) for i in range(2)]
         q = np.array([sign * self.q[source] for source, sign in wires])
-        return Readings(0.05 * self.readings, q, np.ones(2, bool))
+        return Readings(0.05 * self.readings, q, np.zeros(2), np.ones(2, bool))
 
     def news(self) -> list[str]:
         return []

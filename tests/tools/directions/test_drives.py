@@ -48,20 +48,21 @@ def heard(receiver):
 def test_readings(heard, receiver):
     assert heard.read() is None
     made = states(3, time_ns=[1e9, 2e9, 3e9])
-    made["q"][:, 0] = 0.1, 0.2, 0.3
+    made["theta"][:, 0] = 0.1, 0.2, 0.3
+    made["q"][:, 0] = 0.1, 0.2, 0.35
     receiver.waiting.append(made)
     found = heard.read()
-    assert found.time_s == 3.0 and found.fresh.all() and len(found.q) == 2
-    assert found.q[0] == 0.3
+    assert found.time_s == 3.0 and found.fresh.all() and len(found.theta) == 2
+    assert found.theta[0] == 0.3 and found.apart[0] == pytest.approx(0.05)
 
 
 def test_the_newest_fresh_reading_of_each_joint(heard, receiver):
     made = states(3)
-    made["q"][:, :2] = [[1, 4], [2, 5], [3, 6]]
+    made["theta"][:, :2] = [[1, 4], [2, 5], [3, 6]]
     made["joint_flags"][2, 0] = made["joint_flags"][:, 1] = 0
     receiver.waiting.append(made)
     found = heard.read()
-    assert found.q[0] == 2 and list(found.fresh) == [True, False]
+    assert found.theta[0] == 2 and list(found.fresh) == [True, False]
 
 
 def test_drives_that_are_being_configured_are_waited_for(heard, receiver):

@@ -16,6 +16,8 @@ class Hand:
         n = len(step.amounts)
         self.q = np.linspace(-0.3, 0.4, n) if start is None else np.array(start, float)
         self.fresh = np.ones(n, bool)
+        self.link = np.zeros(n)  # a link's encoder reads so much of the motor's turn more
+        self.link_offset = 0.0
         self.time_s = 5.0
 
     def hold(self, for_s: float, rate: np.ndarray | float = 0.0, noise=None) -> Finding | None:
@@ -24,7 +26,8 @@ class Hand:
             self.time_s += PERIOD_S
             self.q = self.q + PERIOD_S * np.asarray(rate)
             read = self.q + (0.0 if noise is None else noise(len(self.q)))
-            if (found := self.step.take(self.time_s, read, self.fresh)) is not None:
+            apart = self.link_offset + self.link * self.q
+            if (found := self.step.take(self.time_s, read, self.fresh, apart)) is not None:
                 return found
         return None
 
@@ -209,3 +212,34 @@ def test_amounts():
 )
 def test_the_direction_that_has_room(q, way):
     assert direction(q, -1.0, 1.0, 0.2) == way
+
+
+@pytest.mark.parametrize(
+    ("share", "change", "verdict"),
+    [
+        (0.3, 0.22, Verdict.OK),  # a spring
+        (-0.3, 0.22, Verdict.OK),
+        (-2.0, 0.22, Verdict.LINK),  # the link's encoder counts the other way
+        (-1.0, 0.22, Verdict.LINK),  # it is another joint's
+        (-2.0, -0.22, Verdict.SIGN),  # the motor's sign is wrong, and not the link's
+        (0.0, -0.22, Verdict.SIGN),
+    ],
+)
+def test_an_encoder_on_the_link_goes_along(share, change, verdict):
+    made = hand(3)
+    made.link[3] = share
+    made.link_offset = -share * made.q[3]
+    assert made.turn({3: change}).verdict is verdict
+
+
+def test_where_the_links_encoder_has_its_zero_does_not_matter():
+    made = Hand(Step(3, 1, np.full(7, 0.2)))
+    made.link_offset = 1.5
+    made.hold(0.6)
+    assert made.turn({3: 0.22}).verdict is Verdict.OK
+
+
+def test_a_links_encoder_without_a_number_is_none():
+    made = hand(3)
+    made.link_offset = np.nan
+    assert made.turn({3: 0.22}).verdict is Verdict.LINK

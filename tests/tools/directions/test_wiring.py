@@ -71,7 +71,7 @@ def test_what_differs_goes_along(keys):
     ]
 
 
-@pytest.mark.parametrize("verdict", [Verdict.OK, Verdict.SEVERAL])
+@pytest.mark.parametrize("verdict", [Verdict.OK, Verdict.SEVERAL, Verdict.LINK])
 def test_nothing_to_change(keys, verdict):
     assert changes(keys, 0, 1, Finding(verdict, 0.2, (0, 1))) == []
 
@@ -79,6 +79,12 @@ def test_nothing_to_change(keys, verdict):
 def test_several_are_named(keys):
     text = explanation(keys, 0, Finding(Verdict.SEVERAL, 0.2, (2, 0)))
     assert text == "lift, wrist moved at once: hold the others and turn lift alone."
+
+
+def test_a_links_encoder_is_set_in_the_drive(keys):
+    text = explanation(keys, 0, Finding(Verdict.LINK, 0.2, (0,)))
+    assert "lift's motor moved, but the encoder on its link by another angle" in text
+    assert "Its direction is set in the drive" in text
 
 
 def test_a_missing_joint(tmp_path):

@@ -109,7 +109,7 @@ class Check:
         return self._robot.joint_names
 
     def _take(self, step: Step, readings: Readings) -> Finding | None:
-        found = step.take(readings.time_s, readings.q, readings.fresh)
+        found = step.take(readings.time_s, readings.theta, readings.fresh, readings.apart)
         if step.at_rest and not step.way:
             joint = self._robot.joints[step.joint]
             amount = float(self._amounts[step.joint])

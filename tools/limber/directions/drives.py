@@ -35,7 +35,8 @@ class DriverOptions:
 @dataclass(frozen=True)
 class Readings:
     time_s: float
-    q: np.ndarray
+    theta: np.ndarray  # of the motors
+    apart: np.ndarray  # of the links' encoders, more than theta; 0 where there is none
     fresh: np.ndarray
 
 
@@ -111,8 +112,9 @@ class Drives:
         count = len(self._robot.joints)
         fresh = (states["joint_flags"][:, :count] & bit) != 0
         newest = len(states) - 1 - np.argmax(fresh[::-1], axis=0)
-        q = states["q"][newest, np.arange(count)]
-        return Readings(float(states["time_ns"][-1]) * 1e-9, q, fresh.any(axis=0))
+        theta = states["theta"][newest, np.arange(count)]
+        apart = states["q"][newest, np.arange(count)] - theta
+        return Readings(float(states["time_ns"][-1]) * 1e-9, theta, apart, fresh.any(axis=0))
 
 
 @contextmanager

@@ -1,5 +1,8 @@
 """Which joint a hand has turned, and which way: plain numbers in, a finding out.
 
+What counts is the motors' angles, to which the signs of robot.yaml belong; an encoder on the link
+has to go along.
+
 A joint's change counts from where it was when the arm had come to rest, in shares of the amount
 that it is to be turned by: so rad and m compare. A joint that sags is followed slowly.
 """
@@ -23,6 +26,7 @@ class Verdict(Enum):
     OK = "ok"
     SIGN = "sign"  # the right joint, the wrong way
     EXCHANGED = "exchanged"  # another joint's motor
+    LINK = "link encoder"  # the joint's motor, but its link's encoder reads another angle
     SEVERAL = "several"  # nothing can be concluded
 
 
@@ -59,6 +63,7 @@ class Step:
         self.moving: tuple[int, ...] = ()  # joints whose rest is awaited
         self._window: deque[tuple[float, np.ndarray]] = deque()
         self._start: np.ndarray | None = None
+        self._apart = self._start_apart = np.zeros(len(self.amounts))
         self.q = np.full(len(self.amounts), np.nan)
         self._time_s = -np.inf
         self._first: tuple[float, Finding] | None = None
@@ -78,8 +83,14 @@ class Step:
         """The same in shares of the amounts."""
         return self.change / self.amounts
 
-    def take(self, time_s: float, q: np.ndarray, fresh: np.ndarray) -> Finding | None:
-        """Readings of all joints; those that are not fresh or not finite do not count."""
+    def take(
+        self, time_s: float, q: np.ndarray, fresh: np.ndarray, apart: np.ndarray | None = None
+    ) -> Finding | None:
+        """Readings of all joints; those that are not fresh or not finite do not count. `apart`: of
+        the link's encoders, by how much they read more than the motors'.
+        """
+        if apart is not None:
+            self._apart = np.asarray(apart, float)
         self.q = np.where(np.asarray(fresh, bool) & np.isfinite(q), q, np.nan)
         passed_s = time_s - self._time_s
         self._time_s = time_s
@@ -103,6 +114,7 @@ class Step:
         self.moving = tuple(int(i) for i in np.flatnonzero(spread > STILL))
         if not self.moving and time_s - self._window[0][0] >= STILL_S:
             self._start = readings.mean(axis=0)
+            self._start_apart = self._apart
 
     def _follow_sag(self, passed_s: float) -> None:
         assert self._start is not None
@@ -123,8 +135,11 @@ class Step:
             return Finding(Verdict.SEVERAL, change, moved)
         if moved[0] != self.joint:
             return Finding(Verdict.EXCHANGED, change, moved)
-        right = change * self.way > 0
-        return Finding(Verdict.OK if right else Verdict.SIGN, change, moved)
+        if not change * self.way > 0:
+            return Finding(Verdict.SIGN, change, moved)
+        apart = abs(self._apart[self.joint] - self._start_apart[self.joint])
+        right = apart <= OTHER * abs(change)
+        return Finding(Verdict.OK if right else Verdict.LINK, change, moved)
 
     def _lasting(self, time_s: float, seen: Finding | None) -> Finding | None:
         if seen is None:

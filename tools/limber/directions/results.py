@@ -20,7 +20,7 @@ class Row:
     """One joint. `moved`: rad or m, of the joint that moved; `text`: what is wrong."""
 
     joint: str
-    verdict: str = NOT_CHECKED  # ok, sign, exchanged, skipped, not checked
+    verdict: str = NOT_CHECKED  # ok, sign, exchanged, link encoder, skipped, not checked
     moved: float | None = None
     moved_joint: str = ""
     slides: bool = False

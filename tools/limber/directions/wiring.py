@@ -99,6 +99,11 @@ def explanation(keys: list[JointKeys], joint: int, finding: Finding) -> str:
             f"{other.name} moved instead: the motor on {own.name} is the one that robot.yaml has "
             f"at {other.name}. The two are exchanged: {places}."
         )
+    if finding.verdict is Verdict.LINK:
+        return (
+            f"{own.name}'s motor moved, but the encoder on its link by another angle: it counts the "
+            "other way, or belongs to another joint. Its direction is set in the drive."
+        )
     if finding.verdict is Verdict.SEVERAL:
         moved = ", ".join(keys[i].name for i in sorted(finding.joints))
         return f"{moved} moved at once: hold the others and turn {own.name} alone."
