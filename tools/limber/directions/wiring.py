@@ -101,8 +101,8 @@ def explanation(keys: list[JointKeys], joint: int, finding: Finding) -> str:
         )
     if finding.verdict is Verdict.LINK:
         return (
-            f"{own.name}'s motor moved, but the encoder on its link by another angle: it counts the "
-            "other way, or belongs to another joint. Its direction is set in the drive."
+            f"{own.name}'s motor moved, but the encoder on its link by another angle: it counts "
+            "the other way, or belongs to another joint. Its direction is set in the drive."
         )
     if finding.verdict is Verdict.SEVERAL:
         moved = ", ".join(keys[i].name for i in sorted(finding.joints))
