@@ -1,5 +1,8 @@
 #include "controller/goals/inverse_kinematics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "controller/model/pose_error.h"
 #include "controller/model/singularity.h"
 
@@ -30,10 +33,10 @@ double InverseKinematics::step(const TaskRows& rows, const Pose& X_BD) noexcept 
   model_.evaluate_statics(q_, &terms_);
   const PoseError error = pose_error(terms_.X_BT, X_BD, Orientation::kLog);
   const Matrix6J J = rows.of(Matrix6J(error.A * terms_.J));
-  VectorJ step = -damped_pseudo_inverse(J) * error.e;
-  const double longest = step.cwiseAbs().maxCoeff();
-  if (longest > kLongestStep_rad) step *= kLongestStep_rad / longest;
-  if (step.allFinite()) q_ += step;
+  const VectorJ way = damped_pseudo_inverse(J) * error.e;
+  double longest = 0.0;
+  for (const double part : way) longest = std::max(longest, std::abs(part));
+  if (way.allFinite()) q_ -= std::min(1.0, kLongestStep_rad / longest) * way;
   return longest;
 }
 

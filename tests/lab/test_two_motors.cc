@@ -175,7 +175,9 @@ TEST(TwoMotors, TheLawsPositionDoesNotChangeBackAndForth) {
         (lab.controller_status().limits & controller_status_t::LIMIT_STATIC_UNSOLVED) == 0;
     ++since;
     if (solved == last) continue;
-    if (solved) EXPECT_GE(since, 50) << 1e-9 * lab.time_ns();
+    if (solved) {
+      EXPECT_GE(since, 50) << 1e-9 * lab.time_ns();
+    }
     since = 0;
     last = solved;
     ++changes;
