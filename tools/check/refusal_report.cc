@@ -42,6 +42,8 @@ class StandingArm {
     ++state_.seq;
     if (state_.period_ns > 0) state_.time_ns += state_.period_ns;
     state_.period_ns = state_.seq < kFineStates ? fine_ns_ : kCoarse_ns;
+    for (int i = 0; i < state_.num_joints; ++i) state_.theta[i] += flicker_rad_;
+    flicker_rad_ = -flicker_rad_;
     return state_;
   }
 
@@ -68,6 +70,7 @@ class StandingArm {
 
   joint_state_t state_{};
   std::int64_t fine_ns_;
+  double flicker_rad_ = 1e-9;  ///< of the encoders, which would else be taken for stopped
 };
 
 /// The part that can be foretold.
