@@ -28,7 +28,7 @@ def run(
         raise InputError(f"--json {json}: the folder {json.parent} does not exist")
     with drives(robot, options, console) as found:
         check = Check(robot, keys, amounts, found)
-        if found.simulated:
+        if found.simulated and not options.private_network:
             hint = HINT.format(robot=name, link=robot.tip)
             console.print(hint, markup=False, highlight=False, soft_wrap=True)
         try:
