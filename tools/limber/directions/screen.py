@@ -1,7 +1,6 @@
 """The terminal during the check: lines that stay, and below them a picture that changes."""
 
 import time
-from types import TracebackType
 from typing import Self
 
 from rich.console import Console, RenderableType
@@ -25,12 +24,7 @@ class Screen:
             self._live.start()
         return self
 
-    def __exit__(
-        self,
-        _kind: type[BaseException] | None,
-        _error: BaseException | None,
-        _trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         if self._live.is_started:
             self._live.update("", refresh=True)
             self._live.stop()
