@@ -16,11 +16,10 @@ from limber.live.network import CURE
 from limber.log.reader import Log
 from limber.replay.address import address
 from limber.replay.choice import choose
+from limber.replay.silence import require_silence
 
-LISTEN_S = 0.5  # ROBOT_INFO comes every 0.2 s, all else of a stack more often
 LONGEST_PAUSE_S = 10.0
 SHORTENED_S = 1.0
-LIVE = ("JOINT_STATE", "CONTROLLER_STATUS", "DRIVER_STATUS", "ROBOT_INFO", "SIM_TRUTH")
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def replay(path: Path, options: ReplayOptions, console: Console) -> None:
         line = lcm.LCM(target.url)
     except RuntimeError as error:
         raise RunError(f"LCM finds no multicast route: {CURE}") from error
-    _require_silence(line, target.url)
+    require_silence(line, target.url)
     if log.damage():
         console.print(log.damage(), style="yellow", soft_wrap=True)
     for name, why in left_out.items():
@@ -120,23 +119,6 @@ def _paced(
         if time.monotonic() - turned_s > 0.1:
             turned_s = time.monotonic()
             turn(stamp_us)
-
-
-def _require_silence(line: lcm.LCM, url: str) -> None:
-    heard: list[str] = []
-    listening = [
-        line.subscribe(name, lambda channel, _data: heard.append(channel)) for name in LIVE
-    ]
-    end_s = time.monotonic() + LISTEN_S
-    while not heard and (left_s := end_s - time.monotonic()) > 0:
-        line.handle_timeout(max(1, int(left_s * 1000)))
-    for subscription in listening:
-        line.unsubscribe(subscription)
-    if heard:
-        raise RunError(
-            f"{heard[0]} is heard on {url}: a stack, or another replay, is running there; stop it, "
-            "or send to a port of its own, such as --url udpm://239.255.76.67:7700?ttl=0"
-        )
 
 
 class _Watch:
