@@ -153,6 +153,14 @@ Vector6 ArmKernel<N>::twist(int body) const noexcept {
   return V;
 }
 
+template <int N>
+Vector6 ArmKernel<N>::tip_twist() const noexcept {
+  const Vector3d w = V_.ang.at(size_ - 1);
+  Vector6 V;
+  V << V_.lin.at(size_ - 1) + w.cross(p_tip_), w;
+  return V;
+}
+
 // Of the tip itself, not of the point fixed to the last body that passes the base origin.
 template <int N>
 Vector6 ArmKernel<N>::tip_acceleration(const Vector6& V_BT) const noexcept {

@@ -68,6 +68,8 @@ class ArmKernel {
   void move(const VectorJ& v, const VectorJ& a) noexcept;
   /// After move(): V of a body.
   Vector6 twist(int body) const noexcept;
+  /// After move(): of the tip, taken at its origin.
+  Vector6 tip_twist() const noexcept;
   /// After move(): acceleration of the tip, which moves with the twist V_BT.
   Vector6 tip_acceleration(const Vector6& V_BT) const noexcept;
   /// After weigh() and move(): M a + C v, and C^T v unless that is null.

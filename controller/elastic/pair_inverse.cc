@@ -9,6 +9,7 @@ namespace {
 constexpr double kFarthest_rad = 10.0;
 constexpr int kMostSteps = 150;
 constexpr double kNarrowest_rad = 1e-14;
+constexpr double kClose = 1e-13;  // share of what is wanted that rounding leaves
 
 // Where a rising function reaches `wanted` within [low, high], or the end that is nearer to it.
 // False position, the value at an end that stays twice being halved (Illinois; Dowell, Jarratt
@@ -24,7 +25,7 @@ double reach(double low, double high, double wanted, Function f) noexcept {
     const double share = i % 3 == 0 ? 0.5 : below / (below - above);
     const double x = low + share * (high - low);
     const double value = f(x) - wanted;
-    if (value == 0.0) return x;
+    if (std::abs(value) <= kClose * std::abs(wanted)) return x;
     const int now = value < 0.0 ? -1 : 1;
     (now < 0 ? low : high) = x;
     (now < 0 ? below : above) = value;
@@ -37,7 +38,14 @@ double reach(double low, double high, double wanted, Function f) noexcept {
 }  // namespace
 
 double pair_deflection(const SpringPair& pair, double c, double tau) noexcept {
-  return reach(-kFarthest_rad, kFarthest_rad, tau, [&](double x) { return pair.torque(c, x); });
+  // The spring that is stretched more carries half of tau at least, and no more than tau and what
+  // the other pulls without it.
+  const double size = std::abs(tau);
+  const double low = std::max(spring_deflection(pair.spring, 0.5 * size) - c, 0.0);
+  const double high = spring_deflection(pair.spring, size + std::max(pair.pull(c), 0.0)) - c;
+  const double x = reach(low, std::min(high, kFarthest_rad), size,
+                         [&](double at) { return pair.torque(c, at); });
+  return std::copysign(x, tau);
 }
 
 double least_preload(const SpringPair& pair, double tau) noexcept {

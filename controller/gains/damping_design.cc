@@ -49,7 +49,8 @@ Matrix never_driving(const Matrix& D) noexcept {
 }
 
 // M = L L^T with L lower triangular, S = L^-1 K L^-T, D = 2 ratio L sqrt(S) L^T: twice the ratio
-// times the geometric mean of M and K, which is found sooner without the modes if K has no zeros.
+// times the geometric mean of M and K, which is found sooner without the modes unless a load has
+// made K no spring in some direction.
 template <typename Matrix>
 Matrix doubly_diagonalised(const Matrix& M, const Matrix& K, double ratio) noexcept {
   Matrix mean(K.rows(), K.cols());

@@ -11,7 +11,7 @@ namespace limber::controller {
 /// K (n x n symmetric positive semidefinite), so that the modes of M s^2 + D s + K have the damping
 /// ratio zeta (Albu-Schaeffer, Ott, Frese, Hirzinger, ICRA 2003):
 ///   double diagonalisation  M = L L^T, S = L^-1 K L^-T, D = 2 zeta L sqrt(S) L^T: every mode. That
-///                           is 2 zeta M # K (dynamics/geometric_mean.h), found so if K is regular
+///                           is 2 zeta M # K (dynamics/geometric_mean.h)
 ///   factorisation           D = zeta (sqrt(M) sqrt(K) + sqrt(K) sqrt(M)): if M and K commute;
 ///                           negative eigenvalues, which the sum can have, are set to zero
 ///   without inertia         D = 2 zeta sqrt(K): off by the root of the inertia

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "controller/model/pose_error.h"
+#include "controller/model/rotation.h"
 
 namespace limber::controller {
 namespace {
@@ -12,6 +13,12 @@ constexpr double kDifference_rad = 6e-6;
 
 bool has_potential(Orientation orientation) noexcept {
   return orientation != Orientation::kLogSimple && orientation != Orientation::kQuatSimple;
+}
+
+Vector6 holding_wrench(const Pose& X_BT, const Pose& X_BD, const Matrix6& K_x,
+                       Orientation orientation) noexcept {
+  const PoseError error = pose_error(X_BT, X_BD, orientation);
+  return error.A.transpose() * (K_x * error.e);
 }
 
 }  // namespace
@@ -40,26 +47,26 @@ MatrixJ geometric_term(const Matrix6J& J, const Vector6& W) noexcept {
 VectorJ holding_torque(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                        Orientation orientation) noexcept {
   const ArmModel::Tip tip = model->tip(q);
-  const PoseError error = pose_error(tip.X_BT, X_BD, orientation);
-  const Vector6 W = error.A.transpose() * (K_x * error.e);
-  return tip.J.transpose() * W;
+  return tip.J.transpose() * holding_wrench(tip.X_BT, X_BD, K_x, orientation);
 }
 
 MatrixJ full_tangent(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                      Orientation orientation) noexcept {
-  const auto n = q.size();
-  MatrixJ K_q(n, n);
-  VectorJ at = q;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    at[k] = q[k] + kDifference_rad;
-    const VectorJ above = holding_torque(model, at, X_BD, K_x, orientation);
-    at[k] = q[k] - kDifference_rad;
-    const VectorJ below = holding_torque(model, at, X_BD, K_x, orientation);
-    at[k] = q[k];
-    K_q.col(k) = (above - below) / (2.0 * kDifference_rad);
+  const auto [X_BT, J] = model->tip(q);
+  const auto turned = [&](int axis, double angle) {
+    const Eigen::Quaterniond turn = exp_rotation(angle * Eigen::Vector3d::Unit(axis));
+    return holding_wrench({X_BT.p, turn * X_BT.Q}, X_BD, K_x, orientation);
+  };
+  Matrix6 slope;  // of W, by the tip's position and rotation
+  slope.leftCols<3>() = pose_error(X_BT, X_BD, orientation).A.transpose() * K_x.leftCols<3>();
+  for (int axis = 0; axis < 3; ++axis) {
+    slope.col(3 + axis) =
+        (turned(axis, kDifference_rad) - turned(axis, -kDifference_rad)) / (2.0 * kDifference_rad);
   }
-  if (has_potential(orientation)) K_q = (0.5 * (K_q + K_q.transpose())).eval();
-  return K_q;
+  const MatrixJ K_q =
+      geometric_term(J, holding_wrench(X_BT, X_BD, K_x, orientation)) + J.transpose() * slope * J;
+  if (!has_potential(orientation)) return K_q;
+  return 0.5 * (K_q + K_q.transpose());
 }
 
 MatrixJ joint_stiffness(StiffnessTerms terms, ArmModel* model, const VectorJ& q, const Pose& X_BD,

@@ -27,8 +27,8 @@ MatrixJ geometric_term(const Matrix6J& J, const Vector6& W) noexcept;
 VectorJ holding_torque(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                        Orientation orientation) noexcept;
 
-/// K_q by central differences of holding_torque, made symmetric for those orientation errors that
-/// have a potential.
+/// K_q = K_G(W) + J^T (dW/dx) J, made symmetric for those orientation errors that have a potential:
+/// by the tip's position W changes with A^T K_x; by its rotation, found by central differences.
 MatrixJ full_tangent(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                      Orientation orientation) noexcept;
 

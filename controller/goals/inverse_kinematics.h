@@ -26,13 +26,15 @@ class InverseKinematics {
   void track(const TaskRows& rows, double dt_s, Goal* goal) noexcept;
 
  private:
+  /// Of the task's rows, at q_.
+  struct Tangent {
+    Matrix6J J;
+    MatrixJ6 inverse;  ///< damped pseudo-inverse
+  };
   /// At most so many steps, until one no longer moves a joint.
-  void correct(int steps, const TaskRows& rows, const Pose& X_BD) noexcept;
-  /// Returns the way of the joint that moves most, rad or m.
-  double step(const TaskRows& rows, const Pose& X_BD) noexcept;
+  Tangent correct(int steps, const TaskRows& rows, const Pose& X_BD) noexcept;
 
   ArmModel model_;
-  ArmTerms terms_;
   VectorJ q_;
   VectorJ drift_;  // rate of the posture in the null space
 };

@@ -97,6 +97,16 @@ ArmModel::Tip ArmModel::tip(const VectorJ& q) noexcept {
   return tip;
 }
 
+Vector6 ArmModel::jacobian_rate(const VectorJ& q, const VectorJ& v) noexcept {
+  return std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.move(v, zero_);
+        return kernel.tip_acceleration(kernel.tip_twist());
+      },
+      kernel_);
+}
+
 MatrixJ ArmModel::mass(const VectorJ& q) noexcept {
   MatrixJ M(size_, size_);
   std::visit(

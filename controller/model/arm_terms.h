@@ -71,6 +71,8 @@ class ArmModel {
     Matrix6J J;
   };
   Tip tip(const VectorJ& q) noexcept;
+  /// (dJ/dt) v.
+  Vector6 jacobian_rate(const VectorJ& q, const VectorJ& v) noexcept;
   MatrixJ mass(const VectorJ& q) noexcept;
   /// C(q, v) v.
   VectorJ coriolis(const VectorJ& q, const VectorJ& v) noexcept;

@@ -56,6 +56,8 @@ std::vector<double> terms_of_random_chains() {
       MatrixJ mean(n, n);
       const MatrixJ spring = v.cwiseAbs().asDiagonal();
       if (!geometric_mean(M, spring, mean)) mean.setZero();
+      MatrixJ part(n, n);
+      if (!geometric_mean(M, MatrixJ(tau * tau.transpose()), part)) part.setZero();
       MatrixJ6 Minv_JT(n, 6);
       Matrix6 G;
       solve_spd(M, J, &Minv_JT, &G);
@@ -63,7 +65,7 @@ std::vector<double> terms_of_random_chains() {
       solve_spd(M, &Minv_tau);
       G.diagonal().array() += 1e-3;  // of few joints it is singular
       const Matrix6 Lambda = inverse_spd(G);
-      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean), keep(Minv_JT), keep(Minv_tau);
+      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean), keep(part), keep(Minv_JT), keep(Minv_tau);
       keep(G), keep(Lambda);
     }
   }

@@ -70,15 +70,50 @@ TEST(GeometricMean, OfDiagonalMatricesIsTheRootOfEachProduct) {
   EXPECT_LT(relative_error(G, MatrixXd(p.cwiseProduct(q).cwiseSqrt().asDiagonal())), 1e-14);
 }
 
+// A spring that leaves directions free: no entry of G acts in them.
+TEST(GeometricMean, OfLowerRankSolvesItsEquationWithinTheRange) {
+  std::mt19937 random(4);
+  for (int n = 1; n <= kMaxJoints; ++n) {
+    for (int rank = 0; rank < n; ++rank) {
+      const MatrixXd P = random_matrix(n, 2.0, &random);
+      const MatrixXd F = random_matrix(n, 1.0, &random).leftCols(rank);
+      const MatrixXd Q = F * random_matrix(rank, 2.0, &random) * F.transpose();
+      MatrixXd G(n, n);
+      ASSERT_TRUE(geometric_mean(P, Q, G)) << n << ' ' << rank;
+      EXPECT_EQ((G - G.transpose()).norm(), 0.0);
+      EXPECT_LT((G * P.ldlt().solve(G) - Q).norm(), 1e-10 * Q.norm() + 1e-300) << n << ' ' << rank;
+      const Eigen::VectorXd modes = G.selfadjointView<Eigen::Lower>().eigenvalues();
+      for (int i = 0; i < n; ++i) {
+        if (i < n - rank) {
+          EXPECT_LE(std::abs(modes[i]), 1e-12 * G.norm()) << n << ' ' << rank;
+        } else {
+          EXPECT_GT(modes[i], 0.0);
+        }
+      }
+    }
+  }
+}
+
+// Of rank one, Q = v v^T: v v^T / sqrt(v^T P^-1 v).
+TEST(GeometricMean, OfRankOneInClosedForm) {
+  std::mt19937 random(5);
+  const MatrixXd P = random_matrix(6, 1.0, &random);
+  const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(6, 1.0, 2.0);
+  MatrixXd G(6, 6);
+  ASSERT_TRUE(geometric_mean(P, MatrixXd(v * v.transpose()), G));
+  EXPECT_LT(relative_error(G, v * v.transpose() / std::sqrt(v.dot(P.ldlt().solve(v)))), 1e-13);
+}
+
 TEST(GeometricMean, IsNotFoundWhereThereIsNone) {
   std::mt19937 random(3);
   const MatrixXd P = random_matrix(6, 1.0, &random);
   MatrixXd G(6, 6);
-  EXPECT_FALSE(geometric_mean(P, MatrixXd::Zero(6, 6), G));
   EXPECT_FALSE(geometric_mean(MatrixXd::Zero(6, 6), P, G));
   EXPECT_FALSE(geometric_mean(P, -P, G));
-  const Eigen::VectorXd direction = Eigen::VectorXd::LinSpaced(6, 1.0, 2.0);
-  EXPECT_FALSE(geometric_mean(P, MatrixXd(direction * direction.transpose()), G)) << "of rank one";
+  const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(6, 1.0, 2.0);
+  const MatrixXd one = v * v.transpose();
+  EXPECT_FALSE(geometric_mean(one, P, G)) << "a mass that resists along one direction only";
+  EXPECT_FALSE(geometric_mean(P, MatrixXd(one - 0.1 * MatrixXd::Identity(6, 6)), G));
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int i = 0; i < 6; ++i) {
@@ -86,6 +121,9 @@ TEST(GeometricMean, IsNotFoundWhereThereIsNone) {
       Q(i, 0) = Q(0, i) = bad;
       EXPECT_FALSE(geometric_mean(P, Q, G)) << i;
       EXPECT_FALSE(geometric_mean(Q, P, G)) << i;
+      Q = one;
+      Q(i, 0) = Q(0, i) = bad;
+      EXPECT_FALSE(geometric_mean(P, Q, G)) << i << ", of rank one but for it";
     }
   }
 }
