@@ -6,7 +6,7 @@
 namespace limber::dynamics {
 namespace {
 
-constexpr int kColumns = 8;  // of which six, or one, are used
+constexpr int kColumns = 8;  // of which six are used
 
 /// Rows [M X]. What lies beyond M's columns are other numbers of it, which count for nothing: a
 /// copy of one length is several times faster.

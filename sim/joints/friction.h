@@ -34,8 +34,8 @@ class LugreFriction {
   /// Begins a step of length h > 0 at velocity v.
   void begin_step(double v, double h) noexcept;
 
-  /// The friction of the step, with |v_end| in the bristle's decay taken as |v_guess|. For any guess
-  /// the step dissipates: F * v_end * h >= change of the bristle's energy.
+  /// The friction of the step, with |v_end| in the bristle's decay taken as |v_guess|. For any
+  /// guess the step dissipates: F * v_end * h >= change of the bristle's energy.
   AffineForce step_force(double v_guess) const noexcept;
 
   /// Ends the step at v_end: moves the bristle and returns F. With the guess that step_force() was

@@ -63,8 +63,8 @@ Coupling Motor::couple(const Coupling& active, const MotorPoint& at, double thet
 
 void Motor::finish_step(const MotorPoint& at, double theta_dot_guess, double theta_dot_end,
                         double h) noexcept {
-  friction_torque_ = -friction_.finish_step(theta_dot_guess, theta_dot_end) -
-                     law_.passive_damping * theta_dot_end;
+  friction_torque_ =
+      -friction_.finish_step(theta_dot_guess, theta_dot_end) - law_.passive_damping * theta_dot_end;
   stand_torque_ = stand.torque(at.theta, theta_dot_end, h);
 }
 

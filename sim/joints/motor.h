@@ -25,7 +25,8 @@ struct MotorPoint {
 };
 
 /// After construction every member is allowed in the cycle. begin_step(), then, where the motor is
-/// passive(), any number of couple() and finish_step(), else let_go(); then the torques of the step.
+/// passive(), any number of couple() and finish_step(), else let_go(); then the torques of the
+/// step.
 class Motor {
  public:
   Motor() = default;

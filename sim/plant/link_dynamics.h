@@ -86,8 +86,8 @@ class LinkDynamics {
   dynamics::MassProperties bare_tip_body_;
   dynamics::AnyArmKernel kernel_;
   VectorJ v_, zero_;
-  MatrixJ M_;        // with B
-  VectorJ bias_;     // C v + g
+  MatrixJ M_;           // with B
+  VectorJ bias_;        // C v + g
   bool pushed_ = true;  // wrenches have been added
   VectorJ tau_ext_;     // of the wrenches
   std::array<Vector6, kMaxJoints> F_ext_;

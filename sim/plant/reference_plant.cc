@@ -5,8 +5,7 @@
 
 namespace limber::sim {
 
-ReferencePlant::ReferencePlant(const ArmModel& model)
-    : ArmPlant(model) {
+ReferencePlant::ReferencePlant(const ArmModel& model) : ArmPlant(model) {
   tau_.link = VectorJ::Zero(model.chain.size());
   tau_.motor = VectorM::Zero(x_.theta.size());
   for (std::size_t k = 0; k < motors().size(); ++k) {
@@ -39,8 +38,7 @@ void ReferencePlant::accelerate(ForceModel* forces, Stage* stage) noexcept {
   stage->theta_ddot.resize(tau_.motor.size());
   for (std::size_t k = 0; k < motors().size(); ++k) {
     const MotorModel& motor = motors()[k];
-    stage->theta_ddot[k] =
-        motor.rigid ? stage->qdd[motor.joint] : tau_.motor[k] / motor.inertia;
+    stage->theta_ddot[k] = motor.rigid ? stage->qdd[motor.joint] : tau_.motor[k] / motor.inertia;
   }
 }
 
