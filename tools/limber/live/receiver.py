@@ -9,7 +9,7 @@ import struct
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,7 +23,6 @@ from limber.live.network import CURE
 from limber.messages import SENDERS
 
 BURST = 1000  # messages handled before whoever waits is told
-_NO_HEAD = (b"", 0, 0)
 
 
 class Stream:
@@ -81,17 +80,17 @@ class ChannelState:
 
     def __post_init__(self) -> None:
         wire = messages.dtype_of(self.type_name)
-        self._size = None if wire is None else wire.itemsize
         self._fingerprint = messages.fingerprint_of(self.type_name).to_bytes(8, "big")
-        fields = {} if wire is None else wire.fields
-        self._counts = self.numbered and "seq" in fields
-        self._head = _head_of(fields) if self._counts else struct.Struct(">8s0s0s")
+        self._counts = self.numbered and wire is not None and "seq" in wire.fields
+        self._head = _head_of(wire, self._counts)
         self._next_seq: dict[int | bytes, int] = {}  # of each sender
 
     def take(self, data: bytes) -> None:
         """A message has come."""
-        fits = len(data) == self._size if self._size else len(data) >= self._head.size
-        fingerprint, seq, sender = self._head.unpack_from(data) if fits else _NO_HEAD
+        try:
+            fingerprint, seq, sender = self._head(data)
+        except struct.error:
+            fingerprint = b""
         if fingerprint != self._fingerprint:
             self.undecodable += 1
             return
@@ -118,10 +117,17 @@ class ChannelState:
         return time.monotonic() - self.last_s if self.count else float("inf")
 
 
-def _head_of(fields: Mapping[str, Any]) -> struct.Struct:
-    """Fingerprint, seq, and the run of the sender; that is empty if no field names it."""
-    sender_at = next((fields[name][1] for name in SENDERS if name in fields), None)
-    return struct.Struct(">8sq0s" if sender_at is None else f">8sq{sender_at - 16}xq")
+def _head_of(wire: np.dtype | None, counts: bool) -> Callable[[bytes], tuple]:
+    """Reads fingerprint, seq and the run of the sender of a message, the latter two if they count
+    and are there, else empty bytes; struct.error if its size is another.
+    """
+    if wire is None:
+        return struct.Struct(">8s0s0s").unpack_from
+    head = ">8s0s0s"
+    if counts:  # seq is the first field
+        sender_at = next((wire.fields[name][1] for name in SENDERS if name in wire.fields), None)
+        head = ">8sq0s" if sender_at is None else f">8sq{sender_at - 16}xq"
+    return struct.Struct(f"{head}{wire.itemsize - struct.calcsize(head)}x").unpack
 
 
 class Receiver:

@@ -19,8 +19,7 @@ from limber.log.event_file import (
     events,
 )
 
-PIECE = 1 << 23  # pairs of bytes that are searched at a time
-PAIRS = np.array([SYNC[:2], SYNC[1:3]]).view(np.uint16).reshape(2, 1)
+PIECE = 1 << 24  # bytes that are searched at a time
 FIELDS = np.dtype(
     [("sync", "S4"), ("number", ">i8"), ("stamp_us", ">i8"), ("channel", ">i4"), ("data", ">i4")]
 )
@@ -69,11 +68,11 @@ def _all_at_once(data: np.ndarray) -> dict[str, Events] | None:
         return None
     stamps_us = headers["stamp_us"].astype(np.int64)
     found = {}
-    for length in np.flatnonzero(np.bincount(names)).tolist():
+    for length in np.unique(names):
         rows = np.flatnonzero(names == length)
-        texts = bytes_of(data, begins[rows] + HEADER.size, length).view(f"S{length}")[:, 0]
+        texts = bytes_of(data, begins[rows] + HEADER.size, int(length)).view(f"V{length}")[:, 0]
         while len(rows):
-            name = texts[0].ljust(length, b"\0")  # numpy takes them off
+            name = texts[0].tobytes()
             if not name.isascii():
                 return None
             same = texts == texts[0]
@@ -84,19 +83,15 @@ def _all_at_once(data: np.ndarray) -> dict[str, Events] | None:
 
 
 def _sync_words(data: np.ndarray) -> np.ndarray:
-    """Where they begin, in order; also those that a message happens to contain.
-
-    Of the bytes in pairs, one is the first two of a sync word at an even place, or the middle two of
-    one at an odd place; few others are. Numpy compares pairs as fast as bytes.
-    """
-    pairs = data[: len(data) // 2 * 2].view(np.uint16)
-    found = [np.empty(0, np.int64)]
-    for at in range(0, len(pairs), PIECE):
-        found.append(at + np.flatnonzero((pairs[at : at + PIECE] == PAIRS).any(axis=0)))
-    places = 2 * np.concatenate(found)
-    places -= data[places] == SYNC[1]
-    places = places[(places >= 0) & (places <= len(data) - len(SYNC))]
-    return places[bytes_of(data, places, len(SYNC)).view("S4")[:, 0] == SYNC]
+    """Where they begin, in order; also those that a message happens to contain."""
+    pieces = []
+    for at in range(0, len(data), PIECE):
+        places = at + np.flatnonzero(data[at : at + PIECE] == SYNC[0])
+        places = places[places <= len(data) - len(SYNC)]
+        for i in range(1, len(SYNC)):
+            places = places[data[places + i] == SYNC[i]]
+        pieces.append(places)
+    return np.concatenate(pieces) if pieces else np.empty(0, np.int64)
 
 
 def bytes_of(data: mmap.mmap | np.ndarray, begins: np.ndarray, size: int) -> np.ndarray:
