@@ -1,6 +1,7 @@
 #include "dynamics/arm_kernel.h"
 
 #include <Eigen/Geometry>
+#include <cstring>
 
 #include "dynamics/each_processor.h"
 #include "dynamics/row_sines.h"
@@ -28,11 +29,13 @@ template <int N>
   return {m * V.lin + cross(V.ang, h), I_O * V.ang + cross(h, V.lin)};
 }
 
+// What x has room for but no entry counts for nothing.
 template <int N>
 [[gnu::always_inline]] inline Row<N> padded(const VectorJ& x) noexcept {
-  Row<N> row = Row<N>{};
-  for (Eigen::Index i = 0; i < x.size(); ++i) row[i] = x[i];
-  return row;
+  Row<N> row, lane;
+  for (int i = 0; i < N; ++i) lane[i] = i;
+  std::memcpy(&row, x.data(), sizeof row);
+  return lane < static_cast<double>(x.size()) ? row : Row<N>{};
 }
 
 }  // namespace

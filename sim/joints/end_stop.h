@@ -20,6 +20,8 @@ class EndStop {
         stiffness_(joint.torque_limit_Nm / kGive),
         damping_(stiffness_ * kTimeConstant_s) {}
 
+  bool touched(double q) const noexcept { return q > high_ || q < low_; }
+
   /// As an implicit step wants it: the force opposing positive motion. Nothing within the limits.
   AffineForce step_force(double q, double h) const noexcept {
     const double depth = depth_at(q);

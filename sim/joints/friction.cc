@@ -16,30 +16,35 @@ LugreFriction::LugreFriction(const FrictionConfig& config, double rotor_inertia)
   }
 }
 
-LugreFriction::Coefficients LugreFriction::coefficients(double v, double v_guess,
-                                                        double h) const noexcept {
+void LugreFriction::begin_step(double v, double h) noexcept {
+  if (!has_bristle()) return;
   // G is taken at the start of the step: its negative slope (Stribeck) is slow against a step and
   // must not enter the implicit part, where it would be negative damping.
   const double ratio = v / stribeck_;
   const double level = coulomb_ + (static_ - coulomb_) * std::exp(-ratio * ratio);
+  h_ = h;
+  decay_per_speed_ = h * sigma0_ / level;
+  sigma1_loss_per_speed_ = sigma1_ / (4.0 * level);
+}
+
+LugreFriction::Coefficients LugreFriction::coefficients(double v_guess) const noexcept {
   const double speed = std::abs(v_guess);
-  const double sigma1 = sigma1_ > 0.0 ? 1.0 / (1.0 / sigma1_ + speed / (4.0 * level)) : 0.0;
-  return {1.0 + h * sigma0_ * speed / level, sigma1};
+  return {1.0 + decay_per_speed_ * speed, sigma1_ / (1.0 + sigma1_loss_per_speed_ * speed)};
 }
 
-AffineForce LugreFriction::step_force(double v, double v_guess, double h) const noexcept {
-  if (!(coulomb_ > 0.0)) return {0.0, viscous_};
-  const auto [decay, sigma1] = coefficients(v, v_guess, h);
+AffineForce LugreFriction::step_force(double v_guess) const noexcept {
+  if (!has_bristle()) return {0.0, viscous_};
+  const auto [decay, sigma1] = coefficients(v_guess);
   // F = sigma0 z_end + sigma1 (z_end - z) / h + d v_end   with   z_end = (z + h v_end) / decay
-  const double gain = (sigma0_ + sigma1 / h) / decay;
-  return {gain * z_ - sigma1 / h * z_, gain * h + viscous_};
+  const double gain = (sigma0_ + sigma1 / h_) / decay;
+  return {gain * z_ - sigma1 / h_ * z_, gain * h_ + viscous_};
 }
 
-double LugreFriction::finish_step(double v, double v_guess, double v_end, double h) noexcept {
-  if (!(coulomb_ > 0.0)) return viscous_ * v_end;
-  const auto [decay, sigma1] = coefficients(v, v_guess, h);
-  const double z_end = (z_ + h * v_end) / decay;
-  const double force = sigma0_ * z_end + sigma1 * (z_end - z_) / h + viscous_ * v_end;
+double LugreFriction::finish_step(double v_guess, double v_end) noexcept {
+  if (!has_bristle()) return viscous_ * v_end;
+  const auto [decay, sigma1] = coefficients(v_guess);
+  const double z_end = (z_ + h_ * v_end) / decay;
+  const double force = sigma0_ * z_end + sigma1 * (z_end - z_) / h_ + viscous_ * v_end;
   z_ = z_end;
   return force;
 }

@@ -27,14 +27,20 @@ class LugreFriction {
   LugreFriction() = default;
   LugreFriction(const FrictionConfig& config, double rotor_inertia);
 
-  /// The friction of a step of length h that starts at velocity `v`, with |v_end| in the bristle's
-  /// decay taken as |v_guess|. For any guess the step dissipates: F * v_end * h >= change of the
-  /// bristle's energy.
-  AffineForce step_force(double v, double v_guess, double h) const noexcept;
+  bool any() const noexcept { return has_bristle() || viscous_ > 0.0; }
+  /// Else the guesses below count for nothing.
+  bool has_bristle() const noexcept { return coulomb_ > 0.0; }
+
+  /// Begins a step of length h > 0 at velocity v.
+  void begin_step(double v, double h) noexcept;
+
+  /// The friction of the step, with |v_end| in the bristle's decay taken as |v_guess|. For any
+  /// guess the step dissipates: F * v_end * h >= change of the bristle's energy.
+  AffineForce step_force(double v_guess) const noexcept;
 
   /// Ends the step at v_end: moves the bristle and returns F. With the guess that step_force() was
   /// last given, F is exactly the force v_end was solved with.
-  double finish_step(double v, double v_guess, double v_end, double h) noexcept;
+  double finish_step(double v_guess, double v_end) noexcept;
 
   void reset() noexcept { z_ = 0.0; }
   double bristle() const noexcept { return z_; }
@@ -46,7 +52,7 @@ class LugreFriction {
     double decay;   // 1 + h sigma0 |v| / G: how the bristle shrinks in the step
     double sigma1;  // at the guessed speed
   };
-  Coefficients coefficients(double v, double v_guess, double h) const noexcept;
+  Coefficients coefficients(double v_guess) const noexcept;
 
   double coulomb_ = 0.0;
   double static_ = 0.0;
@@ -55,6 +61,10 @@ class LugreFriction {
   double sigma0_ = 0.0;
   double sigma1_ = 0.0;
   double z_ = 0.0;
+  // Of the step in progress.
+  double h_ = 1.0;
+  double decay_per_speed_ = 0.0;
+  double sigma1_loss_per_speed_ = 0.0;
 };
 
 }  // namespace limber::sim

@@ -13,14 +13,13 @@ Motor::Motor(const JointConfig& joint, int number, double believed_torque_consta
   inertia_ = drive.rotor_inertia_kgm2;
   torque_constant_ = drive.torque_constant_Nm_per_A;
   hydraulic_ = drive.actuator.kind == ActuatorKind::kHydraulic;
-  if (!friction) return;
-  friction_ = LugreFriction(joint.friction, inertia_);
-  has_friction_ = joint.friction.coulomb_Nm > 0.0 || joint.friction.viscous_Nms_per_rad > 0.0;
+  if (friction) friction_ = LugreFriction(joint.friction, inertia_);
 }
 
 void Motor::begin_step(const DriveLaw& law, const MotorPoint& at, double h) noexcept {
   law_ = law;
-  passive_ = has_friction_ || law.passive_damping > 0.0 || stand.holds();
+  friction_.begin_step(at.theta_dot, h);
+  passive_ = friction_.any() || law.passive_damping > 0.0 || stand.holds();
   if (actuator_.ideal()) return;
   if (law.limit > 0.0) {
     held_torque_ = actuator_.step(law.torque(at.theta, at.theta_dot), at.theta, at.theta_dot, h);
@@ -32,47 +31,41 @@ void Motor::begin_step(const DriveLaw& law, const MotorPoint& at, double h) noex
 }
 
 AffineForce Motor::opposing(const MotorPoint& at, double theta_dot_guess, double h) const noexcept {
-  const AffineForce friction = friction_.step_force(at.theta_dot, theta_dot_guess, h);
+  const AffineForce friction = friction_.step_force(theta_dot_guess);
   const AffineForce held = stand.step_force(at.theta, h);
   return {friction.offset + held.offset, friction.slope + held.slope + law_.passive_damping};
 }
 
-Coupling Motor::coupled(const MotorPoint& at, double inertia, double drive,
-                        double h) const noexcept {
+Coupling Motor::active(const MotorPoint& at, double h) const noexcept {
   Coupling out;
   out.side = side_;
-  out.drive = drive;
+  out.drive = torque(at);
   out.rigid = rigid();
-  out.inertia = inertia;
+  out.inertia = 0.0;
   if (out.rigid) return out;
-  const bool follows_law = actuator_.ideal() && std::abs(torque(at)) < law_.limit;
+  const bool follows_law = actuator_.ideal() && std::abs(out.drive) < law_.limit;
   if (follows_law) out.servo = 0.25 * h * h * law_.kp + 0.5 * h * law_.kd;
-  out.inertia += inertia_ + out.servo;
+  out.inertia = inertia_ + out.servo;
   out.transmitted = transmitted(at);
   out.gain = 0.25 * h * h * transmission_.stiffness(stretch(at)) +
              0.5 * h * transmission_.damping(stretch(at));
   return out;
 }
 
-Coupling Motor::couple(const MotorPoint& at, double theta_dot_guess, double h) const noexcept {
+Coupling Motor::couple(const Coupling& active, const MotorPoint& at, double theta_dot_guess,
+                       double h) const noexcept {
   const AffineForce force = opposing(at, theta_dot_guess, h);
-  return coupled(at, h * force.slope, torque(at) - force.offset - force.slope * at.theta_dot, h);
-}
-
-Coupling Motor::coupling(const MotorPoint& at, double h) const noexcept {
-  return coupled(at, 0.0, torque(at) + friction_torque_ + stand_torque_, h);
+  Coupling out = active;
+  out.inertia += h * force.slope;
+  out.drive -= force.offset + force.slope * at.theta_dot;
+  return out;
 }
 
 void Motor::finish_step(const MotorPoint& at, double theta_dot_guess, double theta_dot_end,
                         double h) noexcept {
-  friction_torque_ = -friction_.finish_step(at.theta_dot, theta_dot_guess, theta_dot_end, h) -
-                     law_.passive_damping * theta_dot_end;
+  friction_torque_ =
+      -friction_.finish_step(theta_dot_guess, theta_dot_end) - law_.passive_damping * theta_dot_end;
   stand_torque_ = stand.torque(at.theta, theta_dot_end, h);
-}
-
-double Motor::damper_power(const MotorPoint& at) const noexcept {
-  if (rigid()) return 0.0;
-  return (transmitted(at) - transmission_.spring_torque(stretch(at))) * stretch_rate(at);
 }
 
 double Motor::fastest_rate(const DriveLaw& law, const MotorPoint& at, double link_inertia,

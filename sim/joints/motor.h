@@ -24,8 +24,9 @@ struct MotorPoint {
   double v = 0.0;
 };
 
-/// After construction every member is allowed in the cycle. begin_step(), any number of couple(),
-/// finish_step(); then the torques of the step.
+/// After construction every member is allowed in the cycle. begin_step(), then, where the motor is
+/// passive(), any number of couple() and finish_step(), else let_go(); then the torques of the
+/// step.
 class Motor {
  public:
   Motor() = default;
@@ -36,13 +37,22 @@ class Motor {
 
   /// The actuator's torque is held over the step; an ideal one follows its law within it.
   void begin_step(const DriveLaw& law, const MotorPoint& at, double h) noexcept;
-  /// Friction is linearised at the guess of the speed at the step's end.
-  Coupling couple(const MotorPoint& at, double theta_dot_guess, double h) const noexcept;
+  /// Friction, shorted phases or a stand are at work.
   bool passive() const noexcept { return passive_; }
+  bool has_bristle() const noexcept { return friction_.has_bristle(); }
+  /// But for what is passive.
+  Coupling active(const MotorPoint& at, double h) const noexcept;
+  /// Friction is linearised at the guess of the speed at the step's end.
+  Coupling couple(const Coupling& active, const MotorPoint& at, double theta_dot_guess,
+                  double h) const noexcept;
   void finish_step(const MotorPoint& at, double theta_dot_guess, double theta_dot_end,
                    double h) noexcept;
-  /// As couple(), with friction held at what finish_step() found.
-  Coupling coupling(const MotorPoint& at, double h) const noexcept;
+  void let_go() noexcept { friction_torque_ = stand_torque_ = 0.0; }
+  /// As couple(), with what is passive held at what finish_step() found.
+  Coupling held(Coupling active) const noexcept {
+    active.drive += friction_torque_ + stand_torque_;
+    return active;
+  }
 
   double torque(const MotorPoint& at) const noexcept {
     return actuator_.ideal() ? law_.torque(at.theta, at.theta_dot) : held_torque_;
@@ -69,7 +79,11 @@ class Motor {
   double stiffness(const MotorPoint& at) const noexcept {
     return rigid() ? 0.0 : transmission_.stiffness(stretch(at));
   }
-  double damper_power(const MotorPoint& at) const noexcept;  ///< lost, W
+  /// Lost, W.
+  double damper_power(const MotorPoint& at, double transmitted) const noexcept {
+    if (!transmission_.damped()) return 0.0;
+    return (transmitted - transmission_.spring_torque(stretch(at))) * stretch_rate(at);
+  }
   double elastic_energy(const MotorPoint& at) const noexcept {
     return rigid() ? 0.0 : transmission_.energy(stretch(at));
   }
@@ -85,7 +99,6 @@ class Motor {
 
  private:
   AffineForce opposing(const MotorPoint& at, double theta_dot_guess, double h) const noexcept;
-  Coupling coupled(const MotorPoint& at, double inertia, double drive, double h) const noexcept;
 
   Actuator actuator_;
   LugreFriction friction_;
@@ -95,7 +108,6 @@ class Motor {
   double torque_constant_ = 1.0;
   double believed_torque_constant_ = 1.0;
   bool hydraulic_ = false;
-  bool has_friction_ = false;
 
   DriveLaw law_;  // of the step in progress, and the torques held over it
   double held_torque_ = 0.0;

@@ -34,6 +34,7 @@ class Transmission {
   /// No less than the stiffness anywhere within +-reach.
   double greatest_stiffness(double reach) const noexcept { return spring_.stiffness(reach); }
   double greatest_damping() const noexcept { return damping_; }
+  bool damped() const noexcept { return !rigid() && damping_ > 0.0; }
 
   /// How far the equilibrium (theta, or (theta_1 - theta_2) / 2) must lie ahead of the link to give
   /// it `torque` at rest, with preload (theta_1 + theta_2) / 2. Set-up only.

@@ -18,6 +18,7 @@ ForceModel::ForceModel(const Robot& robot, const Robot& believed, bool friction)
     if (friction) {
       friction_[i] = LugreFriction(joint.link_friction, joint.drive.rotor_inertia_kgm2);
     }
+    has_bristle_ = has_bristle_ || friction_[i].has_bristle();
     stops_[i] = EndStop(joint);
     first_motor_[i] = motor_count_;
     for (int number = 0; number < joint.motors(); ++number) {
@@ -25,22 +26,15 @@ ForceModel::ForceModel(const Robot& robot, const Robot& believed, bool friction)
       const DriveConfig& drive = number == 0 ? known.drive : known.antagonist;
       joint_of_[motor_count_] = i;
       motors_[motor_count_++] = Motor(joint, number, drive.torque_constant_Nm_per_A, friction);
+      has_bristle_ = has_bristle_ || motors_[motor_count_ - 1].has_bristle();
     }
   }
-  theta_dot_guess_ = theta_dot_end_ = theta_ddot_ = drive_ = VectorM::Zero(motor_count_);
+  theta_dot_guess_ = theta_dot_end_ = theta_ddot_ = VectorM::Zero(motor_count_);
 }
 
 void ForceModel::set_stands_left(double left) noexcept {
   for (Stand& stand : stands) stand.set_left(left);
   for (Motor& motor : motors_) motor.stand.set_left(left);
-}
-
-AffineForce ForceModel::passive_force(int joint, double q, double v, double v_guess,
-                                      double h) const noexcept {
-  const AffineForce friction = friction_[joint].step_force(v, v_guess, h);
-  const AffineForce stop = stops_[joint].step_force(q, h);
-  const AffineForce stand = stands[joint].step_force(q, h);
-  return {friction.offset + stop.offset + stand.offset, friction.slope + stop.slope + stand.slope};
 }
 
 void ForceModel::soften_wall(LinkDynamics* arm, double h) noexcept {
@@ -50,48 +44,82 @@ void ForceModel::soften_wall(LinkDynamics* arm, double h) noexcept {
   wall.limit_to(arm->tip_mobility(wall.normal), h);
 }
 
-bool ForceModel::couple_passive(const ArmState& x, double h) noexcept {
-  const auto end = motors_.begin() + motor_count_;
-  bool passive = std::any_of(motors_.begin(), end, [](const Motor& m) { return m.passive(); });
-  for (int i = 0; i < size_; ++i) {
-    const AffineForce force = passive_force(i, x.q[i], x.v[i], v_guess_[i], h);
-    tau_[i] = -force.offset - force.slope * x.v[i];
-    inertia_[i] = h * force.slope;
-    passive = passive || force.offset != 0.0 || force.slope != 0.0;
-  }
-  if (!passive) return false;
+bool ForceModel::passive(const ArmState& x) const noexcept {
   for (int k = 0; k < motor_count_; ++k) {
-    couplings_[k] = motors_[k].couple(point(x, k), theta_dot_guess_[k], h);
+    if (motors_[k].passive()) return true;
+  }
+  for (int i = 0; i < size_; ++i) {
+    if (friction_[i].any() || stops_[i].touched(x.q[i]) || stands[i].holds()) return true;
+  }
+  return false;
+}
+
+void ForceModel::begin_couplings(const ArmState& x, double h) noexcept {
+  for (int k = 0; k < motor_count_; ++k) active_[k] = motors_[k].active(point(x, k), h);
+}
+
+void ForceModel::couple_passive(const ArmState& x, double h) noexcept {
+  for (int i = 0; i < size_; ++i) {
+    const AffineForce friction = friction_[i].step_force(v_guess_[i]);
+    const double slope = friction.slope + stopped_[i].slope;
+    tau_[i] = -(friction.offset + stopped_[i].offset) - slope * x.v[i];
+    inertia_[i] = h * slope;
+  }
+  for (int k = 0; k < motor_count_; ++k) {
+    couplings_[k] = motors_[k].couple(active_[k], point(x, k), theta_dot_guess_[k], h);
     tau_[joint_of_[k]] += couplings_[k].link_torque();
     inertia_[joint_of_[k]] += couplings_[k].link_inertia();
   }
-  return true;
 }
 
 void ForceModel::begin_step(LinkDynamics* arm, const ArmState& x, double h,
                             std::int64_t t_ns) noexcept {
-  constexpr int kIterations = 3;
   t_ns_ = t_ns;
   soften_wall(arm, h);
-  apply_environment(arm);
   for (int k = 0; k < motor_count_; ++k) motors_[k].begin_step(drives[k], point(x, k), h);
+  const bool held_before = passive_;
+  passive_ = passive(x);
+  if (passive_) {
+    settle(arm, x, h);
+  } else if (held_before) {
+    let_go();
+  }
+}
+
+void ForceModel::settle(LinkDynamics* arm, const ArmState& x, double h) noexcept {
+  constexpr int kIterations = 3;
+  apply_environment(arm);
+  begin_couplings(x, h);
+  for (int i = 0; i < size_; ++i) {
+    friction_[i].begin_step(x.v[i], h);
+    const AffineForce stop = stops_[i].step_force(x.q[i], h);
+    const AffineForce stand = stands[i].step_force(x.q[i], h);
+    stopped_[i] = {stop.offset + stand.offset, stop.slope + stand.slope};
+  }
   v_end_ = x.v;
   theta_dot_end_ = x.theta_dot;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     v_guess_ = v_end_;
     theta_dot_guess_ = theta_dot_end_;
-    if (!couple_passive(x, h)) break;
+    couple_passive(x, h);
     arm->accelerations(tau_, inertia_, &qdd_);
     motor_accelerations(qdd_, &theta_ddot_);
     v_end_ = x.v + h * qdd_;
     theta_dot_end_ = x.theta_dot + h * theta_ddot_;
+    if (!has_bristle_) break;  // no force depends on the guess
   }
   finish_step(x, h);
 }
 
+void ForceModel::let_go() noexcept {
+  link_friction_.setZero();
+  stop_torque_.setZero();
+  for (int k = 0; k < motor_count_; ++k) motors_[k].let_go();
+}
+
 void ForceModel::finish_step(const ArmState& x, double h) noexcept {
   for (int i = 0; i < size_; ++i) {
-    link_friction_[i] = -friction_[i].finish_step(x.v[i], v_guess_[i], v_end_[i], h);
+    link_friction_[i] = -friction_[i].finish_step(v_guess_[i], v_end_[i]);
     stop_torque_[i] =
         stops_[i].torque(x.q[i], v_end_[i], h) + stands[i].torque(x.q[i], v_end_[i], h);
   }
@@ -121,18 +149,17 @@ void ForceModel::evaluate(LinkDynamics* arm, const ArmState& x, ArmTorque* tau,
       const double transmitted = motor.transmitted(at);
       tau->link[joint_of_[k]] += motor.side() * transmitted;
       tau->motor[k] = net - transmitted;
-      power->friction -= motor.damper_power(at);
+      power->friction -= motor.damper_power(at, transmitted);
     }
   }
 }
 
 void ForceModel::couple(const ArmState& x, double h, VectorJ* tau, VectorJ* inertia) noexcept {
+  if (!passive_) begin_couplings(x, h);
   *tau = link_friction_ + stop_torque_;
   inertia->setZero();
   for (int k = 0; k < motor_count_; ++k) {
-    const MotorPoint at = point(x, k);
-    drive_[k] = motors_[k].torque(at);
-    couplings_[k] = motors_[k].coupling(at, h);
+    couplings_[k] = motors_[k].held(active_[k]);
     (*tau)[joint_of_[k]] += couplings_[k].link_torque();
     (*inertia)[joint_of_[k]] += couplings_[k].link_inertia();
   }
@@ -150,8 +177,10 @@ Work ForceModel::step_power(const ArmState& x, const VectorM& theta_ddot) const 
   power.friction = link_friction_.dot(x.v);
   for (int k = 0; k < motor_count_; ++k) {
     const Motor& motor = motors_[k];
-    power.motor += (drive_[k] - couplings_[k].servo * theta_ddot[k]) * x.theta_dot[k];
-    power.friction += motor.friction_torque() * x.theta_dot[k] - motor.damper_power(point(x, k));
+    const MotorPoint at = point(x, k);
+    power.motor += (active_[k].drive - active_[k].servo * theta_ddot[k]) * x.theta_dot[k];
+    power.friction += motor.friction_torque() * x.theta_dot[k];
+    if (!motor.rigid()) power.friction -= motor.damper_power(at, motor.transmitted(at));
     power.external += motor.stand_torque() * x.theta_dot[k];
   }
   return power;

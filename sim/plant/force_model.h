@@ -48,7 +48,7 @@ class ForceModel {
   /// `arm` is at x, at simulated time t. Solves for the velocity at the end of the step
   ///   (M + B + h S) (v_end - v) / h = tau(q, v) - offset - S v - C v - g
   /// with the passive forces offset + S v_end, re-linearised up to three times, and motors behind
-  /// springs as in sim/joints/coupling.h.
+  /// springs as in sim/joints/coupling.h. Where nothing passive acts there is nothing to solve.
   void begin_step(LinkDynamics* arm, const ArmState& x, double h, std::int64_t t_ns) noexcept;
 
   /// Sets the wrenches of `arm`, which is at x, and gives torque and power of all.
@@ -100,9 +100,13 @@ class ForceModel {
 
  private:
   void soften_wall(LinkDynamics* arm, double h) noexcept;
-  AffineForce passive_force(int joint, double q, double v, double v_guess, double h) const noexcept;
-  /// False: no passive force acts, so that the step needs no solution of its own.
-  bool couple_passive(const ArmState& x, double h) noexcept;
+  /// Friction, an end stop, a stand or shorted phases act in a step from x on.
+  bool passive(const ArmState& x) const noexcept;
+  void settle(LinkDynamics* arm, const ArmState& x, double h) noexcept;
+  void let_go() noexcept;
+  /// What does not depend on the guess of the speed at the step's end.
+  void begin_couplings(const ArmState& x, double h) noexcept;
+  void couple_passive(const ArmState& x, double h) noexcept;
   void finish_step(const ArmState& x, double h) noexcept;
 
   int size_;
@@ -112,13 +116,16 @@ class ForceModel {
   std::array<int, kMaxJoints> first_motor_{};
   std::array<LugreFriction, kMaxJoints> friction_;
   std::array<EndStop, kMaxJoints> stops_;
+  bool has_bristle_ = false;  // one of the joints
+  bool passive_ = false;      // the step in progress
   VectorJ link_friction_;
   VectorJ stop_torque_;
   std::int64_t t_ns_ = 0;
   // Work space of a step.
-  std::array<Coupling, kMaxMotors> couplings_;
+  std::array<AffineForce, kMaxJoints> stopped_;  // end stops and stands
+  std::array<Coupling, kMaxMotors> active_, couplings_;
   VectorJ tau_, inertia_, qdd_, v_guess_, v_end_;
-  VectorM theta_dot_guess_, theta_dot_end_, theta_ddot_, drive_;
+  VectorM theta_dot_guess_, theta_dot_end_, theta_ddot_;
 };
 
 }  // namespace limber::sim

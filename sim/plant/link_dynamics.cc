@@ -51,6 +51,8 @@ void LinkDynamics::set_state(const VectorJ& q, const VectorJ& v) noexcept {
 }
 
 void LinkDynamics::clear_wrenches() noexcept {
+  if (!pushed_) return;
+  pushed_ = false;
   tau_ext_ = zero_;
   std::fill_n(F_ext_.begin(), size(), Vector6::Zero());
 }
@@ -58,6 +60,7 @@ void LinkDynamics::clear_wrenches() noexcept {
 void LinkDynamics::add_wrench(int body, const Vector3d& point, const Vector3d& force,
                               const Vector3d& moment) noexcept {
   if (body < 0) return;
+  pushed_ = true;
   Vector6 F;
   F << force, moment + point.cross(force);
   F_ext_[static_cast<std::size_t>(body)] += F;
@@ -68,6 +71,11 @@ VectorJ LinkDynamics::gravity_torque() const noexcept {
   VectorJ g(size());
   std::visit([&](const auto& kernel) { kernel.gravity(&g); }, kernel_);
   return g;
+}
+
+void LinkDynamics::accelerations(const VectorJ& tau, VectorJ* qdd) const noexcept {
+  *qdd = tau + tau_ext_ - bias_;
+  dynamics::solve_spd(M_, qdd);
 }
 
 void LinkDynamics::accelerations(const VectorJ& tau, const VectorJ& extra_inertia,

@@ -50,8 +50,9 @@ class LinkDynamics {
   /// Torque that holds the links against gravity.
   VectorJ gravity_torque() const noexcept;
 
-  /// Acceleration at the present state, with `extra_inertia` added to B (an implicit integrator's
-  /// h*damping, or zero).
+  /// Acceleration at the present state.
+  void accelerations(const VectorJ& tau, VectorJ* qdd) const noexcept;
+  /// With `extra_inertia` added to B: an implicit integrator's h*damping.
   void accelerations(const VectorJ& tau, const VectorJ& extra_inertia, VectorJ* qdd) const noexcept;
 
   /// n^T J (M + B)^-1 J^T n for the tip origin and a unit vector n: how fast a newton along n
@@ -85,9 +86,10 @@ class LinkDynamics {
   dynamics::MassProperties bare_tip_body_;
   dynamics::AnyArmKernel kernel_;
   VectorJ v_, zero_;
-  MatrixJ M_;        // with B
-  VectorJ bias_;     // C v + g
-  VectorJ tau_ext_;  // of the wrenches
+  MatrixJ M_;           // with B
+  VectorJ bias_;        // C v + g
+  bool pushed_ = true;  // wrenches have been added
+  VectorJ tau_ext_;     // of the wrenches
   std::array<Vector6, kMaxJoints> F_ext_;
 };
 

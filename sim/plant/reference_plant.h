@@ -16,22 +16,22 @@ class ReferencePlant final : public ArmPlant {
   explicit ReferencePlant(const ArmModel& model);
 
  private:
-  struct Slope {
-    VectorJ v, qdd;
-    VectorM theta_dot, theta_ddot;
+  struct Stage {
+    ArmState x;
+    VectorJ qdd;
+    VectorM theta_ddot;
     Work power;
   };
   void integrate(ForceModel* forces, double h) noexcept override;
   int parts(const ForceModel& forces, double h) const noexcept override;
-  /// arm_ is at x.
-  void slope_at(const ArmState& x, ForceModel* forces, Slope* slope) noexcept;
-  /// h from x_ along the slope; arm_ goes there.
-  ArmState moved(const Slope& slope, double h) noexcept;
+  /// Accelerations and power at the stage's state, where arm_ is.
+  void accelerate(ForceModel* forces, Stage* stage) noexcept;
+  /// The stage that lies h from x_ along the slope at `from`; arm_ goes there.
+  void next(const Stage& from, double h, ForceModel* forces, Stage* stage) noexcept;
 
   ArmTorque tau_;
-  VectorJ no_extra_inertia_;
   std::array<double, kMaxMotors> link_inertia_{};  // least that a motor's spring may move
-  Slope k1_, k2_, k3_, k4_;
+  Stage k1_, k2_, k3_, k4_;
 };
 
 }  // namespace limber::sim

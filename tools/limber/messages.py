@@ -7,6 +7,7 @@ of declaration. Types without strings have a fixed size: a thousand messages are
 import importlib
 import os
 import struct
+import sys
 from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
@@ -28,6 +29,7 @@ _SCALARS = {
     "double": ">f8",
 }
 FINGERPRINT = "_fingerprint"
+IN_CACHE = 200  # messages whose bytes are turned at a time, field by field
 SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
 SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
 SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = 0x50590000, 32  # the first of Python's Arm, and how many
@@ -146,12 +148,12 @@ def native_dtype_of(type_name: str) -> np.dtype:
 
 @cache
 def _runs_of(type_name: str) -> np.dtype:
-    """The wire layout with neighbours of one kind as one field: numpy converts field by field."""
+    """The wire layout with neighbours of one size as one field: numpy turns field by field."""
     wire = dtype_of(type_name)
     assert wire is not None
-    runs = groupby((wire[name] for name in wire.names), key=lambda kind: kind.base)
-    sizes = [(kind, sum(field.itemsize for field in run) // kind.itemsize) for kind, run in runs]
-    return np.dtype([(f"run{i}", kind, (size,)) for i, (kind, size) in enumerate(sizes)])
+    runs = groupby((wire[name] for name in wire.names), key=lambda kind: kind.base.itemsize)
+    counts = [(size, sum(field.itemsize for field in run) // size) for size, run in runs]
+    return np.dtype([(f"run{i}", f"u{size}", (n,)) for i, (size, n) in enumerate(counts)])
 
 
 def view(type_name: str, data: bytes) -> np.void:
@@ -159,20 +161,25 @@ def view(type_name: str, data: bytes) -> np.void:
     wire = dtype_of(type_name)
     if wire is None or len(data) != wire.itemsize:
         raise ValueError(f"not a {type_name}")
-    record = np.frombuffer(data, wire)
-    if int(record[FINGERPRINT][0]) != fingerprint_of(type_name):
+    record = views(type_name, [data])[0]
+    if int(record[FINGERPRINT]) != fingerprint_of(type_name):
         raise ValueError(f"not a {type_name} of this version")
-    return record.astype(native_dtype_of(type_name))[0]
+    return record
 
 
-def views(type_name: str, parts: list[bytes] | np.ndarray) -> np.ndarray:
-    """Messages of one type as records, in the machine's byte order; all must be of this version.
-
-    `parts`: the bytes of each, or uint8, a row each.
-    """
+def views(type_name: str, parts: list[bytes]) -> np.ndarray:
+    """Messages of one type as records, in the machine's byte order; all must be of this version."""
     if dtype_of(type_name) is None:
         raise ValueError(f"{type_name} has no fixed size")
-    runs = _runs_of(type_name)
-    data = parts if isinstance(parts, np.ndarray) else b"".join(parts)
-    converted = np.frombuffer(data, runs).astype(runs.newbyteorder("="))
-    return converted.view(native_dtype_of(type_name))
+    return turned(type_name, bytearray().join(parts))
+
+
+def turned(type_name: str, data: bytearray | np.ndarray) -> np.ndarray:
+    """Messages of one type that follow one another, as records in the machine's byte order: of the
+    same memory, in which their bytes are turned round.
+    """
+    records = np.frombuffer(data, _runs_of(type_name))
+    if sys.byteorder == "little":
+        for at in range(0, len(records), IN_CACHE):
+            records[at : at + IN_CACHE].byteswap(inplace=True)
+    return records.view(native_dtype_of(type_name))

@@ -31,12 +31,13 @@ struct Mass {
   double step(double force) {
     double guess = v;
     double end = v;
+    friction.begin_step(v, kStep);
     for (int i = 0; i < 3; ++i) {
       guess = end;
-      const AffineForce f = friction.step_force(v, guess, kStep);
+      const AffineForce f = friction.step_force(guess);
       end = (inertia * v + kStep * (force - f.offset)) / (inertia + kStep * f.slope);
     }
-    const double resistance = friction.finish_step(v, guess, end, kStep);
+    const double resistance = friction.finish_step(guess, end);
     v += kStep / inertia * (force - resistance);
     x += kStep * v;
     return resistance;
@@ -72,7 +73,10 @@ TEST(Lugre, SlidesWithCoulombStribeckAndViscousForce) {
   for (const double v : {-3.0, -0.04, 0.02, 0.05, 0.5, 10.0}) {
     LugreFriction friction(config(0.4, 0.6, 0.07, 1e-4), 0.01);
     double force = 0.0;
-    for (int k = 0; k < 40000; ++k) force = friction.finish_step(v, v, v, kStep);
+    for (int k = 0; k < 40000; ++k) {
+      friction.begin_step(v, kStep);
+      force = friction.finish_step(v, v);
+    }
     const double stribeck = 0.4 + 0.2 * std::exp(-(v / 0.05) * (v / 0.05));
     EXPECT_NEAR(force, std::copysign(stribeck, v) + 0.07 * v, 1e-9) << v;
   }
@@ -80,7 +84,8 @@ TEST(Lugre, SlidesWithCoulombStribeckAndViscousForce) {
 
 TEST(Lugre, WithoutCoulombIsViscous) {
   LugreFriction friction(config(0.0, 0.0, 0.3, 1e-4), 0.01);
-  EXPECT_DOUBLE_EQ(friction.finish_step(0.0, 0.0, 2.0, kStep), 0.6);
+  friction.begin_step(0.0, kStep);
+  EXPECT_DOUBLE_EQ(friction.finish_step(0.0, 2.0), 0.6);
   EXPECT_EQ(friction.bristle(), 0.0);
 }
 
@@ -113,7 +118,8 @@ TEST(Lugre, EveryStepIsPassiveForAnyParametersAndMotion) {
       const double v_end = sign(extreme.random) * extreme.between(-5, 2);
       const double before = friction.bristle_energy();
       const double guess = sign(extreme.random) * extreme.between(-5, 2);
-      const double force = friction.finish_step(v, guess, v_end, kStep);
+      friction.begin_step(v, kStep);
+      const double force = friction.finish_step(guess, v_end);
       const double stored = friction.bristle_energy() - before;
       EXPECT_GE(force * v_end * kStep - stored, -1e-9 * (std::abs(stored) + before));
       v = v_end;

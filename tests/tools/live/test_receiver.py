@@ -85,5 +85,8 @@ def test_types_with_strings_are_kept_as_bytes():
     state.take(answer.encode())
     with pytest.raises(ValueError, match="no fixed size"):
         stream.read()
+    for data in (b"", answer.encode()[:7], bytes(40)):
+        state.take(data)
     state.take(answer.encode())
+    assert (state.count, state.undecodable) == (2, 3)
     assert messages.decode("request_answer_t", stream.raw()[0]).reason == "because"

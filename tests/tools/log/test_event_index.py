@@ -20,7 +20,7 @@ def mapped(tmp_path, content: bytes) -> mmap.mmap:
 def random_log(seed: int) -> list[bytes]:
     """Channels of different lengths, messages of 0 to 2000 bytes."""
     random = np.random.default_rng(seed)
-    names = ["A", "B", "LONGER", "LINGER", "OF_FOURTEEN_BY"]
+    names = ["A", "B", "LONGER", "LINGER", "LINGE\0", "OF_FOURTEEN_BY"]
     sizes = random.integers(0, 2000, 400)
     return [
         event_bytes(str(random.choice(names)), random.bytes(size), i, 1000 * i)

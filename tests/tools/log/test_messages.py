@@ -37,6 +37,17 @@ def test_view_equals_generated_decode(type_name):
         np.testing.assert_array_equal(record[name], getattr(message, name), err_msg=name)
 
 
+@pytest.mark.parametrize("type_name", FIXED)
+@pytest.mark.parametrize("count", [0, 1, messages.IN_CACHE, messages.IN_CACHE + 1])
+def test_views_turn_all_bytes_round(type_name, count):
+    size = messages.dtype_of(type_name).itemsize
+    parts = [np.random.default_rng(i).bytes(size) for i in range(count)]
+    records = messages.views(type_name, parts)
+    assert records.dtype == messages.native_dtype_of(type_name)
+    again = records.astype(messages.dtype_of(type_name))
+    assert [record.tobytes() for record in again] == parts
+
+
 @pytest.mark.parametrize("type_name", ["compliance_gains_t", "push_t"])
 def test_types_with_strings_have_no_fixed_layout(type_name):
     assert messages.dtype_of(type_name) is None

@@ -23,7 +23,6 @@ from limber.live.network import CURE
 from limber.messages import SENDERS
 
 BURST = 1000  # messages handled before whoever waits is told
-_NUMBER = struct.Struct(">q")
 
 
 class Stream:
@@ -31,14 +30,16 @@ class Stream:
 
     def __init__(self, channel: "ChannelState", news: threading.Condition) -> None:
         self._channel = channel
-        self._parts: deque[bytes] = deque()
+        self._parts: list[bytes] = []
         self._news = news
         self.keep = self._parts.append
         channel.streams.append(self)
 
     def raw(self) -> list[bytes]:
         """The bytes of the messages that came since the last call."""
-        return [self._parts.popleft() for _ in range(len(self._parts))]
+        found = self._parts[:]
+        del self._parts[: len(found)]  # what has come meanwhile stays
+        return found
 
     def read(self) -> np.ndarray:
         """The messages that came since the last call, as records in the machine's byte order."""
@@ -79,35 +80,30 @@ class ChannelState:
 
     def __post_init__(self) -> None:
         wire = messages.dtype_of(self.type_name)
-        self._size = None if wire is None else wire.itemsize
         self._fingerprint = messages.fingerprint_of(self.type_name).to_bytes(8, "big")
-        fields = {} if wire is None else wire.fields
-        senders = (fields[name][1] for name in SENDERS if name in fields)
-        self._sender_at = next(senders, None)
-        self._counts = self.numbered and "seq" in fields
-        self._last_seq: dict[int, int] = {}
+        self._counts = self.numbered and wire is not None and "seq" in wire.fields
+        self._head = _head_of(wire, self._counts)
+        self._next_seq: dict[int | bytes, int] = {}  # of each sender
 
     def take(self, data: bytes) -> None:
         """A message has come."""
-        fits = self._size is None or len(data) == self._size
-        if not fits or not data.startswith(self._fingerprint):
+        try:
+            fingerprint, seq, sender = self._head(data)
+        except struct.error:
+            fingerprint = b""
+        if fingerprint != self._fingerprint:
             self.undecodable += 1
             return
         if self._counts:
-            self._check(data)
+            missing = seq - self._next_seq.get(sender, seq)
+            if missing > 0:
+                self.lost += missing
+            self._next_seq[sender] = seq + 1
         for stream in self.streams:
             stream.keep(data)
         self.data = data
         self.count += 1
         self.last_s = time.monotonic()
-
-    def _check(self, data: bytes) -> None:
-        (seq,) = _NUMBER.unpack_from(data, 8)
-        sender = 0 if self._sender_at is None else _NUMBER.unpack_from(data, self._sender_at)[0]
-        step = seq - self._last_seq.get(sender, seq)
-        if step > 1:
-            self.lost += step - 1
-        self._last_seq[sender] = seq
 
     def rate_hz(self) -> float:
         """Over the last seconds, from the counts in `window`."""
@@ -119,6 +115,19 @@ class ChannelState:
     def age_s(self) -> float:
         """Time since the newest message; infinite if there was none."""
         return time.monotonic() - self.last_s if self.count else float("inf")
+
+
+def _head_of(wire: np.dtype | None, counts: bool) -> Callable[[bytes], tuple]:
+    """Reads fingerprint, seq and the run of the sender of a message, the latter two if they count
+    and are there, else empty bytes; struct.error if its size is another.
+    """
+    if wire is None:
+        return struct.Struct(">8s0s0s").unpack_from
+    head = ">8s0s0s"
+    if counts:  # seq is the first field
+        sender_at = next((wire.fields[name][1] for name in SENDERS if name in wire.fields), None)
+        head = ">8sq0s" if sender_at is None else f">8sq{sender_at - 16}xq"
+    return struct.Struct(f"{head}{wire.itemsize - struct.calcsize(head)}x").unpack
 
 
 class Receiver:

@@ -64,20 +64,20 @@ def _all_at_once(data: np.ndarray) -> dict[str, Events] | None:
     names, sizes = (headers[key].astype(np.int64) for key in ("channel", "data"))
     sane = (names > 0) & (names <= MAX_CHANNEL_BYTES) & (sizes >= 0) & (sizes <= MAX_DATA_BYTES)
     starts = begins + HEADER.size + names
-    if not sane.all() or not np.array_equal(starts + sizes, [*begins[1:], len(data)]):
+    if not sane.all() or not np.array_equal(starts + sizes, np.append(begins[1:], len(data))):
         return None
     stamps_us = headers["stamp_us"].astype(np.int64)
     found = {}
     for length in np.unique(names):
         rows = np.flatnonzero(names == length)
-        texts = bytes_of(data, begins[rows] + HEADER.size, int(length))
+        texts = bytes_of(data, begins[rows] + HEADER.size, int(length)).view(f"V{length}")[:, 0]
         while len(rows):
-            if (texts[0] > 127).any():
+            name = texts[0].tobytes()
+            if not name.isascii():
                 return None
-            same = (texts == texts[0]).all(axis=1)
+            same = texts == texts[0]
             chosen = rows[same]
-            name = texts[0].tobytes().decode("ascii")
-            found[name] = Events(starts[chosen], sizes[chosen], stamps_us[chosen])
+            found[name.decode("ascii")] = Events(starts[chosen], sizes[chosen], stamps_us[chosen])
             rows, texts = rows[~same], texts[~same]
     return dict(sorted(found.items(), key=lambda item: item[1].offsets[0]))
 

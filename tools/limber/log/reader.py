@@ -15,7 +15,6 @@ from limber.paths import existing_file
 
 LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
 PIECE = 1 << 14  # messages read at a time where only some fields count
-IN_CACHE = 200  # messages that are copied at a time
 
 
 class Log:
@@ -99,10 +98,7 @@ class Log:
         events = self.channels.get(channel, NO_EVENTS)
         fits = events.sizes[first:last] == wire.itemsize
         offsets = events.offsets[first:last][fits]
-        records = np.empty(len(offsets), messages.native_dtype_of(type_name))
-        for at in range(0, len(offsets), IN_CACHE):
-            parts = bytes_of(self._data, offsets[at : at + IN_CACHE], wire.itemsize)
-            records[at : at + IN_CACHE] = messages.views(type_name, parts)
+        records = messages.turned(type_name, bytes_of(self._data, offsets, wire.itemsize))
         known = records[messages.FINGERPRINT] == messages.fingerprint_of(type_name)
         stamps_us = events.stamps_us[first:last][fits]
         return (stamps_us, records) if known.all() else (stamps_us[known], records[known])
