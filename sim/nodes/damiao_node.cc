@@ -65,9 +65,10 @@ bool DamiaoNode::receive(const CanFrame& frame, const JointReading& joint, std::
   }
 
   const std::uint32_t offset = frame.id - registers_.id();
+  if (offset > kLastModeOffset) return false;  // another drive's
   mit::Special special{};
   const bool is_special = mit::decode_special(frame, &special);
-  const bool other_mode = is_special && offset % mit::kModeStep == 0 && offset <= kLastModeOffset;
+  const bool other_mode = is_special && offset % mit::kModeStep == 0;
   const bool servo = offset != 0 && offset == mit::id_offset(registers_.mode());
   const std::uint8_t shortest = registers_.mode() == mit::ControlMode::kVelocity ? 4 : 8;
   const bool whole = servo ? frame.length >= shortest && frame.length <= 8 : frame.length == 8;
