@@ -37,15 +37,19 @@ Quartic quartic(const ElasticMode& m, double D, double t_d) noexcept {
           m.damper * m.law + m.spring * d, m.spring * m.law};
 }
 
+// Newton's steps in real numbers: p(z) = b(z) (z^2 - u z + v) + r z + t, where the bracket is zero
+// at s and its conjugate, so that p(s) = r s + t and p'(s) = (2 s - u) b(s) + r.
 Root refined(const Quartic& p, Root s, int steps) noexcept {
   for (int i = 0; i < steps; ++i) {
-    Root value = p[0];
-    Root slope = 0.0;
-    for (std::size_t k = 1; k < p.size(); ++k) {
-      slope = slope * s + value;
-      value = value * s + p[k];
-    }
-    s -= value / slope;
+    const double x = s.real(), y = s.imag(), u = 2.0 * x, v = x * x + y * y;
+    const double b0 = p[0], b1 = p[1] + u * b0, b2 = p[2] + u * b1 - v * b0;
+    const double r = p[3] + u * b2 - v * b1, t = p[4] - v * b2;
+    const double c1 = b1 + u * b0, c2 = b2 - v * b0;  // b(s) = c1 s + c2
+    const double value_x = r * x + t, value_y = r * y;
+    const double slope_x = r - 2.0 * y * (c1 * y), slope_y = 2.0 * y * (c1 * x + c2);
+    const double over = 1.0 / (slope_x * slope_x + slope_y * slope_y);
+    s -= Root(over * (value_x * slope_x + value_y * slope_y),
+              over * (value_y * slope_x - value_x * slope_y));
   }
   return s;
 }
@@ -89,7 +93,7 @@ Sample followed(const ElasticMode& m, double ratio, double end, double t_d, Way*
   for (int i = 0; i <= kSteps && !found; ++i) {
     const double D = end * i / kSteps;
     s = refined(quartic(m, D, t_d), s, i == 0 ? kFirstNewtonSteps : kNewtonSteps);
-    const Sample now{D, -s.real() / std::abs(s)};
+    const Sample now{D, -s.real() / std::sqrt(std::norm(s))};
     // The pair has met on the real axis, or is lost.
     if (!(s.imag() > 0.0) || !std::isfinite(now.ratio)) break;
     way->samples[static_cast<std::size_t>(way->count++)] = now;

@@ -94,14 +94,16 @@ void CanopenDictionary::close(DictionaryGuard* guard) {
   guard_ = guard;
   std::ranges::sort(entries_, {}, [](const DictionaryEntry& entry) { return entry.id.number(); });
   power_on_ = entries_;
+  numbers_.clear();
+  for (const DictionaryEntry& entry : entries_) numbers_.push_back(entry.id.number());
 }
 
 // --- in the cycle --------------------------------------------------------------------------------
 
 DictionaryEntry* CanopenDictionary::find(canopen::ObjectId id) noexcept {
-  const auto found = std::ranges::lower_bound(
-      entries_, id.number(), {}, [](const DictionaryEntry& entry) { return entry.id.number(); });
-  return found != entries_.end() && found->id == id ? &*found : nullptr;
+  const auto found = std::ranges::lower_bound(numbers_, id.number());
+  if (found == numbers_.end() || *found != id.number()) return nullptr;
+  return &entries_[static_cast<std::size_t>(found - numbers_.begin())];
 }
 
 SdoAbort CanopenDictionary::absence(canopen::ObjectId id) const noexcept {

@@ -76,6 +76,7 @@ class CanopenDictionary {
 
  private:
   std::vector<DictionaryEntry> entries_;  // by number
+  std::vector<std::uint32_t> numbers_;    // of the entries: near to one another, to be searched
   std::vector<DictionaryEntry> power_on_;
   DictionaryGuard* guard_ = nullptr;
 };
