@@ -14,7 +14,7 @@ namespace {
 constexpr int kSteps = 12;
 // What A and B may differ by in the last step: half its square is left in their mean.
 constexpr double kClose = 1e-7;
-// Share of a difference that a step leaves at most; half of it where a part is singular.
+// A step leaves less than this share of a difference, but half of it where a part is singular.
 constexpr double kLeft = 0.3;
 // Share of a row that rounding leaves where there is nothing.
 constexpr double kRounding = 1e-12;
@@ -39,8 +39,8 @@ struct Factor {
   Rows<N> F = {};
   int rank = 0;
 
-  /// By Cholesky steps, the row first of which the greatest share is left. Q's lower half counts;
-  /// rank is below zero where Q is not positive semidefinite, or not finite.
+  /// By Cholesky steps, the row first of which the greatest share is left. Rank is below zero where
+  /// Q is not positive semidefinite, or not finite.
   [[gnu::always_inline]] inline explicit Factor(int n, const Rows<N>& Q) noexcept {
     Rows<N> left;
     std::copy_n(&Q[0][0], N * N, &left[0][0]);
@@ -53,7 +53,7 @@ struct Factor {
         if (share < 0.0 || !(left[i][i] > share * Q[i][i])) continue;
         pivot = i, share = left[i][i] / Q[i][i];
       }
-      if (share < 0.0) rank = -1;
+      if (share < 0.0 || (share <= kRounding && !nothing(n, left, Q))) rank = -1;
       if (!(share > kRounding)) return;
       const double over = 1.0 / std::sqrt(left[pivot][pivot]);
       double column[N];
@@ -63,6 +63,19 @@ struct Factor {
         for (int l = 0; l < N; ++l) left[i][l] -= column[i] * column[l];
       }
     }
+  }
+
+ private:
+  /// No entry is left that a semidefinite rest of so small a diagonal cannot have.
+  [[gnu::always_inline]] static inline bool nothing(int n, const Rows<N>& left,
+                                                    const Rows<N>& Q) noexcept {
+    constexpr double kMost = 10.0 * kRounding;
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (!(left[i][k] * left[i][k] <= kMost * Q[i][i] * (kMost * Q[k][k]))) return false;
+      }
+    }
+    return true;
   }
 };
 

@@ -114,6 +114,11 @@ TEST(GeometricMean, IsNotFoundWhereThereIsNone) {
   const MatrixXd one = v * v.transpose();
   EXPECT_FALSE(geometric_mean(one, P, G)) << "a mass that resists along one direction only";
   EXPECT_FALSE(geometric_mean(P, MatrixXd(one - 0.1 * MatrixXd::Identity(6, 6)), G));
+  MatrixXd shear = MatrixXd::Zero(6, 6);
+  shear(4, 1) = shear(1, 4) = 1.0;
+  EXPECT_FALSE(geometric_mean(P, shear, G)) << "eigenvalues 1 and -1 without a diagonal";
+  shear(0, 0) = 1.0;
+  EXPECT_FALSE(geometric_mean(P, shear, G));
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int i = 0; i < 6; ++i) {
