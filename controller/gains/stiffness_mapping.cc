@@ -52,19 +52,19 @@ VectorJ holding_torque(ArmModel* model, const VectorJ& q, const Pose& X_BD, cons
 
 MatrixJ full_tangent(ArmModel* model, const VectorJ& q, const Pose& X_BD, const Matrix6& K_x,
                      Orientation orientation) noexcept {
-  const auto [X_BT, J] = model->tip(q);
+  const ArmModel::Tip tip = model->tip(q);
   const auto turned = [&](int axis, double angle) {
     const Eigen::Quaterniond turn = exp_rotation(angle * Eigen::Vector3d::Unit(axis));
-    return holding_wrench({X_BT.p, turn * X_BT.Q}, X_BD, K_x, orientation);
+    return holding_wrench({tip.X_BT.p, turn * tip.X_BT.Q}, X_BD, K_x, orientation);
   };
   Matrix6 slope;  // of W, by the tip's position and rotation
-  slope.leftCols<3>() = pose_error(X_BT, X_BD, orientation).A.transpose() * K_x.leftCols<3>();
+  slope.leftCols<3>() = pose_error(tip.X_BT, X_BD, orientation).A.transpose() * K_x.leftCols<3>();
   for (int axis = 0; axis < 3; ++axis) {
     slope.col(3 + axis) =
         (turned(axis, kDifference_rad) - turned(axis, -kDifference_rad)) / (2.0 * kDifference_rad);
   }
-  const MatrixJ K_q =
-      geometric_term(J, holding_wrench(X_BT, X_BD, K_x, orientation)) + J.transpose() * slope * J;
+  const MatrixJ K_q = geometric_term(tip.J, holding_wrench(tip.X_BT, X_BD, K_x, orientation)) +
+                      tip.J.transpose() * slope * tip.J;
   if (!has_potential(orientation)) return K_q;
   return 0.5 * (K_q + K_q.transpose());
 }
