@@ -65,7 +65,8 @@ std::vector<double> terms_of_random_chains() {
       solve_spd(M, &Minv_tau);
       G.diagonal().array() += 1e-3;  // of few joints it is singular
       const Matrix6 Lambda = inverse_spd(G);
-      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean), keep(part), keep(Minv_JT), keep(Minv_tau);
+      keep(M), keep(tau), keep(CTv), keep(g), keep(J), keep(mean), keep(part), keep(Minv_JT),
+          keep(Minv_tau);
       keep(G), keep(Lambda);
     }
   }
