@@ -103,7 +103,7 @@ TEST_F(TorqueGateTest, PreloadRateFromWhatIsPresent) {
            {-2.0, kAccepted},
            {2.0 + std::nextafter(4.0, 5.0), Status::VERDICT_RATE},
            {2.0 - std::nextafter(4.0, 5.0), Status::VERDICT_RATE}}) {
-    const auto change = [&](auto& command) { command.tau_preload[1] = preload; };
+    const auto change = [&, preload = preload](auto& command) { command.tau_preload[1] = preload; };
     situation_.followed = true;
     EXPECT_EQ(check_with(change), verdict) << preload;
     situation_.followed = false;
