@@ -93,6 +93,17 @@ template <int N>
   return r;
 }
 
+/// For eliminate(): adds X^T S^-1 Y to `product`, X and Y the columns from N and from `Y` on.
+template <int N, int Y>
+[[gnu::always_inline]] inline auto adding_to(Rows<N>& product, int n) noexcept {
+  return [&product, n](const auto& x, const auto& y, const auto& Dx, const auto& Dy) {
+    for (int i = 0; i < n; ++i) {
+      const double f = x[N + i], g = y[N + i];
+      for (int l = 0; l < N; ++l) product[i][l] += f * Dx[Y + l] + g * Dy[Y + l];
+    }
+  };
+}
+
 /// A, B <- (A + B) / 2, 2 A (A + B)^-1 B.
 template <int N>
 [[gnu::always_inline]] inline void step(int n, Rows<N>& A, Rows<N>& B) noexcept {
@@ -103,12 +114,7 @@ template <int N>
       S[i][l] = A[i][l] + B[i][l], S[i][N + l] = A[i][l], S[i][2 * N + l] = B[i][l];
     }
   }
-  eliminate(n, S, [&](const auto& x, const auto& y, const auto& Dx, const auto& Dy) {
-    for (int i = 0; i < n; ++i) {
-      const double f = x[N + i], g = y[N + i];
-      for (int l = 0; l < N; ++l) product[i][l] += f * Dx[2 * N + l] + g * Dy[2 * N + l];
-    }
-  });
+  eliminate(n, S, adding_to<N, 2 * N>(product, n));
   for (int i = 0; i < n; ++i) {
     for (int l = 0; l < N; ++l) {
       A[i][l] = 0.5 * (A[i][l] + B[i][l]);
@@ -151,12 +157,7 @@ template <int N>
   for (int i = 0; i < N; ++i) {
     std::copy_n(S[i], N, rows[i]), std::copy_n(X[i], N, rows[i] + N);
   }
-  eliminate(n, rows, [&](const auto& x, const auto& y, const auto& Dx, const auto& Dy) {
-    for (int i = 0; i < N; ++i) {
-      const double f = x[N + i], g = y[N + i];
-      for (int l = 0; l < N; ++l) product[i][l] += f * Dx[N + l] + g * Dy[N + l];
-    }
-  });
+  eliminate(n, rows, adding_to<N, N>(product, N));
 }
 
 /// P # F F^T = F W^-1/2 F^T with W = F^T P^-1 F, F of fewer columns than rows.
