@@ -22,6 +22,7 @@
 #include "drivers/can/virtual_frame.h"
 #include "tests/drivers/can/private_network.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/bus_frames.h"
 
 namespace limber::test_virtual_bus {
 namespace {
@@ -32,29 +33,10 @@ const bool kPrivateNetwork = [] {
   return testing::enter_private_network();
 }();
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
-CanFrame numbered(std::uint32_t id) {
-  CanFrame frame;
-  frame.id = id;
-  frame.length = 8;
-  for (std::uint8_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(id + i);
-  return frame;
-}
-
-/// Everything that arrives until `count` frames are there or a second has passed.
-std::vector<CanFrame> receive(CanBus* bus, std::size_t count, std::int64_t timeout_ns = kSecond) {
-  std::vector<CanFrame> frames;
-  const std::int64_t deadline_ns = monotonic_ns() + timeout_ns;
-  std::array<CanFrame, 64> some;
-  while (frames.size() < count && wait_readable(std::span(&bus, 1), deadline_ns)) {
-    const int taken = bus->receive(some);
-    frames.insert(frames.end(), some.begin(), some.begin() + taken);
-  }
-  return frames;
-}
-
-bool is_silent(CanBus* bus) { return receive(bus, 1, kSecond / 50).empty(); }
+using testing::is_silent;
+using testing::kSecond;
+using testing::numbered;
+using testing::receive;
 
 /// Over both carriers.
 class VirtualBus : public ::testing::TestWithParam<std::string> {
@@ -124,20 +106,7 @@ TEST_P(VirtualBus, ImpossibleFramesAreRefusedAndTheOthersSent) {
 TEST_P(VirtualBus, StampsAreMonotonicTimeOfArrival) {
   const auto a = open_can_bus("virtual:time", true);
   const auto b = open_can_bus("virtual:time", true);
-  bool on_arrival = false;
-  // The kernel begins to stamp a moment after a first socket has asked for it, until then on
-  // reading.
-  for (int i = 0; i < 100 && !on_arrival; ++i) {
-    const std::int64_t before_ns = monotonic_ns();
-    a->send(numbered(1));
-    usleep(20'000);
-    const std::int64_t reading_ns = monotonic_ns();
-    const auto got = receive(b.get(), 1);
-    ASSERT_EQ(got.size(), 1U);
-    EXPECT_GE(got[0].timestamp_ns, before_ns - 1'000'000);
-    on_arrival = got[0].timestamp_ns < reading_ns - 1'000'000;
-  }
-  EXPECT_TRUE(on_arrival) << "time of reading instead of arrival";
+  testing::expect_stamps_of_arrival(a.get(), b.get());
 }
 
 /// Any datagram to a bus, or to another address on its port.
