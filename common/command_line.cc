@@ -119,13 +119,14 @@ Option CommandLine::buses(std::map<std::string, std::string>* addresses) {
           ->expected(1, CLI::detail::expected_max_vector_size));
 }
 
-void CommandLine::pace(std::optional<bool>* lockstep, const std::string& meaning_of_lockstep) {
-  const auto set = [lockstep](bool value) {
-    return [lockstep, value](std::int64_t) { *lockstep = value; };
-  };
-  auto* steps = app_->add_flag_function("--lockstep", set(true), meaning_of_lockstep);
-  auto* clock = app_->add_flag_function("--realtime", set(false), "run by the clock");
+void CommandLine::pace(std::optional<Pace>* pace, const std::string& meaning_of_lockstep) {
+  const auto set = [pace](Pace value) { return [pace, value](std::int64_t) { *pace = value; }; };
+  auto* steps = app_->add_flag_function("--lockstep", set(Pace::kLockstep), meaning_of_lockstep);
+  auto* paced =
+      app_->add_flag_function("--paced", set(Pace::kPaced), "lock step, not faster than the clock");
+  auto* clock = app_->add_flag_function("--realtime", set(Pace::kRealtime), "run by the clock");
   clock->excludes(steps);
+  paced->excludes(steps)->excludes(clock);
 }
 
 Option CommandLine::priority(int* value) {

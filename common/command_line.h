@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "common/pace.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -59,8 +61,8 @@ class CommandLine {
 
   /// --bus NAME=ADDRESS, any number of times.
   Option buses(std::map<std::string, std::string>* addresses);
-  /// --lockstep or --realtime; neither leaves the value empty.
-  void pace(std::optional<bool>* lockstep, const std::string& meaning_of_lockstep);
+  /// --lockstep, --paced or --realtime; none leaves the value empty.
+  void pace(std::optional<Pace>* pace, const std::string& meaning_of_lockstep);
   /// --realtime-priority
   Option priority(int* value);
 

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "common/clock.h"
+#include "common/file_descriptor.h"
 
 namespace limber {
 namespace {
@@ -19,6 +22,31 @@ std::int64_t realtime_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
   return to_ns(now);
+}
+
+// The kernel begins to stamp some time after it was told to: on a busy machine after many
+// milliseconds, until which a stamp is the time of reading. Datagrams to oneself tell when.
+void wait_for_stamps() {
+  constexpr int kMost_ms = 1000;
+  const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_in self{};
+  self.sin_family = AF_INET;
+  self.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  auto* const address = reinterpret_cast<sockaddr*>(&self);
+  socklen_t size = sizeof(self);
+  const int on = 1;
+  // Where nothing goes through the loopback there is nothing to wait for.
+  if (bind(socket.get(), address, size) != 0 || getsockname(socket.get(), address, &size) != 0 ||
+      connect(socket.get(), address, size) != 0 ||
+      setsockopt(socket.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on)) != 0)
+    return;
+  ReceiveBatch batch(1);
+  for (int waited_ms = 0; waited_ms < kMost_ms; ++waited_ms) {
+    if (send(socket.get(), "", 1, MSG_DONTWAIT) != 1) return;
+    const std::int64_t sent_ns = realtime_ns();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (batch.receive(socket.get(), 1) == 1 && batch.wall_time_ns(0) <= sent_ns) return;
+  }
 }
 
 }  // namespace
@@ -121,6 +149,7 @@ int prepare_receive(int descriptor, int buffer_bytes) {
   // Where a kernel has no stamps or loss counter, receive time is "now" and losses stay unseen:
   // worth running without.
   setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
+  wait_for_stamps();
   setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
   if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &buffer_bytes, sizeof(int)) != 0) {
     setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof(int));

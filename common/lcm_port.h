@@ -49,6 +49,9 @@ class LcmPort {
 
   /// Keeps what is published and what is handled from now on; outlives this. Set-up only.
   void set_black_box(BlackBox* box) { black_box_ = box; }
+  /// Calls `heard(channel, message)` likewise. Set-up only.
+  using Listener = std::function<void(std::string_view, std::span<const std::uint8_t>)>;
+  void set_listener(Listener heard) { listener_ = std::move(heard); }
 
   /// Readable when something has arrived; -1 of a port for publishing alone.
   int descriptor() const noexcept { return sockets_.receiver.get(); }
@@ -71,8 +74,9 @@ class LcmPort {
     std::array<std::uint8_t, kMaxMessageBytes> bytes;
   };
 
-  void keep(std::string_view channel, Bytes message) noexcept {
+  void keep(std::string_view channel, Bytes message) {
     if (black_box_ != nullptr) black_box_->write(channel, message);
+    if (listener_) listener_(channel, message);
   }
   bool send(Bytes datagram) noexcept;
   void subscribe_bytes(std::string_view channel, int queue, std::function<void(Bytes)> handler);
@@ -87,6 +91,7 @@ class LcmPort {
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   BlackBox* black_box_ = nullptr;
+  Listener listener_;
   std::int64_t undecodable_ = 0;
   DatagramWriter writer_;
   DatagramBuffer received_{};

@@ -50,6 +50,7 @@ const volatile std::sig_atomic_t& stop_on_signals() {
 
 int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& run) {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is a write error as others
   start_log(line.name());
   try {
     const int code = line.parse(argc, argv) ? run() : kExitDone;

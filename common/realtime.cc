@@ -3,6 +3,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <cstring>
@@ -26,17 +27,28 @@ RealtimeGrant ask_for_realtime(int priority) {
   return grant;
 }
 
+std::string raise_priority(bool paced) {
+  constexpr int kNice = -15;
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  sched_param lowest{};
+  lowest.sched_priority = sched_get_priority_min(SCHED_RR);
+  if (paced && sched_setscheduler(0, SCHED_RR, &lowest) == 0) return "";
+  if (setpriority(PRIO_PROCESS, 0, kNice) == 0) return "";
+  return std::string("a raised priority is refused: ") + std::strerror(errno);
+}
+
+void sleep_until(std::int64_t time_ns) noexcept {
+  const timespec until{time_ns / 1'000'000'000, time_ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
 void PeriodicLoop::start() noexcept { deadline_ns_ = monotonic_ns() + period_ns_; }
 
 std::int64_t PeriodicLoop::wait() noexcept {
   const std::int64_t target = deadline_ns_;
   std::int64_t now = monotonic_ns();
-  if (target - spin_ns_ > now) {
-    const std::int64_t wake = target - spin_ns_;
-    const timespec until{wake / 1'000'000'000, wake % 1'000'000'000};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-    }
-  }
+  if (target - spin_ns_ > now) sleep_until(target - spin_ns_);
   while ((now = monotonic_ns()) < target) {
   }
   deadline_ns_ += period_ns_;

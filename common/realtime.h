@@ -16,6 +16,16 @@ struct RealtimeGrant {
 /// case. Set-up only.
 RealtimeGrant ask_for_realtime(int priority);
 
+/// For processes in lock step, whose handovers otherwise wait for every busy program of the
+/// machine. A run that sleeps between its cycles (`paced`): the lowest real-time priority where
+/// that is permitted, which counts against every session; else nice -15, which counts within its
+/// own where the kernel groups by session. Timer slack 1 ns in any case. Of the calling thread and
+/// those that it starts. Returns why not, "" if granted. Set-up only.
+std::string raise_priority(bool paced);
+
+/// Until the absolute CLOCK_MONOTONIC time. Allowed in the cycle.
+void sleep_until(std::int64_t time_ns) noexcept;
+
 /// Absolute deadlines on CLOCK_MONOTONIC at a fixed period. Sleeps until `spin_ns` before each
 /// deadline and spins the rest.
 class PeriodicLoop {

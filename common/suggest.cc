@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <numeric>
 #include <string_view>
 
@@ -41,6 +42,44 @@ bool lacks_unit(std::string_view word, std::string_view candidate) {
          candidate[word.size()] == '_' && is_unit(candidate.substr(word.size() + 1));
 }
 
+/// Common words, and the beginnings of those that limber has for them.
+struct Common {
+  std::string_view word;
+  std::array<std::string_view, 4> here;
+};
+constexpr std::array<Common, 7> kCommon = {{
+    {"stiffness", {"K_x_translation_", "K_x_rotation_", "K_q_", "gains"}},
+    {"spring", {"K_x_translation_", "K_x_rotation_", "K_q_", "transmission"}},
+    {"compliance", {"K_x_translation_", "K_x_rotation_", "K_q_", "gains"}},
+    {"impedance", {"law", "gains"}},
+    {"admittance", {"law", "gains"}},
+    {"controller", {"law", "gains"}},
+    {"speed", {"velocity_", "velocity_limit_"}},
+}};
+
+/// Words that begin as people's word lets expect, or that have it as one of their parts.
+std::vector<std::string> meant_by(std::string word, const std::vector<std::string>& known) {
+  constexpr std::size_t kMost = 3;
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::vector<std::string> meant;
+  for (const Common& common : kCommon) {
+    if (word.find(common.word) == std::string::npos) continue;
+    for (const std::string_view beginning : common.here) {
+      const auto found = std::ranges::find_if(known, [&](const std::string& one) {
+        return !beginning.empty() && one.starts_with(beginning);
+      });
+      if (found != known.end() && std::ranges::find(meant, *found) == meant.end())
+        meant.push_back(*found);
+    }
+  }
+  for (const std::string& one : known) {
+    if (word.size() > 3 && ("_" + one + "_").find("_" + word + "_") != std::string::npos)
+      meant.push_back(one);
+  }
+  if (meant.size() > kMost) meant.resize(kMost);
+  return meant;
+}
+
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
@@ -74,6 +113,15 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
            ("_" + one + "_").find("_" + word + "_") != std::string::npos;
   };
   return std::ranges::count_if(known, holds) == 1 ? find(holds) : "";
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  std::vector<std::string> meant;
+  if (const std::string near = nearest_word(word, known); !near.empty()) meant = {near};
+  if (meant.empty()) meant = meant_by(word, known);
+  std::string text;
+  for (const std::string& one : meant) text += (text.empty() ? "'" : " or '") + one + "'";
+  return text.empty() ? "" : "did you mean " + text + "?";
 }
 
 std::string joined(const std::vector<std::string>& words) {

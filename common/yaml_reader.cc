@@ -9,8 +9,10 @@
 #include <sstream>
 
 #include "common/config_error.h"
+#include "common/names.h"
 #include "common/parse_number.h"
 #include "common/suggest.h"
+#include "common/unit_hint.h"
 #include "common/yaml_strict.h"
 
 namespace limber {
@@ -143,9 +145,11 @@ double YamlMap::to_number(const std::string& key, const YAML::Node& node, Range 
     complain(node, key,
              fmt::format("{} is not a number; expected {}", found(node), wanted(allowed)));
   }
-  if (!(*value >= allowed.low && *value <= allowed.high))
+  if (!(*value >= allowed.low && *value <= allowed.high)) {
+    const std::string hint = unit_hint(key, *value, allowed.low, allowed.high);
     complain(node, key,
-             fmt::format("{} is out of range; expected {}", found(node), wanted(allowed)));
+             fmt::format("{} is out of range; expected {}{}", found(node), wanted(allowed), hint));
+  }
   return *value;
 }
 
@@ -193,6 +197,12 @@ std::string YamlMap::text(const std::string& key) const {
   return node.Scalar();
 }
 
+std::string YamlMap::name(const std::string& key) const {
+  const std::string name = text(key);
+  if (const std::string problem = name_problem(name); !problem.empty()) refuse(key, problem);
+  return name;
+}
+
 std::string YamlMap::text_or(const std::string& key, const std::string& otherwise) const {
   return has(key) ? text(key) : otherwise;
 }
@@ -201,10 +211,10 @@ std::string YamlMap::word(const std::string& key, const std::vector<std::string>
   const YAML::Node node = need(key, "one of: " + joined(allowed));
   std::string word = node.IsScalar() ? node.Scalar() : "";
   if (std::find(allowed.begin(), allowed.end(), word) == allowed.end()) {
-    const std::string near = nearest_word(word, allowed);
+    const std::string hint = did_you_mean(word, allowed);
     complain(node, key,
              fmt::format("found {}; expected one of: {}{}", found(node), joined(allowed),
-                         near.empty() ? "" : "; did you mean '" + near + "'?"));
+                         hint.empty() ? "" : "; " + hint));
   }
   return word;
 }
@@ -274,12 +284,25 @@ std::vector<std::string> YamlMap::keys() const {
   return names;
 }
 
+void YamlMap::leave_to(const std::string& choice, const std::vector<std::string>& keys) const {
+  const YAML::Node& readonly = node_;
+  for (const std::string& key : keys) {
+    const YAML::Node value = readonly[key];
+    if (value.IsDefined())
+      complain(value, key, fmt::format("{} belongs to {}; take it out", key, choice));
+  }
+}
+
+std::string YamlMap::note(const std::string& key, const std::string& what) const {
+  return ConfigError::at(*file_, line_of(key), path_to(key), what).what();
+}
+
 void YamlMap::finish() const {
   for (const auto& entry : node_) {
     const std::string key = entry.first.Scalar();
     if (std::find(known_->begin(), known_->end(), key) != known_->end()) continue;
-    const std::string near = nearest_word(key, *known_);
-    const std::string hint = near.empty() ? "" : fmt::format("did you mean '{}'? ", near);
+    const std::string near = did_you_mean(key, *known_);
+    const std::string hint = near.empty() ? "" : near + " ";
     throw ConfigError::at(
         *file_, entry.first.Mark().line + 1, path_,
         fmt::format("unknown key '{}'; {}allowed here: {}", key, hint, joined(*known_)));

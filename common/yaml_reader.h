@@ -45,6 +45,8 @@ class YamlMap {
   bool boolean_or(const std::string& key, bool otherwise) const;
   /// Text that is not empty.
   std::string text(const std::string& key) const;
+  /// Text that is fit for a name, see common/names.h.
+  std::string name(const std::string& key) const;
   std::string text_or(const std::string& key, const std::string& otherwise) const;
   /// One of the words; the message lists them.
   std::string word(const std::string& key, const std::vector<std::string>& allowed) const;
@@ -62,6 +64,11 @@ class YamlMap {
   std::vector<YamlMap> maps(const std::string& key) const;
   /// The keys of this mapping in file order (for maps from names to things); marks them as known.
   std::vector<std::string> keys() const;
+
+  /// Refuses these keys where they are: they belong to another `choice`, as "fd: true".
+  void leave_to(const std::string& choice, const std::vector<std::string>& keys) const;
+  /// "file:line: path: what", for a note about this mapping's key.
+  std::string note(const std::string& key, const std::string& what) const;
 
   /// Refuses keys that were never read: "unknown key 'x'; allowed here: ...".
   void finish() const;

@@ -41,6 +41,15 @@ const LoadedRobot& controllable(const LoadedRobot& robot) {
   return robot;
 }
 
+bool is_simulated(const Robot& robot, const ArmControllerOptions& options) {
+  return options.simulated || robot.on_virtual_buses();
+}
+
+TorqueCycle::Allowed allowed_on(const Robot& robot, const ArmControllerOptions& options) {
+  const bool simulated = is_simulated(robot, options);
+  return {.demonstrations = simulated, .unstable_gains = simulated && options.allow_unstable};
+}
+
 TorqueLimiter gravity_limiter(const Robot& robot) {
   VectorJ rate(robot.size());
   for (int i = 0; i < robot.size(); ++i)
@@ -67,14 +76,13 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
     : options_(options),
       supervisor_(robot.robot.size(), options.bridged_cycles, equipment_of(robot.robot),
                   PreloadWatch(robot.robot)),
-      cycle_(controllable(robot), options.law, options.simulated || robot.robot.on_virtual_buses()),
+      cycle_(controllable(robot), options.law, allowed_on(robot.robot, options)),
       start_watch_(robot.robot),
       load_watch_(robot.robot),
       encoder_watch_(robot.robot),
       energy_watch_(robot.robot),
       gravity_limiter_(gravity_limiter(robot.robot)),
-      info_(info_of(robot.robot, options.controller,
-                    options.simulated || robot.robot.on_virtual_buses())) {
+      info_(info_of(robot.robot, options.controller, is_simulated(robot.robot, options))) {
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -84,7 +92,7 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   const std::int64_t started_ns = options_.measure_time ? monotonic_ns() : 0;
   outcomes_.clear();
   const StateJudgement judgement = supervisor_.on_state(state);
-  if (judgement.repeated) return answer_;
+  if (judgement.ignored()) return answer_;
   if (judgement.new_session && timeline_) timeline_->rewind();
   if (judgement.new_session || judgement.silent) cycle_.restart();
   if (judgement.usable) {
@@ -128,7 +136,8 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
   if (const int joint = start_watch_.strayed(state); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
   const ArmTerms& terms = cycle_.terms();
-  const LoadWatch::Model model{cycle_.gravity(), terms.Cv, terms.M, terms.B, terms.J};
+  const LoadWatch::Model model{cycle_.gravity(), terms.Cv, terms.M,
+                               terms.B,          terms.J,  cycle_.walls()};
   if (const int joint = load_watch_.wrong(state, model, dt_s); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
   const EncoderWatch::Model arm{cycle_.gravity(), terms.CTv, terms.M_total};

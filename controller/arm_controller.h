@@ -36,6 +36,9 @@ struct ArmControllerOptions {
   bool measure_time = true;  ///< false in lock step: no clock is read
   /// Every bus is simulated, whatever robot.yaml says, as in the lab. False: by robot.yaml.
   bool simulated = false;
+  /// Gains that are known to be unstable are taken with a warning; of effect only where every bus
+  /// is simulated. For those who want to see what happens.
+  bool allow_unstable = false;
 };
 
 class ArmController {
@@ -44,8 +47,8 @@ class ArmController {
   ArmController(const LoadedRobot& robot, const ArmControllerOptions& options);
 
   /// One cycle: state in, torque out. Any state is answered: one that is stale, repeated (same seq:
-  /// the same answer again, nothing advances), from another session or not finite is handled as the
-  /// supervisor's table says. No allocation, lock, log or exception.
+  /// the same answer again, nothing advances; likewise a single one of another session) or not
+  /// finite is handled as the supervisor's table says. No allocation, lock, log or exception.
   const joint_command_t& step(const joint_state_t& state) noexcept;
 
   /// Messages of the timeline that are due are applied in step(), before the law runs. `hold` and
@@ -66,7 +69,9 @@ class ArmController {
   /// A request was refused before it came here.
   void count_refusal() noexcept { ++status_.requests_refused; }
   /// Messages so far that could not be read.
-  void count_undecodable(std::int64_t count) noexcept { status_.messages_undecodable = count; }
+  void count_undecodable(std::int64_t count) noexcept {
+    status_.messages_undecodable = count + supervisor_.states().doubted();
+  }
 
   /// Realtime only: no new JOINT_STATE for this long. The supervisor enters FAULT; the next answer
   /// carries it.

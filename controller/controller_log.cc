@@ -6,6 +6,7 @@
 #include <limber/joint_state_t.hpp>
 
 #include "common/problem_text.h"
+#include "controller/modes/supervisor.h"
 
 namespace limber {
 namespace {
@@ -58,6 +59,20 @@ void ControllerLog::note(const controller_status_t& status, std::int8_t driver_f
   } else {
     spdlog::warn("warning: {}", line);
   }
+}
+
+void ControllerLog::note(const controller_status_t& status, const joint_state_t& state) {
+  note(status, state.fault);
+  const std::optional<InitWatch::Finding> found = init_.note(status.mode, state);
+  if (!found) return;
+  const auto joint = static_cast<std::size_t>(found->joint);
+  spdlog::warn(
+      "warning: not ready after {:g} s: {} was late in {:.0f} % of the cycles, and {} states in a "
+      "row with every reply in time are needed; check its cable and the bus's errors, choose a "
+      "lower rate_hz or a longer reply_window_s",
+      1e-9 * static_cast<double>(InitWatch::kPatience_ns),
+      joint < joints_.size() ? joints_[joint] : "a joint", 100.0 * found->share,
+      controller::Supervisor::kSteadyStates);
 }
 
 void ControllerLog::note(const request_answer_t& answer) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/black_box/black_box.h"
+#include "controller/init_watch.h"
 #include "controller/request_outcome.h"
 
 namespace limber {
@@ -27,6 +28,8 @@ class ControllerLog {
   /// the black box, unless somebody wanted the drives to stop.
   /// `driver_fault`: joint_state_t FAULT_*, of the state that the status describes.
   void note(const controller_status_t& status, std::int8_t driver_fault);
+  /// The same of an answered state; also which joint keeps the controller in INIT.
+  void note(const controller_status_t& status, const joint_state_t& state);
   /// A line if the request was refused.
   static void note(const request_answer_t& answer);
 
@@ -35,6 +38,7 @@ class ControllerLog {
   BlackBox* black_box_;
   std::int8_t mode_ = controller_status_t::MODE_BOOT;
   std::int8_t reason_ = controller_status_t::REASON_NONE;
+  InitWatch init_;
 };
 
 }  // namespace limber

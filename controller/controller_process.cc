@@ -5,39 +5,21 @@
 #include <limits>
 
 #include "common/clock.h"
+#include "common/pace_text.h"
+#include "common/tell.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
 namespace {
 
-// Lock step keeps everything, realtime only needs the newest; the rest is counted as lost.
-constexpr int kRequestQueue = 32;
 // Then the next state is looked for: no flood of requests keeps it waiting.
 constexpr int kRequestsAtOnce = 2;
 // Without states requests are looked for so often.
 constexpr std::int64_t kRequestWait_ns = 5'000'000;
-constexpr std::int64_t kLogInterval_ns = 200'000'000;
-
-Refusal decide(ArmController* controller, const mode_request_t& request) noexcept {
-  return controller->on_mode(request);
-}
-Refusal decide(ArmController* controller, const compliance_goal_t& goal) noexcept {
-  return controller->on_goal(goal);
-}
-Refusal decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
-  return controller->on_gains(gains);
-}
-
-bool is_stop(const mode_request_t& request) noexcept {
-  return request.request == mode_request_t::REQUEST_STOP;
-}
-template <typename Request>
-bool is_stop(const Request&) noexcept {
-  return false;
-}
 
 RealtimeGrant request_realtime(const ControllerProcessOptions& options) {
-  if (options.lockstep || options.priority == 0) return {};
+  if (options.priority == 0) return {};
+  if (in_lockstep(options.pace)) return {.reason = raise_priority(options.pace == Pace::kPaced)};
   RealtimeGrant grant = ask_for_realtime(options.priority);
   if (!grant.reason.empty()) spdlog::warn("not real-time: {}; cycles may be late", grant.reason);
   return grant;
@@ -48,11 +30,11 @@ RealtimeGrant request_realtime(const ControllerProcessOptions& options) {
 ControllerProcess::ControllerProcess(ArmController* controller,
                                      const ControllerProcessOptions& options)
     : controller_(controller),
-      guard_(controller->status().controller),
       options_(options),
-      black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.lockstep)),
+      black_box_(open_black_box("controller-" + options.robot, options.rate_hz, options.pace)),
       log_(options.joints, black_box_.get()),
       user_(user_plane_url()),
+      desk_(controller, &user_),
       grant_(request_realtime(options)),
       arm_(arm_plane_url(), ArmPlaneEnd::kController) {
   arm_.subscribe<joint_state_t>(channels::kJointState,
@@ -61,15 +43,6 @@ ControllerProcess::ControllerProcess(ArmController* controller,
   user_.set_black_box(black_box_.get());
   require_local(user_plane_url(), options.moves_motors);
   require_local(arm_plane_url(), options.moves_motors);
-  subscribe<mode_request_t>(channels::kModeRequest);
-  subscribe<compliance_goal_t>(channels::kComplianceGoal);
-  subscribe<compliance_gains_t>(channels::kComplianceGains);
-}
-
-template <typename Request>
-void ControllerProcess::subscribe(const char* channel) {
-  user_.subscribe<Request>(channel, kRequestQueue,
-                           [this](const Request& request) { take(request); });
 }
 
 void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
@@ -79,9 +52,14 @@ void ControllerProcess::run(const volatile std::sig_atomic_t& stop) noexcept {
           : std::numeric_limits<std::int64_t>::max();
   last_state_ns_ = monotonic_ns();
   while (stop == 0 && monotonic_ns() < end_ns) {
-    arm_.wait(monotonic_ns() + kRequestWait_ns);
+    const std::int64_t until_ns = monotonic_ns() + kRequestWait_ns;
+    arm_.wait(until_ns);
+    const std::int64_t stall_ns = monotonic_ns() - until_ns;
     handle_waiting();
-    if (!options_.lockstep) check_silence();
+    if (in_lockstep(options_.pace)) continue;
+    if (stall_ns > kStall_ns)
+      spdlog::warn("warning: {}", stall_text("limber-controller", stall_ns));
+    check_silence();
   }
 }
 
@@ -94,7 +72,7 @@ void ControllerProcess::handle_waiting() noexcept {
 }
 
 void ControllerProcess::on_state(const joint_state_t& state) noexcept {
-  if (options_.lockstep) {
+  if (in_lockstep(options_.pace)) {
     answer(state);
   } else {
     newest_ = state;
@@ -114,8 +92,8 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
   if (torque.state_seq % channels::kRobotInfoEvery == 0)
     user_.publish(channels::kRobotInfo, controller_->robot_info());
   for (const RequestOutcome& outcome : controller_->timeline_outcomes())
-    publish_answer(outcome, state.time_ns);
-  log_.note(controller_->status(), state.fault);
+    desk_.answer(outcome, state.time_ns);
+  tell([&] { log_.note(controller_->status(), state); });
 }
 
 void ControllerProcess::publish_status() noexcept {
@@ -130,34 +108,6 @@ void ControllerProcess::check_silence() noexcept {
   controller_->on_silence();
   publish_status();
   log_.note(controller_->status(), joint_state_t::FAULT_NONE);
-}
-
-template <typename Request>
-Refusal ControllerProcess::judge(const Request& request) noexcept {
-  if (!is_stop(request)) {
-    const Refusal refusal = guard_.check(request.controller, request.client, request.seq);
-    if (refusal) {
-      controller_->count_refusal();
-      return refusal;
-    }
-  }
-  return decide(controller_, request);
-}
-
-template <typename Request>
-void ControllerProcess::take(const Request& request) noexcept {
-  publish_answer(outcome_of(request, judge(request)), controller_->status().time_ns);
-}
-
-void ControllerProcess::publish_answer(const RequestOutcome& outcome,
-                                       std::int64_t time_ns) noexcept {
-  const request_answer_t answer = answer_to(outcome, time_ns);
-  user_.publish(channels::kRequestAnswer, answer);
-  const std::int64_t now_ns = monotonic_ns();
-  const bool worth_a_line = outcome.refusal || outcome.refusal.warning != nullptr;
-  if (!worth_a_line || now_ns - logged_ns_ < kLogInterval_ns) return;  // all are in the status
-  logged_ns_ = now_ns;
-  ControllerLog::note(answer);
 }
 
 }  // namespace limber

@@ -15,14 +15,11 @@ namespace {
 
 using namespace limber;
 
-// Longer than the 50 ms that the driver bridges on virtual buses: the driver decides first.
-constexpr double kVirtualBridge_s = 0.06;
-
 struct Arguments {
   std::string robot;
   std::string scenario;
   std::string law = ArmControllerOptions().law;
-  std::optional<bool> lockstep;
+  std::optional<Pace> pace;
   std::int64_t controller = 0;
   int priority = 80;
   double duration_s = 0.0;
@@ -36,7 +33,7 @@ void define(CommandLine& line, Arguments* given) {
   line.text("--scenario", &given->scenario,
             "scenario file: names the robot, plays its timeline, lock step or not");
   line.text("--law", &given->law, "the law ACTIVE starts with");
-  line.pace(&given->lockstep, "answer every state in order, without a clock");
+  line.pace(&given->pace, "answer every state in order, without a clock");
   line.integer("--controller-id", &given->controller, 1, std::numeric_limits<std::int64_t>::max(),
                "names this run; default 1 in lock step, random in realtime");
   line.priority(&given->priority);
@@ -61,15 +58,11 @@ std::string robot_name(const Arguments& given) {
   return given.scenario.empty() ? "openarm" : scenario_robot(given.scenario);
 }
 
-ArmControllerOptions options_from(const Arguments& given, const Robot& robot, bool lockstep) {
+ArmControllerOptions options_from(const Arguments& given, bool lockstep) {
   ArmControllerOptions options;
   options.law = given.law;
   options.controller = run_id(given.controller, lockstep);
   options.measure_time = !lockstep;
-  // The driver bridges hiccups of this machine's scheduler on a virtual bus; so does the
-  // controller.
-  if (!lockstep && robot.on_virtual_buses())
-    options.bridged_cycles = static_cast<int>(kVirtualBridge_s * robot.rate_hz);
   return options;
 }
 
@@ -79,12 +72,15 @@ int run(const Arguments& given) {
   std::optional<Scenario> scenario;
   if (!given.scenario.empty())
     scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
-  const bool lockstep = given.lockstep.value_or(scenario ? scenario->lockstep : false);
-  const ArmControllerOptions options = options_from(given, robot.robot, lockstep);
+  const Pace wished = scenario && scenario->lockstep ? Pace::kLockstep : Pace::kRealtime;
+  const Pace pace = given.pace.value_or(wished);
+  const bool lockstep = in_lockstep(pace);
+  ArmControllerOptions options = options_from(given, lockstep);
+  options.allow_unstable = scenario && scenario->allow_unstable;
   ArmController controller(robot, options);
   if (scenario) controller.set_timeline(&scenario->timeline);
   ControllerProcess process(
-      &controller, {lockstep, given.duration_s, given.priority, !robot.robot.on_virtual_buses(),
+      &controller, {pace, given.duration_s, given.priority, !robot.robot.on_virtual_buses(),
                     robot.robot.joint_names(), robot.robot.name, robot.robot.rate_hz});
   const auto& stop = stop_on_signals();
   spdlog::info("{}: {} joints, law {}, {}, controller {}", robot.robot.name, robot.robot.size(),

@@ -161,8 +161,10 @@ Refusal TorqueCycle::set_gains(const compliance_gains_t& message, Activity activ
   if (const char* reason = gains_.check_springs(candidate_, wanted, goals_.goal(), arm_)) {
     return {request_answer_t::REFUSED_SPRINGS, reason};
   }
+  if (const char* reason = estimator_.check(candidate_.settings, arm_.terms()))
+    return {request_answer_t::REFUSED_GAINS_RANGE, reason};
   const Doubts doubts = doubts_about(candidate_, wanted);
-  if (!simulated_ && doubts.unstable != nullptr) {
+  if (!allow_unstable_ && doubts.unstable != nullptr) {
     return {request_answer_t::REFUSED_UNSTABLE, doubts.unstable};
   }
 
@@ -264,11 +266,11 @@ VectorJ TorqueCycle::friction_torque(GoalType type) noexcept {
   return observers_.friction(v_d, arm_.point().v, arm_.terms());
 }
 
-TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, bool simulated)
+TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, Allowed allowed)
     : state_(robot.robot.size()),
       arm_(robot),
-      laws_(robot, law, simulated),
-      goals_(robot, &arm_.model(), simulated),
+      laws_(robot, law, allowed.demonstrations),
+      goals_(robot, &arm_.model(), allowed.demonstrations),
       gains_(robot.robot, arm_.springs()),
       observers_(robot),
       output_(robot.robot),
@@ -285,9 +287,10 @@ TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, bool 
              .tau_friction = VectorJ::Zero(robot.robot.size()),
              .tau_sent = VectorJ::Zero(robot.robot.size()),
              .selected_law = laws_.selected()},
-      check_(robot.robot.size(), simulated),
-      stability_(1.0 / robot.robot.rate_hz),
-      simulated_(simulated),
+      check_(robot.robot.size(), allowed.demonstrations),
+      stability_(1.0 / robot.robot.rate_hz, robot.robot.joint_names()),
+      estimator_(robot.robot, output_.torque_limit()),
+      allow_unstable_(allowed.unstable_gains),
       requested_fields_(limber::default_gains(robot.robot)),
       requested_(gains_.target()),
       candidate_(requested_),

@@ -23,6 +23,7 @@
 #include "controller/goals/goal_tracker.h"
 #include "controller/laws/law_bank.h"
 #include "controller/model/arm_view.h"
+#include "controller/observers/estimator_check.h"
 #include "controller/observers/observers.h"
 #include "controller/output/passivity_guard.h"
 #include "controller/output/torque_output.h"
@@ -42,9 +43,13 @@ enum class Activity {
 /// After construction no member allocates, locks, logs or throws; all may be called in the cycle.
 class TorqueCycle {
  public:
-  /// `simulated`: every bus is; only then demonstrations of mistakes are allowed. Throws
-  /// ConfigError.
-  TorqueCycle(const LoadedRobot& robot, const std::string& law, bool simulated);
+  struct Allowed {
+    bool demonstrations =
+        false;  ///< of mistakes, and goals out of reach: where every bus is simulated
+    bool unstable_gains = false;
+  };
+  /// Throws ConfigError.
+  TorqueCycle(const LoadedRobot& robot, const std::string& law, Allowed allowed);
 
   /// A state that has been judged usable.
   void measure(const joint_state_t& message) noexcept;
@@ -71,6 +76,8 @@ class TorqueCycle {
   VectorJ spring_torque() const noexcept { return arm_.spring_torque(state_); }
   VectorJ link_gravity() noexcept { return arm_.link_gravity(state_); }
   const MatrixJ& link_inertia() noexcept { return arm_.link_inertia(state_); }
+  /// Of the soft walls at the joints' ends in the last step(), N m.
+  const VectorJ& walls() const noexcept { return output_.walls(); }
   const CycleTrace& trace() const noexcept { return trace_; }
 
  private:
@@ -107,7 +114,8 @@ class TorqueCycle {
   GainsCheck check_;
   StabilityCheck stability_;
   DampingCheck damping_;
-  bool simulated_;                       // every bus is
+  EstimatorCheck estimator_;
+  bool allow_unstable_;
   compliance_gains_t requested_fields_;  // of the last accepted request, merged; no parameters
   Gains requested_;                      // the same, with parameters
   Gains candidate_;                      // those of a request that is not accepted yet

@@ -1,5 +1,7 @@
 #include "drivers/arm_driver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +15,6 @@ namespace limber {
 namespace {
 
 constexpr double kShutDownBraking_s = 0.3;
-constexpr float kMostTemperature_degC = 1000.0F;
 constexpr int kBatchesPerPoll = 16;  // a flooded bus must not keep the cycle
 
 std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& buses,
@@ -23,6 +24,10 @@ std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& bus
   for (std::size_t b = 0; b < buses.size(); ++b)
     ends.emplace_back(buses[b], robot.buses[b], checked_bus_load(robot, static_cast<int>(b)));
   return ends;
+}
+
+std::uint16_t short_of(std::int64_t number) noexcept {
+  return static_cast<std::uint16_t>(std::clamp<std::int64_t>(number, 0, 0xFFFF));
 }
 
 const char* text_of(Contradiction contradiction) noexcept {
@@ -53,9 +58,10 @@ ArmDriver::ArmDriver(const Robot& robot, const std::vector<CanBus*>& buses,
       supervisor_(robot),
       gate_(gate_limits(robot, options.session)),
       controller_watch_(options.bridged_cycles),
-      window_ns_(reply_window_ns_of(robot, options.lockstep)),
+      window_ns_(reply_window_ns_of(robot)),
       least_round_trip_ns_(options.lockstep ? least_round_trip_ns_of(robot) : 0),
-      cycle_(options.first_cycle - 1) {
+      cycle_(options.first_cycle - 1),
+      simulated_(!options.lockstep && robot.on_virtual_buses()) {
   drives_.add_bus_frames(&buses_);
   if (robot.has_tip_sensor) tip_sensor_.emplace(robot.tip_sensor, options.bridged_cycles);
   if (robot.emergency_stop) emergency_stop_.emplace(*robot.emergency_stop, robot.rate_hz);
@@ -111,6 +117,7 @@ void ArmDriver::set_receive_filters() {
     if (lockstep_)
       filters.insert(filters.end(), {exactly(lockstep::kTickId), exactly(lockstep::kTockId)});
     buses_[b].set_receive_filters(filters);
+    buses_[b].count_from_here();
   }
 }
 
@@ -143,7 +150,8 @@ void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcep
   } else if (!drives_.receive(bus, frame, late)) {
     buses_[bus].count_foreign();
     // This driver's own frames do not come back to it.
-    if (drives_.is_foreign_command(bus, frame)) drives_.apply(DriveEvent::kForeignCommand);
+    const int commanded = drives_.note_foreign(bus, frame);
+    if (commanded >= 0) drives_.apply(DriveEvent::kForeignCommand, commanded);
   }
 }
 
@@ -201,17 +209,28 @@ GateSituation ArmDriver::situation() const noexcept {
 }
 
 std::uint16_t ArmDriver::fault_detail() const noexcept {
-  if (state_.fault == joint_state_t::FAULT_DRIVE_ERROR && state_.fault_joint >= 0)
-    return static_cast<std::uint16_t>(state_.drive_status[state_.fault_joint]);
-  if (state_.fault == joint_state_t::FAULT_FEEDBACK && state_.fault_joint >= 0)
-    return static_cast<std::uint16_t>(
-        drives_.joints()[static_cast<std::size_t>(state_.fault_joint)].contradiction());
-  if (state_.fault == joint_state_t::FAULT_TEMPERATURE && state_.fault_joint >= 0)
-    return static_cast<std::uint16_t>(std::clamp(
-        std::round(state_.temperature_degC[state_.fault_joint]), 0.0F, kMostTemperature_degC));
-  if (state_.fault == joint_state_t::FAULT_COMMAND_REFUSED)
-    return static_cast<std::uint16_t>(refused_for_);
-  if (state_.fault != joint_state_t::FAULT_BUS) return 0;
+  const auto joint = static_cast<std::size_t>(std::max<int>(state_.fault_joint, 0));
+  const bool of_joint = state_.fault_joint >= 0;
+  switch (state_.fault) {
+    case joint_state_t::FAULT_DRIVE_ERROR:
+      return of_joint ? static_cast<std::uint16_t>(state_.drive_status[joint]) : 0;
+    case joint_state_t::FAULT_FEEDBACK:
+      return of_joint ? static_cast<std::uint16_t>(drives_.joints()[joint].contradiction()) : 0;
+    case joint_state_t::FAULT_TEMPERATURE:
+      if (!of_joint) return 0;
+      return static_cast<std::uint16_t>(std::clamp<double>(
+          std::round(state_.temperature_degC[joint]), 0.0, DriveWarning::kMost_degC));
+    case joint_state_t::FAULT_REPLY_LOST:
+      return short_of(drives_.silent_cycles(state_.fault_joint));
+    case joint_state_t::FAULT_OVERRUN:
+      return short_of(overrun_ns_ / 1'000'000);
+    case joint_state_t::FAULT_COMMAND_REFUSED:
+      return static_cast<std::uint16_t>(refused_for_);
+    case joint_state_t::FAULT_BUS:
+      break;
+    default:
+      return 0;
+  }
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     if (buses_[b].lost()) return static_cast<std::uint16_t>(b << 8U | buses_[b].state());
   }
@@ -219,16 +238,45 @@ std::uint16_t ArmDriver::fault_detail() const noexcept {
 }
 
 std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) const {
-  if (fault == joint_state_t::FAULT_DRIVE_ERROR && joint >= 0)
-    return drives_.error_text(static_cast<std::size_t>(joint), detail);
-  if (fault == joint_state_t::FAULT_TEMPERATURE && joint >= 0)
-    return drives_.heat_text(static_cast<std::size_t>(joint), detail);
-  if (detail == 0) return "";
-  if (fault == joint_state_t::FAULT_FEEDBACK) return text_of(static_cast<Contradiction>(detail));
+  switch (fault) {
+    case joint_state_t::FAULT_CONFIGURATION:
+      return drives_.configuration_problem();
+    case joint_state_t::FAULT_DRIVE_ERROR:
+      return joint < 0 ? "" : drives_.error_text(static_cast<std::size_t>(joint), detail);
+    case joint_state_t::FAULT_TEMPERATURE:
+      return joint < 0 ? "" : drives_.heat_text(static_cast<std::size_t>(joint), detail);
+    case joint_state_t::FAULT_REPLY_INVALID:
+    case joint_state_t::FAULT_FOREIGN_COMMAND:
+      return joint < 0 ? "" : drives_.address_text(joint);
+    case joint_state_t::FAULT_REPLY_LOST:
+      return lost_text(joint, detail);
+    case joint_state_t::FAULT_FEEDBACK:
+      return text_of(static_cast<Contradiction>(detail));
+    default:
+      return detail == 0 ? "" : detail_text(fault, detail);
+  }
+}
+
+std::string ArmDriver::lost_text(int joint, int cycles) const {
+  const std::string who = drives_.address_text(joint);
+  const std::string often = "ten replies within a second missing or impossible";
+  std::string text = cycles < 2 ? fmt::format("{}: {}", who, often)
+                                : fmt::format("{}{}: no reply for {} cycles",
+                                              joint < 0 ? "all drives, " : "", who, cycles);
+  if (simulated_)
+    text += "; these drives are simulated: see whether limber-sim ended or stood still";
+  return text;
+}
+
+std::string ArmDriver::detail_text(int fault, std::uint16_t detail) const {
+  if (fault == joint_state_t::FAULT_OVERRUN)
+    return fmt::format("limber-driver stood still, or took, {} ms in a cycle of {:g} ms", detail,
+                       1e3 / rate_hz_);
   if (fault == joint_state_t::FAULT_COMMAND_REFUSED) {
     const Problem* problem = find_problem(problems::kGate, detail);
     return problem == nullptr ? "" : std::string(problem->code) + ": " + problem->what;
   }
+  if (fault != joint_state_t::FAULT_BUS) return "";
   const std::string name = buses_[std::min<std::size_t>(detail >> 8U, buses_.size() - 1)].name();
   const Problem* problem = find_problem(problems::kBus, detail & 0xFFU);
   return problem == nullptr ? "" : name + ": " + problem->what + "; " + problem->remedy;

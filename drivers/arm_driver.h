@@ -55,7 +55,8 @@ class ArmDriver {
   /// advancing twice.
   void repeat_tick() noexcept;
   /// From here on the buses need receive only what drives and tip sensor of this arm send, and what
-  /// anybody else sends to them. Before the first cycle; set-up only.
+  /// anybody else sends to them; what was exchanged before is not counted. Before the first cycle;
+  /// set-up only.
   void set_receive_filters();
   /// No reply is faster than this: what comes sooner after the start of a cycle answers the command
   /// before. In lock step it is computed; in real time it is 0 until it has been measured.
@@ -73,7 +74,11 @@ class ArmDriver {
   std::int64_t controller() const noexcept { return gate_.memory().controller; }
 
   /// Too many cycles took longer than their period: the drives hold the arm by themselves.
-  void report_overruns() noexcept { drives_.apply(DriveEvent::kOverrun); }
+  /// `longest_ns`: of them.
+  void report_overruns(std::int64_t longest_ns = 0) noexcept {
+    overrun_ns_ = longest_ns;
+    drives_.apply(DriveEvent::kOverrun);
+  }
 
   /// Ends the session for good: drives that are enabled brake for 0.3 s, then are disabled, and
   /// commands have no effect any more. Keep cycling until shut_down() (true when every drive that
@@ -100,7 +105,8 @@ class ArmDriver {
   }
   /// What lies behind the fault of the last state: of a drive's error its drive_status, of
   /// contradicting feedback a Contradiction, of heat its temperature, of a lost bus its number << 8
-  /// and BUS_*, of refused commands the last VERDICT_*; else 0. Allowed in the cycle.
+  /// and BUS_*, of refused commands the last VERDICT_*, of overruns the longest in ms, of lost
+  /// replies the cycles without one; else 0. Allowed in the cycle.
   std::uint16_t fault_detail() const noexcept;
   /// The same in words; "" if nothing is known beyond the fault. Allocates: for messages.
   std::string fault_text(int fault, int joint, std::uint16_t detail) const;
@@ -114,6 +120,8 @@ class ArmDriver {
   void advance_shut_down() noexcept;
   void check_emergency_stop() noexcept;
   GateSituation situation() const noexcept;
+  std::string lost_text(int joint, int cycles) const;
+  std::string detail_text(int fault, std::uint16_t detail) const;
 
   double rate_hz_;
   int motors_;
@@ -133,6 +141,8 @@ class ArmDriver {
   std::int64_t time_ns_ = 0;
   std::int64_t stamp_ns_ = 0;  ///< start of the cycle, in the clock of the frames' stamps
   int refused_for_ = driver_status_t::VERDICT_ACCEPTED;  ///< the third command in 0.1 s
+  std::int64_t overrun_ns_ = 0;                          ///< the longest of the last in a row
+  bool simulated_;  ///< in real time on virtual buses: another process of this machine
   bool shutting_down_ = false;
   joint_state_t state_{};  ///< as published last
 };

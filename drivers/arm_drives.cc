@@ -43,6 +43,7 @@ ArmDrives::ArmDrives(const Robot& robot, int bridged_cycles)
 void ArmDrives::apply(DriveEvent event, int joint) noexcept {
   const DriveState from = machine_.state();
   if (!machine_.apply(event, joint)) return;
+  enabling_ended_.store(event == DriveEvent::kEnableTimedOut, std::memory_order_relaxed);
   cycles_in_state_ = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i)
     joints_[i].enter(machine_.state(), torque_present_[i], {tau_gravity_[i], torque_[i].preload});
@@ -106,10 +107,24 @@ std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) cons
 std::string ArmDrives::error_text(std::size_t joint, std::uint16_t status) const {
   const std::vector<Drive>& motors = joints_[joint].motors();
   const auto changed = std::ranges::find_if(motors, &Drive::setting_changed);
-  if (changed == motors.end()) return motors.front().link().status_text(status);
+  const std::string reported = motors.front().link().status_text(status);
+  if (enabling_ended_.load(std::memory_order_relaxed))
+    return "did not enable in time (its state is " + reported + ")";
+  if (changed == motors.end()) return reported;
   return changed->changed_setting() +
          ": changed past the bus while the drive was on; end what else writes to it, or "
          "find out why it restarted";
+}
+
+std::string ArmDrives::address_text(int joint) const {
+  const auto of_motor = [](const ArmJoint& of) {
+    const JointConfig& config = of.motors().front().link().joint();
+    return fmt::format("{} ({})", config.name,
+                       traits_of(config.drive.protocol).address(config.drive));
+  };
+  if (joint >= 0) return of_motor(joints_[static_cast<std::size_t>(joint)]);
+  return joints_.size() == 1 ? of_motor(joints_.front())
+                             : of_motor(joints_.front()) + " to " + of_motor(joints_.back());
 }
 
 std::string ArmDrives::heat_text(std::size_t joint, int temperature_degC) const {
@@ -183,6 +198,11 @@ std::vector<CanFilter> ArmDrives::receive_filters(std::size_t bus) const {
   return filters;
 }
 
+std::int64_t ArmDrives::silent_cycles(int joint) const noexcept {
+  if (joint >= 0) return joints_[static_cast<std::size_t>(joint)].missing_cycles();
+  return std::ranges::min_element(joints_, {}, &ArmJoint::silent_cycles)->silent_cycles();
+}
+
 Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   for (ArmJoint& joint : joints_) {
     for (Drive& motor : joint.motors()) {
@@ -192,14 +212,16 @@ Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   return nullptr;
 }
 
-bool ArmDrives::is_foreign_command(std::size_t bus, const CanFrame& frame) const noexcept {
-  for (const ArmJoint& joint : joints_) {
-    for (const Drive& motor : joint.motors()) {
+int ArmDrives::note_foreign(std::size_t bus, const CanFrame& frame) noexcept {
+  int commanded = -1;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    for (Drive& motor : joints_[i].motors()) {
       if (motor.bus() != bus) continue;
-      if (motor.link().is_foreign_command(frame)) return true;
+      motor.note_foreign(frame);
+      if (motor.link().is_foreign_command(frame)) commanded = static_cast<int>(i);
     }
   }
-  return false;
+  return commanded;
 }
 
 bool ArmDrives::receive(std::size_t bus, const CanFrame& frame, bool late) noexcept {

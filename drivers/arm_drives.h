@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limber/driver_status_t.hpp>
 #include <limber/joint_command_t.hpp>
@@ -50,6 +51,8 @@ class ArmDrives {
   /// every thread. Allocates: for messages.
   std::string error_text(std::size_t joint, std::uint16_t status) const;
 
+  /// "joint7 (id 0x7)"; of no joint (-1) the first and the last. Likewise.
+  std::string address_text(int joint) const;
   /// How hot a joint is, and its limit, in words. Likewise.
   std::string heat_text(std::size_t joint, int temperature_degC) const;
 
@@ -62,16 +65,19 @@ class ArmDrives {
   /// In ON: every kSettingCycles cycles one motor of each bus, in turn, is asked for a setting.
   void ask_for_settings(std::vector<BusEnd>* buses) noexcept;
 
+  /// Cycles without a reply of a joint, of all joints for -1. Allowed in the cycle.
+  std::int64_t silent_cycles(int joint) const noexcept;
   /// Before what has come since the last cycle is received.
   void begin_cycle() noexcept;
 
   // --- from the drives ------------------------------------------------------------------------
 
-  /// What receive() and is_foreign_command() take of one bus. Allocates: set-up only.
+  /// What receive() and note_foreign() take of one bus. Allocates: set-up only.
   std::vector<CanFilter> receive_filters(std::size_t bus) const;
 
-  /// The frame, of somebody else, commands a drive of this arm or writes its settings.
-  bool is_foreign_command(std::size_t bus, const CanFrame& frame) const noexcept;
+  /// A frame of somebody else. Returns the joint whose drive it commands, or whose settings it
+  /// writes; -1: none of this arm.
+  int note_foreign(std::size_t bus, const CanFrame& frame) noexcept;
   /// False if the frame is of no drive of this arm. `late`: it came after its cycle.
   bool receive(std::size_t bus, const CanFrame& frame, bool late) noexcept;
   /// End of the cycle: replies that are missing now are missing.
@@ -104,7 +110,8 @@ class ArmDrives {
 
   std::vector<ArmJoint> joints_;
   DriveStateMachine machine_;
-  int settling_cycles_;  ///< FALLBACK: damping before the position is held
+  std::atomic<bool> enabling_ended_ = false;  ///< by its time-out; read by the thread that logs
+  int settling_cycles_;                       ///< FALLBACK: damping before the position is held
   std::int64_t cycles_in_state_ = 0;
   std::array<int, kMaxBuses> motors_on_bus_{};
   std::array<JointTorque, kMaxJoints> torque_{};          ///< accepted last, sent next

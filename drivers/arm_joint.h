@@ -88,6 +88,10 @@ class ArmJoint {
   }
   /// The first that one of its motors has.
   Contradiction contradiction() const noexcept;
+  /// Cycles since all of its motors last replied.
+  std::int64_t missing_cycles() const noexcept {
+    return std::max(motors_.front().missing_cycles(), motors_.back().missing_cycles());
+  }
   /// Cycles since one of its motors last replied.
   std::int64_t silent_cycles() const noexcept;
   /// 0.02 rad beyond a position limit; of two motors each also beyond what it may wind up.
@@ -112,7 +116,9 @@ class ArmJoint {
   std::int32_t age_cycles() const noexcept;
   std::int32_t flags() const noexcept;
   bool two_motors() const noexcept { return motors_.size() == 2; }
-  bool fresh() const noexcept { return age_cycles() == 0; }
+  bool fresh() const noexcept {
+    return age_cycles() == 0 && std::ranges::all_of(motors_, &Drive::credible);
+  }
   const JointLink& first() const noexcept { return motors_.front().link(); }
   const JointLink& second() const noexcept { return motors_.back().link(); }
 

@@ -118,10 +118,14 @@ double reply_window_s(const Robot& robot) {
   const double period_s = 1.0 / robot.rate_hz;
   double latest_s = 0.0;
   for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus) {
+    const double given_s = robot.buses[static_cast<std::size_t>(bus)].reply_window_s;
     const double margin_s = std::max(0.05 * period_s, foreign_frame_s(robot, bus));
-    latest_s = std::max(latest_s, predicted_end_s(robot, bus) + margin_s);
+    const double predicted_s = predicted_end_s(robot, bus) + margin_s;
+    latest_s = std::max(
+        latest_s,
+        given_s > 0.0 ? given_s : std::clamp(predicted_s, 0.6 * period_s, kLatestReply * period_s));
   }
-  return std::clamp(latest_s, 0.6 * period_s, kLatestReply * period_s);
+  return latest_s;
 }
 
 double highest_rate_hz(const Robot& robot, int bus) {
@@ -130,6 +134,14 @@ double highest_rate_hz(const Robot& robot, int bus) {
 }
 
 double checked_bus_load(const Robot& robot, int bus) {
+  const double window_s = robot.buses[static_cast<std::size_t>(bus)].reply_window_s;
+  if (window_s > kLatestReply / robot.rate_hz) {
+    throw ConfigError::at(
+        robot.name, 0,
+        "buses." + robot.buses[static_cast<std::size_t>(bus)].name + ".reply_window_s",
+        fmt::format("is {:g}; at {:g} Hz {:g} at most are allowed: the rest is the controller's",
+                    window_s, robot.rate_hz, kLatestReply / robot.rate_hz));
+  }
   if (robot.rate_hz <= highest_rate_hz(robot, bus)) return expected_bus_load(robot, bus);
   const BusConfig& config = robot.buses[static_cast<std::size_t>(bus)];
   const bool classic = !config.fd;

@@ -25,15 +25,16 @@ double least_round_trip_s(const Robot& robot, int bus);
 /// controller's.
 inline constexpr double kLatestReply = 0.9;
 
-/// How long the driver waits for replies, s after the start of a cycle: the predicted end on the
-/// slowest bus and a twentieth of the period, or one frame of another device if that is longer;
-/// within 0.6 and 0.9 of the period.
+/// How long the driver waits for replies, s after the start of a cycle, on the slowest bus: its
+/// reply_window_s of robot.yaml; else the predicted end and a twentieth of the period, or one frame
+/// of another device if that is longer, within 0.6 and 0.9 of the period.
 double reply_window_s(const Robot& robot);
 /// Rate at which the predicted end is the latest that the driver waits for, Hz; infinite if no
 /// motor is on the bus.
 double highest_rate_hz(const Robot& robot, int bus);
 
-/// expected_bus_load(); throws ConfigError if the robot's rate is above highest_rate_hz().
+/// expected_bus_load(); throws ConfigError if the robot's rate is above highest_rate_hz(), or the
+/// bus's reply_window_s is longer than kLatestReply.
 double checked_bus_load(const Robot& robot, int bus);
 
 }  // namespace limber

@@ -48,9 +48,8 @@ void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t sessio
   if (session == 0) refuse("session", "0 names no session");
 }
 
-std::int64_t reply_window_ns_of(const Robot& robot, bool lockstep) noexcept {
-  const bool timeless = !lockstep && robot.on_virtual_buses();
-  return std::llround(1e9 * (timeless ? 0.6 / robot.rate_hz : reply_window_s(robot)));
+std::int64_t reply_window_ns_of(const Robot& robot) noexcept {
+  return std::llround(1e9 * reply_window_s(robot));
 }
 
 std::int64_t least_round_trip_ns_of(const Robot& robot) noexcept {

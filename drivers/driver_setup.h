@@ -21,9 +21,8 @@ int drive_watchdog_cycles_of(const Robot& robot) noexcept;
 /// A time in whole cycles, rounded up; at least one.
 int cycles_of(double seconds, double rate_hz) noexcept;
 
-/// See ArmDriver and bus_load.h. A bus without bit time (virtual, in real time) needs no window
-/// beyond 0.6 of the period.
-std::int64_t reply_window_ns_of(const Robot& robot, bool lockstep) noexcept;
+/// See ArmDriver and bus_load.h.
+std::int64_t reply_window_ns_of(const Robot& robot) noexcept;
 /// Over all buses, ns.
 std::int64_t least_round_trip_ns_of(const Robot& robot) noexcept;
 

@@ -9,7 +9,7 @@ namespace {
 
 struct Arguments {
   limber::DriverProcessOptions options;
-  std::optional<bool> lockstep;
+  std::optional<limber::Pace> pace;
 };
 
 void define(limber::CommandLine& line, Arguments* given) {
@@ -19,7 +19,7 @@ void define(limber::CommandLine& line, Arguments* given) {
   line.buses(&options.buses);
   line.number("--rate", &options.rate_hz, 1.0, 20000.0,
               "cycles per second instead of robot.yaml's");
-  line.pace(&given->lockstep, "no clock: simulator and controller set the pace");
+  line.pace(&given->pace, "no clock: simulator and controller set the pace");
   line.integer("--session", &options.session, 1, kMost,
                "number of this run (default: random; lock step: 1)");
   line.number("--duration", &options.duration_s, 1e-3, 1e8, "stop after so much arm time, s");
@@ -30,8 +30,8 @@ void define(limber::CommandLine& line, Arguments* given) {
 }
 
 int run(Arguments given) {
-  given.options.lockstep = given.lockstep.value_or(false);
-  given.options.session = limber::run_id(given.options.session, given.options.lockstep);
+  given.options.pace = given.pace.value_or(limber::Pace::kRealtime);
+  given.options.session = limber::run_id(given.options.session, in_lockstep(given.options.pace));
   return limber::DriverProcess(given.options).run(limber::stop_on_signals());
 }
 

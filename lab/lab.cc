@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/run_id.h"
-#include "lcmtypes/channels.h"
+#include "drivers/can/lockstep_frame.h"
 
 namespace limber {
 
@@ -29,15 +29,29 @@ Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& o
       std::make_unique<Simulator>(options.simulated != nullptr ? *options.simulated : robot,
                                   arm_ends, simulator_options(scenario));
   simulator_->set_timeline(&scenario.timeline);
+  begin(driver_ends);
   ArmDriverOptions driver{.session = kLockstepRunId, .lockstep = true};
   driver.first_cycle = first_cycle_;
   driver_ = std::make_unique<ArmDriver>(robot.robot, driver_ends, driver);
+  driver_->set_receive_filters();
   ArmControllerOptions controller;
   controller.controller = kLockstepRunId;
   controller.measure_time = false;
   controller.simulated = true;
+  controller.allow_unstable = scenario.allow_unstable;
   controller_ = std::make_unique<ArmController>(robot, controller);
   controller_->set_timeline(&scenario.timeline);
+}
+
+// limber-driver has met the drives before time runs: what they sent of themselves is gone.
+void Lab::begin(const std::vector<CanBus*>& driver_ends) {
+  for (CanBus* bus : driver_ends) bus->send(lockstep::tick(lockstep::kStandstill));
+  simulator_->poll();
+  CanFrame frame;
+  for (CanBus* bus : driver_ends) {
+    while (bus->receive(std::span(&frame, 1)) == 1) {
+    }
+  }
 }
 
 std::vector<std::unique_ptr<CanBus>> Lab::attach() {
@@ -64,8 +78,6 @@ void Lab::step() noexcept {
 
 const driver_status_t& Lab::driver_status() noexcept {
   driver_->fill_status(&driver_status_);
-  driver_status_.seq = cycle_ / channels::kDriverStatusEvery;
-  driver_status_.lockstep = 1;
   return driver_status_;
 }
 

@@ -64,6 +64,8 @@ class Lab {
   ArmDriver& driver() noexcept { return *driver_; }
 
  private:
+  void begin(const std::vector<CanBus*>& driver_ends);
+
   std::vector<std::unique_ptr<MemoryBus>> buses_;
   std::vector<std::unique_ptr<CanBus>> ends_;
   std::unique_ptr<Simulator> simulator_;

@@ -15,7 +15,7 @@ struct Arguments {
   std::string robot;
   std::string scenario;
   std::map<std::string, std::string> buses;
-  std::optional<bool> lockstep;
+  std::optional<Pace> pace;
   std::string integrator;
   double step_s = 0.0;
   bool no_friction = false;
@@ -31,7 +31,7 @@ void define(CommandLine& line, Arguments* given) {
   line.text("--scenario", &given->scenario,
             "scenario file: integrator, friction, start, lock step, and what happens when");
   line.buses(&given->buses);
-  line.pace(&given->lockstep, "advance by the driver's TICKs");
+  line.pace(&given->pace, "advance by the driver's TICKs");
   line.text("--integrator", &given->integrator, "ode or reference (default: ode)")
       .one_of({"ode", "reference"});
   line.number("--step", &given->step_s, 1e-6, 0.01,
@@ -46,9 +46,11 @@ void define(CommandLine& line, Arguments* given) {
 }
 
 SimProcessOptions options_from(const Arguments& given, const Scenario& scenario) {
-  SimProcessOptions options{simulator_options(scenario), given.duration_s, given.priority};
+  const Pace wished = scenario.lockstep ? Pace::kLockstep : Pace::kRealtime;
+  SimProcessOptions options{simulator_options(scenario), given.pace.value_or(wished),
+                            given.duration_s, given.priority};
   SimulatorOptions& simulator = options.simulator;
-  simulator.lockstep = given.lockstep.value_or(scenario.lockstep);
+  simulator.lockstep = in_lockstep(options.pace);
   if (given.integrator == "ode") simulator.integrator = Integrator::kOde;
   if (given.integrator == "reference") simulator.integrator = Integrator::kReference;
   if (given.step_s != 0.0) simulator.step_s = given.step_s;

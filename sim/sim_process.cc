@@ -21,8 +21,11 @@ namespace {
 constexpr std::int64_t kPatience_ns = 100'000'000;
 
 std::string schedule(const SimProcessOptions& options) {
-  if (options.simulator.lockstep) return "lock step";
   const int priority = options.priority;
+  if (in_lockstep(options.pace)) {
+    if (priority != 0) raise_priority(options.pace == Pace::kPaced);
+    return "lock step";
+  }
   if (priority == 0) return "realtime, normal scheduling";
   const RealtimeGrant grant = ask_for_realtime(priority);
   std::string out =
@@ -55,7 +58,7 @@ void report(const Simulator& simulator) {
 void run_sim(const LoadedRobot& robot, const std::vector<TimedMessage>& timeline,
              const SimProcessOptions& options, const volatile std::sig_atomic_t& stop) {
   const auto black_box =
-      open_black_box("sim-" + robot.robot.name, robot.robot.rate_hz, options.simulator.lockstep);
+      open_black_box("sim-" + robot.robot.name, robot.robot.rate_hz, options.pace);
   const std::string scheduling = schedule(options);
   sim::SimPort port(robot, &timeline, options.simulator);
   port.set_black_box(black_box.get());

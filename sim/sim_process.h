@@ -5,14 +5,16 @@
 #include <csignal>
 #include <vector>
 
+#include "common/pace.h"
 #include "sim/simulator.h"
 
 namespace limber {
 
 struct SimProcessOptions {
   SimulatorOptions simulator;
+  Pace pace = Pace::kRealtime;
   double duration_s = 0.0;  ///< simulated time after which to end; 0: until stopped
-  int priority = 0;         ///< SCHED_FIFO priority to request in realtime; 0: none
+  int priority = 0;         ///< SCHED_FIFO priority to request in realtime; 0: none at all
 };
 
 /// Runs until `stop` is set or the duration is over. `timeline` may be empty. Throws ConfigError.

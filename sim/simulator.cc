@@ -84,7 +84,9 @@ void Simulator::flush(int bus) noexcept {
   side.set_direct(true);
   while (side.has_wire() && side.take_waiting(&frame))
     nodes_.receive(bus, frame, clock_.now_ns(), &side);
+  nodes_.send_pending_of(bus, clock_.now_ns(), &side);
   side.set_direct(false);
+  side.clear();
 }
 
 bool Simulator::on_tick(int bus, std::int64_t number) noexcept {

@@ -16,13 +16,15 @@ struct Arguments {
   double arm_hours = 24.0;
   double most_s = 0.0;
   std::int64_t seed = 1;
+  bool any_request = false;
   bool progress = false;
 };
 
 int run(const Arguments& given) {
   const auto& stop = stop_on_signals();
   const LoadedRobot robot = load_robot(given.robot);
-  soak::Soak soak(robot, static_cast<std::uint64_t>(given.seed));
+  soak::Soak soak(robot, static_cast<std::uint64_t>(given.seed),
+                  given.any_request ? soak::Habit::kAnything : soak::Habit::kCareful);
   const std::int64_t start_ns = monotonic_ns();
   const auto wall_s = [&] { return 1e-9 * static_cast<double>(monotonic_ns() - start_ns); };
   double told_s = 0.0;
@@ -51,6 +53,8 @@ int main(int argc, char** argv) {
   line.number("--arm-hours", &given.arm_hours, 1e-4, 1e4, "how much arm time");
   line.number("--most-seconds", &given.most_s, 0.0, 1e7, "stop after so much wall time (0: never)");
   line.integer("--seed", &given.seed, 0, 1'000'000'000, "of everything random");
+  line.flag("--any-request", &given.any_request,
+            "any law, gain and goal at random, as fast as may be, instead of careful use");
   line.flag("--progress", &given.progress, "show how far it is");
   return run_program(line, argc, argv, [&] { return run(given); });
 }

@@ -17,8 +17,8 @@ constexpr double kMostPush_N = 5.0;
 
 }  // namespace
 
-RandomUser::RandomUser(const LoadedRobot& robot, std::uint64_t seed)
-    : robot_(robot), random_(seed) {
+RandomUser::RandomUser(const LoadedRobot& robot, std::uint64_t seed, Habit habit)
+    : robot_(robot), habit_(habit), random_(seed), any_(robot, &random_) {
   const unsigned available = controller::sensors_of(robot.robot);
   for (const char* name : kLaws) {
     const int law = controller::find_law(name);
@@ -33,14 +33,19 @@ double RandomUser::uniform(double low, double high) {
 }
 
 Action RandomUser::next_action() {
+  if (habit_ == Habit::kAnything)
+    return below(30) == 0 ? Action::kStop : below(2) == 0 ? Action::kGoal : Action::kGains;
   constexpr std::array kOften = {Action::kGoal, Action::kGoal, Action::kGains, Action::kGains,
                                  Action::kPush, Action::kPush, Action::kStop,  Action::kFault};
   return kOften[below(kOften.size())];
 }
 
-double RandomUser::next_pause_s() { return uniform(0.2, 2.0); }
+double RandomUser::next_pause_s() {
+  return habit_ == Habit::kAnything ? uniform(0.02, 1.0) : uniform(0.2, 2.0);
+}
 
 compliance_goal_t RandomUser::goal() {
+  if (habit_ == Habit::kAnything) return any_.goal();
   compliance_goal_t goal{};
   goal.kind = compliance_goal_t::GOAL_JOINT;
   goal.num_joints = static_cast<std::int8_t>(robot_.robot.size());
@@ -54,6 +59,7 @@ compliance_goal_t RandomUser::goal() {
 }
 
 compliance_gains_t RandomUser::gains() {
+  if (habit_ == Habit::kAnything) return any_.gains();
   compliance_gains_t gains = default_gains(robot_.robot);
   gains.law = laws_[below(laws_.size())];
   gains.ramp_s = uniform(0.1, 1.0);

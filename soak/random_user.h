@@ -1,5 +1,5 @@
 // A user who never stops: goals, gains, laws, pushes, stops, and now and then a fault of a drive.
-// All are within what the arm can do, so that none but the faults is a reason to trip.
+// None but the faults is a reason to trip.
 #pragma once
 
 #include <array>
@@ -13,16 +13,22 @@
 #include <vector>
 
 #include "robots/loader/load_robot.h"
+#include "soak/any_request.h"
 
 namespace limber::soak {
 
 enum class Action : std::uint8_t { kGoal, kGains, kPush, kStop, kFault };
 inline constexpr std::array kActionNames = {"goals", "gains", "pushes", "stops", "faults"};
 
+enum class Habit : std::uint8_t {
+  kCareful,  ///< what the arm can do well; pushes, stops and faults besides
+  kAnything  ///< AnyRequest and stops, up to fifty requests a second
+};
+
 class RandomUser {
  public:
   /// The robot outlives the user. Set-up only.
-  RandomUser(const LoadedRobot& robot, std::uint64_t seed);
+  RandomUser(const LoadedRobot& robot, std::uint64_t seed, Habit habit = Habit::kCareful);
 
   /// The next thing to do, and how long to wait before it, s.
   Action next_action();
@@ -42,7 +48,9 @@ class RandomUser {
   std::size_t below(std::size_t end) { return static_cast<std::size_t>(random_() % end); }
 
   const LoadedRobot& robot_;
+  Habit habit_;
   std::mt19937_64 random_;
+  AnyRequest any_;
   std::vector<std::string> laws_;
 };
 

@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t kUser = 7;
 constexpr double kRecovery_s = 10.0;  // from the end of a fault until the arm works again
 constexpr double kQuiet_s = 0.3;      // after a fault, before it is acknowledged
+constexpr double kSettled_s = 1.0;    // until stand and hold have let go of the arm
 constexpr double kAtRest = 0.05;      // of the velocity limit: the arm may be used again
 constexpr int kAskEvery_cycles = 50;
 constexpr double kWarm_s = 60.0;  // after this the process holds all that it needs
@@ -49,11 +50,12 @@ Message from_user(Message message) {
 
 }  // namespace
 
-Soak::Soak(const LoadedRobot& robot, std::uint64_t seed)
+Soak::Soak(const LoadedRobot& robot, std::uint64_t seed, Habit habit)
     : robot_(robot),
       scenario_(empty_scenario()),
       lab_(std::in_place, robot, scenario_),
-      user_(robot, seed) {}
+      habit_(habit),
+      user_(robot, seed, habit) {}
 
 double Soak::time_s() const { return 1e-9 * static_cast<double>(lab_->time_ns()); }
 
@@ -156,6 +158,12 @@ void Soak::judge_trip() {
       violated(fmt::format("fault {} of a drive led to cause {}", injected_, cause_));
     return;
   }
+  const bool beyond =
+      fault == joint_state_t::FAULT_POSITION || fault == joint_state_t::FAULT_VELOCITY;
+  if (habit_ == Habit::kAnything && fault != joint_state_t::FAULT_NONE && !beyond) {
+    ++result_.other_trips[fault];
+    return put_back();
+  }
   const bool tripped = phase_ == Phase::kWorking && state.drive_state != joint_state_t::DRIVE_ON;
   if (fault != joint_state_t::FAULT_NONE || tripped)
     violated("a trip without a cause: " + trip_text());
@@ -236,7 +244,7 @@ void Soak::end_fault() {
     result_.longest_recovery_s = std::max(result_.longest_recovery_s, time_s() - fault_end_s_);
   }
   phase_ = Phase::kWorking;
-  next_action_s_ = time_s() + user_.next_pause_s();
+  next_action_s_ = time_s() + kSettled_s + user_.next_pause_s();
 }
 
 void Soak::request(std::int8_t what) {

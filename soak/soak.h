@@ -24,8 +24,10 @@ struct SoakResult {
   /// joint_state_t; 0: bridged, or not noticed).
   std::map<std::pair<int, int>, std::int64_t> trips;
   std::int64_t recoveries = 0;
-  double longest_recovery_s = 0.0;      ///< of those that were not put back
-  std::int64_t put_back = 0;            ///< fell out of its range, and was moved home by hand
+  double longest_recovery_s = 0.0;  ///< of those that were not put back
+  std::int64_t put_back = 0;        ///< fell out of its range, and was moved home by hand
+  /// Of Habit::kAnything: causes (FAULT_* of joint_state_t) that are not a joint beyond its limits.
+  std::map<int, std::int64_t> other_trips;
   std::vector<std::string> violations;  ///< what must not be: empty if all is well
   ProcessSize size_begin;               ///< after the first minute of arm time
   ProcessSize size_end;
@@ -35,7 +37,7 @@ struct SoakResult {
 class Soak {
  public:
   /// Throws ConfigError. The robot outlives the soak.
-  Soak(const LoadedRobot& robot, std::uint64_t seed);
+  Soak(const LoadedRobot& robot, std::uint64_t seed, Habit habit = Habit::kCareful);
 
   /// Runs until `arm_time_s`, until the first violation, or until `go_on()` says no, which is asked
   /// every second of arm time.
@@ -68,6 +70,7 @@ class Soak {
   const LoadedRobot& robot_;
   Scenario scenario_;
   std::optional<Lab> lab_;
+  Habit habit_;
   RandomUser user_;
   SoakResult result_;
   Phase phase_ = Phase::kStarting;

@@ -41,6 +41,9 @@ std::string report_json(const SoakResult& result, const Robot& robot, std::uint6
   json["recoveries"] = result.recoveries;
   json["longest_recovery_s"] = result.longest_recovery_s;
   json["put_back"] = result.put_back;
+  json["other_trips"] = nlohmann::ordered_json::object();
+  for (const auto& [cause, count] : result.other_trips)
+    json["other_trips"][name_in(kCauses, cause)] = count;
   json["process"] = {{"after_a_minute", json_of(result.size_begin)},
                      {"at_the_end", json_of(result.size_end)},
                      {"most", json_of(result.size_most)}};

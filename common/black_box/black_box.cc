@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/clock.h"
+#include "common/tell.h"
 
 namespace limber {
 namespace {
@@ -101,7 +102,7 @@ void BlackBox::open(const std::string& name, std::size_t bytes) {
   const fs::path folder = boxes_folder();
   // A live process of the same name, of another network for example, holds the lock of its file.
   for (int i = 1; path_.empty(); ++i) {
-    const fs::path path = folder / (i == 1 ? name : fmt::format("{}-{}", name, i));
+    const fs::path path = folder / (i == 1 ? name : fmt::format("{}~{}", name, i));
     file_ = FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (file_.get() < 0) fail(path);
     if (flock(file_.get(), LOCK_EX | LOCK_NB) == 0) path_ = path;
@@ -170,13 +171,12 @@ void BlackBox::keep_when_due() {
   while (true) {
     changed_.wait(lock, [this] { return ending_ || !code_.empty(); });
     if (!code_.empty()) {
-      const std::string code = code_;
       lock.unlock();
-      const fs::path incident = announce(code);
+      const fs::path incident = announce(code_);  // which keep() leaves alone until it is cleared
       lock.lock();
       changed_.wait_for(lock, std::chrono::duration<double>(kAfter_s), [this] { return ending_; });
       lock.unlock();
-      if (!incident.empty()) copy_to(incident);
+      if (!incident.empty()) tell([&] { copy_to(incident); });
       lock.lock();
       code_.clear();
     }

@@ -15,6 +15,7 @@
 
 #include "common/black_box/event_ring.h"
 #include "common/file_descriptor.h"
+#include "common/pace.h"
 
 namespace limber {
 
@@ -68,10 +69,10 @@ class BlackBox {
   std::thread thread_;
 };
 
-/// None in lock step, where a run can be repeated.
+/// None without a clock, where a run can be repeated.
 inline std::unique_ptr<BlackBox> open_black_box(const std::string& name, double rate_hz,
-                                                bool lockstep) {
-  return lockstep ? nullptr : std::make_unique<BlackBox>(name, rate_hz);
+                                                Pace pace) {
+  return pace == Pace::kLockstep ? nullptr : std::make_unique<BlackBox>(name, rate_hz);
 }
 
 inline void keep(BlackBox* box, const std::string& code) {

@@ -1,7 +1,10 @@
-// Whether a stiffness is stable at the sampling rate, mode by mode.
+// Whether springs and dampers are stable at the sampling rate, mode by mode.
 #pragma once
 
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "controller/elastic/joint_elasticity.h"
 #include "controller/gains/gains.h"
@@ -15,12 +18,15 @@ struct StiffnessMode {
   double share = 0.0;                ///< stiffness over the stiffest that is stable
 };
 
-/// The modes of a spring, softest first; those without stiffness are left out.
+/// The modes of a spring, softest first; those without stiffness are left out. And of the damper
+/// beside it, which needs no spring to be too much.
 struct StiffnessModes {
   std::array<StiffnessMode, kMaxJoints> modes{};
   int count = 0;
+  double damping_share = 0.0;  ///< of a given damper: over the greatest that is stable
+  int damped_joint = -1;       ///< which has the largest part in that mode
 
-  /// 0 without a mode; NaN or more than 1: unstable.
+  /// Of the springs; 0 without a mode; NaN or more than 1: unstable.
   double highest_share() const noexcept;
 };
 
@@ -35,10 +41,16 @@ StiffnessModes tip_modes(const Gains& gains, const ArmTerms& terms, double T,
 StiffnessModes joint_modes(const Gains& gains, const ArmTerms& terms, double T,
                            const JointElasticity* elastic = nullptr) noexcept;
 
-/// Checks both springs of gains, whatever the law: any law may be selected next, and HOLD uses K_q.
+/// Of K_null and D_null in the directions that the rows of K_x leave free (nullspace.h): a joint
+/// that turns about the tool's own axis is one of them where K_x has no rotation.
+StiffnessModes null_modes(const Gains& gains, const ArmTerms& terms, double T) noexcept;
+
+/// Checks all springs and given dampers of gains, whatever the law: any law may be selected next,
+/// and HOLD uses K_q.
 class StabilityCheck {
  public:
-  explicit StabilityCheck(double T) : T_(T) {}
+  /// `joints`: their names. Set-up only.
+  StabilityCheck(double T, std::vector<std::string> joints) : T_(T), joints_(std::move(joints)) {}
 
   /// nullptr if they are stable at this pose, else which is not and by how much. The text lasts
   /// until the next call. In the cycle.
@@ -46,8 +58,11 @@ class StabilityCheck {
                     const JointElasticity* elastic = nullptr) noexcept;
 
  private:
+  const char* judge(const char* spring, const char* damper, const StiffnessModes& modes) noexcept;
+
   double T_;
-  std::array<char, 160> text_{};
+  std::vector<std::string> joints_;
+  std::array<char, 240> text_{};
 };
 
 }  // namespace limber::controller

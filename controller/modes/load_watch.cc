@@ -68,8 +68,10 @@ int LoadWatch::judge(const Model& model) const noexcept {
   const double weight_N = std::max(0.0, s.dot(r_) / std::max(s.squaredNorm(), 1e-9));
   for (Eigen::Index i = 0; i < r_.size(); ++i) {
     const double g = model.gravity[i];
+    const double wall = model.walls[i];
     const double left = r_[i] - weight_N * s[i];
-    const double unexplained = left - std::clamp(left, std::min(0.0, g), std::max(0.0, g));
+    const double unexplained = left - std::clamp(left, std::min(0.0, g) - std::max(0.0, wall),
+                                                 std::max(0.0, g) - std::min(0.0, wall));
     const double most = friction_Nm_[i] + kModelShare * std::abs(g) + weight_N * kOffset;
     if (!(std::abs(unexplained) <= most)) return static_cast<int>(i);
   }

@@ -19,6 +19,10 @@ namespace limber::controller {
 /// the joint's weight, g_i:
 ///
 ///   r_i - w s_i  within  [min(0, g_i), max(0, g_i)] +- m_i
+///
+/// or what keeps the joint from leaving its soft wall, which pushes with tau_wall,i: then the
+/// bounds are widened to -tau_wall,i.
+///
 ///   m_i = tau_friction + kModelShare abs(g_i) + w kOffset
 ///
 /// A motor with the wrong sign or in another joint's place, a wrong zero, and a wrong mass show by
@@ -57,6 +61,7 @@ class LoadWatch {
     const MatrixJ& M;  ///< of the links
     const VectorJ& B;  ///< of the rotors
     const Matrix6J& J;
+    const VectorJ& walls;  ///< of the controller's soft walls, N m
   };
   /// Once a cycle with drives that follow: the joint that carries what it should not, -1: none.
   /// `dt_s`: since the last call.

@@ -51,6 +51,18 @@ bool StateJudge::goes_on_from_doubted(std::int64_t seq) const noexcept {
   return doubted_seq_ && seq > *doubted_seq_ && seq - *doubted_seq_ <= kMostMissed;
 }
 
+bool StateJudge::is_doubtful(const joint_state_t& state) noexcept {
+  if (session_ == 0 || state.session == session_) {
+    other_.reset();
+    return false;
+  }
+  const bool goes_on = other_ && other_->session == state.session && state.seq >= other_->seq &&
+                       state.seq - other_->seq <= kMostMissed;
+  doubted_ += goes_on ? -1 : 1;
+  other_ = Other{state.session, state.seq};
+  return !goes_on;
+}
+
 StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   StateJudgement judgement;
   if (state.session == 0 || state.seq < 0) return judgement;
@@ -58,6 +70,8 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
     judgement.repeated = true;
     return judgement;
   }
+  judgement.doubted = is_doubtful(state);
+  if (judgement.doubted) return judgement;
   const bool known = state.session == session_ && seq_ >= 0;
   const std::int64_t missed = known ? state.seq - seq_ - 1 : 0;
   if (missed >= kMostMissed && !goes_on_from_doubted(state.seq)) {

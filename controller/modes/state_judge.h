@@ -20,9 +20,11 @@ inline constexpr std::int32_t kEquipment = int{joint_state_t::JOINT_LINK_ENCODER
 JointFlags equipment_of(const Robot& robot);
 
 struct StateJudgement {
-  bool repeated = false;     ///< its number was seen before in this session: nothing may advance
+  bool repeated = false;  ///< its number was seen before in this session: nothing may advance
+  bool doubted = false;   ///< another session's first: likewise
+  bool ignored() const noexcept { return repeated || doubted; }
   bool first = false;        ///< the first state of all
-  bool new_session = false;  ///< another run of the driver
+  bool new_session = false;  ///< another run of the driver, seen twice
   bool usable = false;  ///< this arm's joints, all numbers finite, sensible period, number in reach
   bool fresh = false;   ///< usable, and every joint has answered in this cycle
   std::int64_t missed = 0;  ///< states between the last one and this one
@@ -43,6 +45,8 @@ class StateJudge {
 
   std::int64_t received() const noexcept { return received_; }
   std::int64_t lost() const noexcept { return lost_; }
+  /// States of sessions of which nothing else was heard.
+  std::int64_t doubted() const noexcept { return doubted_; }
 
   /// A number this much higher than the last one is not believed until the next state goes on from
   /// it: one forged or damaged message must not make all true ones look old.
@@ -50,6 +54,9 @@ class StateJudge {
 
  private:
   bool goes_on_from_doubted(std::int64_t seq) const noexcept;
+  /// Of another session than the last state's. One forged or damaged message is no new driver: that
+  /// sends another one, or in lock step the same again.
+  bool is_doubtful(const joint_state_t& state) noexcept;
 
   int joints_;
   int bridged_;
@@ -57,6 +64,13 @@ class StateJudge {
   std::int64_t session_ = 0;
   std::int64_t seq_ = -1;
   std::optional<std::int64_t> doubted_seq_;
+  /// A state of another session.
+  struct Other {
+    std::int64_t session;
+    std::int64_t seq;
+  };
+  std::optional<Other> other_;  ///< heard of once
+  std::int64_t doubted_ = 0;
   std::int64_t received_ = 0;
   std::int64_t lost_ = 0;
 };

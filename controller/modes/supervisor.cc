@@ -24,7 +24,7 @@ std::optional<Event> event_of(std::int8_t request) noexcept {
 
 StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
   const StateJudgement judgement = judge_.judge(state);
-  if (judgement.repeated) return judgement;
+  if (judgement.ignored()) return judgement;
   if (judgement.first) raise(Event::kFirstState);
   if (judgement.new_session) raise(Event::kNewSession);
   if (!judgement.usable) {
@@ -33,14 +33,20 @@ StateJudgement Supervisor::on_state(const joint_state_t& state) noexcept {
     return judgement;
   }
   time_ns_ = state.time_ns;
+  const bool enabling_failed = drive_state_ == joint_state_t::DRIVE_ENABLING &&
+                               state.drive_state == joint_state_t::DRIVE_FAULT;
   drive_state_ = state.drive_state;
   stop_pressed_ = state.emergency_stop >= joint_state_t::STOP_PRESSED;
   slack_ = preload_.slack(state);
   if (stop_pressed_) raise(Event::kEstopPressed);
-  if (judgement.silent) raise(Event::kStateLost);
+  // Drives that repeat their start-up after an acknowledgement tell no states until it is over.
+  const bool silent_start =
+      starting_ && judgement.silent && drive_state_ == joint_state_t::DRIVE_OFF;
+  starting_ = powered_mode() && (drive_state_ == joint_state_t::DRIVE_CONFIGURING || silent_start);
+  if (judgement.silent && !(starting_ && judgement.missed == 0)) raise(Event::kStateLost);
   if (drive_state_ != joint_state_t::DRIVE_FAULT) acknowledged_ = false;
   count_steady(judgement);
-  watch_drives();
+  watch_drives(enabling_failed);
   if (goal_ends_ns_ && time_ns_ >= *goal_ends_ns_) raise(Event::kClientSilent);
   if (time_ns_ - entered_ns_ >= kSoftStop_ns) raise(Event::kAtRest);  // of SOFT_STOP alone
   return judgement;
@@ -52,11 +58,12 @@ void Supervisor::count_steady(const StateJudgement& judgement) noexcept {
   if (steady_ >= kSteadyStates) raise(Event::kSteadyStates);
 }
 
-void Supervisor::watch_drives() noexcept {
+// Enabling that fails is a new fault, which nobody has acknowledged.
+void Supervisor::watch_drives(bool enabling_failed) noexcept {
   if (!powered_mode()) return;
   if (drives_on()) {
     engaged_ = true;
-  } else if (engaged_) {
+  } else if (engaged_ || enabling_failed) {
     raise(Event::kDriverFault);
   } else if (time_ns_ - entered_ns_ > kDrivesOnWithin_ns) {
     raise(Event::kDriveNotOn);

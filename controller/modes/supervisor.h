@@ -74,7 +74,7 @@ class Supervisor {
 
  private:
   void count_steady(const StateJudgement& judgement) noexcept;
-  void watch_drives() noexcept;
+  void watch_drives(bool enabling_failed) noexcept;
   void enter(Mode mode) noexcept;
   bool lease_is_over() const noexcept;
 
@@ -90,6 +90,7 @@ class Supervisor {
   bool acknowledged_ = false;                 ///< a fault that the drives are still in
   bool engaged_ = false;
   bool idle_requested_ = false;
+  bool starting_ = false;  ///< the drives repeat their start-up, and no joint was heard since
   std::int8_t drive_state_ = joint_state_t::DRIVE_CONFIGURING;
   bool stop_pressed_ = false;
   bool slack_ = false;

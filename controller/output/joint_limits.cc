@@ -11,11 +11,12 @@
 namespace limber::controller {
 namespace {
 
-constexpr double kVelocityScaledFrom = 0.8;
 constexpr double kWallWidth = 0.10;  // rad or m
 constexpr double kWallShareOfRange = 0.1;
 constexpr double kWallTorqueAtLimit = 0.5;  // share of the torque limit
 constexpr double kWallDampingRatio = 0.7;
+constexpr double kLeadsOut = 0.1;   // rad/s or m/s
+constexpr double kFadesFrom = 0.5;  // of the wall
 
 template <typename Member>
 VectorJ collect(const Robot& robot, Member member) {
@@ -23,6 +24,12 @@ VectorJ collect(const Robot& robot, Member member) {
   for (int i = 0; i < robot.size(); ++i)
     values[i] = robot.joints[static_cast<std::size_t>(i)].*member;
   return values;
+}
+
+VectorJ wall_widths(const Robot& robot) {
+  const VectorJ range =
+      collect(robot, &JointConfig::position_max) - collect(robot, &JointConfig::position_min);
+  return (range * kWallShareOfRange).cwiseMin(kWallWidth);
 }
 
 // Two motors have to hold their preload besides.
@@ -48,13 +55,14 @@ VectorJ torque_limits(const Robot& robot) {
 }  // namespace
 
 JointLimits::JointLimits(const Robot& robot)
-    : position_min_(collect(robot, &JointConfig::position_min)),
-      position_max_(collect(robot, &JointConfig::position_max)),
-      wall_(((position_max_ - position_min_) * kWallShareOfRange).cwiseMin(kWallWidth)),
-      velocity_(collect(robot, &JointConfig::velocity_limit)),
+    : wall_(wall_widths(robot)),
+      place_{collect(robot, &JointConfig::position_min) + wall_,
+             collect(robot, &JointConfig::position_max) - wall_},
+      now_(place_),
       torque_rate_(collect(robot, &JointConfig::torque_rate_limit_Nm_per_s)),
       power_W_(robot.power_limit_W),
-      limiter_(torque_limits(robot), kShareOfGateStep * torque_rate_) {
+      limiter_(torque_limits(robot), kShareOfGateStep * torque_rate_),
+      stopping_(robot, limiter_.torque()) {
   for (const JointConfig& joint : robot.joints) rigid_.push_back(joint.rigid());
 }
 
@@ -75,45 +83,58 @@ bool JointLimits::scale_for_power(const VectorJ& v, const VectorJ& g, VectorJ* t
   return true;
 }
 
-bool JointLimits::scale_for_velocity(const ArmState& state, const VectorJ& g,
-                                     VectorJ* tau) const noexcept {
-  bool acted = false;
-  for (Eigen::Index i = 0; i < tau->size(); ++i) {
-    const double excess = std::abs(state.v[i]) / velocity_[i] - kVelocityScaledFrom;
-    const double motion = (*tau)[i] - g[i];
-    if (excess <= 0.0 || motion * state.v[i] <= 0.0) continue;
-    (*tau)[i] = g[i] + motion * std::max(1.0 - excess / (1.0 - kVelocityScaledFrom), 0.0);
-    acted = true;
-  }
-  return acted;
+JointLimits::InWall JointLimits::in_wall(const Edges& edges, double q, Eigen::Index i) noexcept {
+  const double below = edges.low[i] - q;
+  const double above = q - edges.high[i];
+  return below > above ? InWall{below, -1.0} : InWall{above, 1.0};
 }
 
-bool JointLimits::add_walls(const ArmState& state, const MatrixJ& M, VectorJ* tau) const noexcept {
-  bool acted = false;
-  for (Eigen::Index i = 0; i < tau->size(); ++i) {
-    const double below = position_min_[i] + wall_[i] - state.q[i];
-    const double above = state.q[i] - (position_max_[i] - wall_[i]);
-    const double depth = std::max(below, above);
+void JointLimits::rest(const VectorJ& q) noexcept {
+  now_.low = place_.low.cwiseMin(q);
+  now_.high = place_.high.cwiseMax(q);
+}
+
+void JointLimits::lead_out(double period_s) noexcept {
+  now_.low = place_.low.cwiseMin((now_.low.array() + kLeadsOut * period_s).matrix());
+  now_.high = place_.high.cwiseMax((now_.high.array() - kLeadsOut * period_s).matrix());
+}
+
+VectorJ JointLimits::walls(const ArmState& state, const MatrixJ& M) const noexcept {
+  VectorJ tau = VectorJ::Zero(state.q.size());
+  for (Eigen::Index i = 0; i < tau.size(); ++i) {
+    const auto [depth, outwards] = in_wall(now_, state.q[i], i);
     if (!(depth > 0.0)) continue;
-    const double outwards = below > above ? -1.0 : 1.0;
-    const double v = rigid_[static_cast<std::size_t>(i)] ? state.v[i] : state.theta_dot[i];
+    const bool rigid = rigid_[static_cast<std::size_t>(i)];
+    const double v = rigid ? state.v_reported[i] : state.theta_dot_reported[i];
     const double speed = std::max(outwards * v, 0.0);
     const double K = kWallTorqueAtLimit * torque_limit()[i] / wall_[i];
     // The damper comes in with the depth: at the edge of the wall nothing jumps.
     const double D =
         2.0 * kWallDampingRatio * std::sqrt(K * M(i, i)) * std::min(depth / wall_[i], 1.0);
-    (*tau)[i] -= outwards * (K * depth + D * speed);
+    tau[i] = -outwards * (K * depth + D * speed);
+  }
+  return tau;
+}
+
+bool JointLimits::fade_at_ends(const ArmState& state, const VectorJ& g, const VectorJ& walls,
+                               VectorJ* tau) const noexcept {
+  bool acted = false;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    const auto [depth, outwards] = in_wall(place_, state.q[i], i);
+    const double fades = 1.0 - (1.0 - depth / wall_[i]) / (1.0 - kFadesFrom);
+    const double pushing = (*tau)[i] - g[i] - walls[i];
+    if (!(fades > 0.0 && pushing * outwards > 0.0)) continue;
+    (*tau)[i] -= pushing * std::min(fades, 1.0);
     acted = true;
   }
   return acted;
 }
 
-std::int32_t JointLimits::shape(const ArmState& state, const ArmTerms& terms,
+std::int32_t JointLimits::shape(const ArmState& state, const ArmTerms& terms, const VectorJ& walls,
                                 VectorJ* tau) const noexcept {
-  std::int32_t acted = 0;
-  if (scale_for_power(state.v, terms.g, tau)) acted |= controller_status_t::LIMIT_POWER;
-  if (scale_for_velocity(state, terms.g, tau)) acted |= controller_status_t::LIMIT_VELOCITY;
-  if (add_walls(state, terms.M_total, tau)) acted |= controller_status_t::LIMIT_POSITION;
+  std::int32_t acted = walls.isZero(0.0) ? 0 : controller_status_t::LIMIT_POSITION;
+  if (scale_for_power(state.v_reported, terms.g, tau)) acted |= controller_status_t::LIMIT_POWER;
+  if (fade_at_ends(state, terms.g, walls, tau)) acted |= controller_status_t::LIMIT_POSITION;
   return acted;
 }
 
@@ -123,15 +144,23 @@ std::int32_t JointLimits::clamp(double period_s, VectorJ* tau) noexcept {
          (acted.rate ? controller_status_t::LIMIT_RATE : 0);
 }
 
-std::int32_t JointLimits::clamp(double period_s, const VectorJ& applied, VectorJ* tau) noexcept {
-  std::int32_t acted = clamp(period_s, tau);
-  for (Eigen::Index i = 0; i < tau->size(); ++i) {
-    const double step = kShareFromApplied * torque_rate_[i] * period_s;
-    const double from = std::clamp(applied[i], -torque_limit()[i], torque_limit()[i]);
-    const double limited = std::clamp((*tau)[i], from - step, from + step);
-    if (limited != (*tau)[i]) acted |= controller_status_t::LIMIT_RATE;
-    (*tau)[i] = limited;
-  }
+std::int32_t JointLimits::clamp(const ArmState& state, const ArmTerms& terms,
+                                VectorJ* tau) noexcept {
+  const double T = state.period_s;
+  const VectorJ& most = torque_limit();
+  const VectorJ step = kShareFromApplied * T * torque_rate_;
+  const VectorJ applied = state.tau_applied.cwiseMax(-most).cwiseMin(most);
+  const auto near_applied = [&](const VectorJ& x) -> VectorJ {
+    return x.cwiseMax(applied - step).cwiseMin(applied + step);
+  };
+  const auto [low, high] = limiter_.reach(T);
+  const Stopping::Reach reach{near_applied(low), near_applied(high)};
+  std::int32_t acted = clamp(T, tau);
+  const VectorJ limited = near_applied(*tau);
+  if (limited != *tau) acted |= controller_status_t::LIMIT_RATE;
+  *tau = limited;
+  stopping_.observe(state, terms);
+  acted |= stopping_.shape(state, terms, reach, tau);
   limiter_.set_previous(*tau);
   return acted;
 }

@@ -30,6 +30,16 @@ class TorqueLimiter {
   const VectorJ& previous() const noexcept { return previous_; }
   const VectorJ& torque() const noexcept { return torque_; }
 
+  /// What limit() lets through, n each, N m.
+  struct Reach {
+    VectorJ low;
+    VectorJ high;
+  };
+  Reach reach(double T) const noexcept {
+    return {(previous_ - T * rate_).cwiseMax(-torque_).cwiseMin(torque_),
+            (previous_ + T * rate_).cwiseMax(-torque_).cwiseMin(torque_)};
+  }
+
   /// Limits `tau`, T seconds after the torque before, and makes it the previous one. A joint whose
   /// torque is not a number keeps the previous one.
   Acted limit(double T, VectorJ* tau) noexcept;

@@ -7,14 +7,17 @@ namespace limber::controller {
 bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& state,
                          const ArmTerms& terms, const VectorJ& deflection, double dt_s,
                          std::int32_t* limits) noexcept {
-  blend_.advance(dt_s, state.v);
-  *limits |= limits_.shape(state, terms, &tau);
+  blend_.advance(dt_s, state.v_reported);
+  limits_.lead_out(state.period_s);
+  walls_ = limits_.walls(state, terms.M_total);
+  tau += walls_;
+  *limits |= limits_.shape(state, terms, walls_, &tau);
   if (!tau.allFinite()) return false;
   if (blend_next_) blend_.start(limits_.previous(), tau);
   blend_next_ = false;
   blend_.add_to(&tau);
   if (blend_.active()) *limits |= controller_status_t::LIMIT_RAMP;
-  *limits |= limits_.clamp(state.period_s, state.tau_applied, &tau);
+  *limits |= limits_.clamp(state, terms, &tau);
   const VectorJ& wanted = preload != nullptr ? *preload : preload_.preload_at_rest();
   *limits |= preload_.control(state, wanted, deflection, tau, dt_s);
   return true;
@@ -22,6 +25,8 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
 
 void TorqueOutput::stand_by(VectorJ target, const Standby& how, const ArmState& state,
                             std::int32_t* limits) noexcept {
+  walls_.setZero();
+  limits_.rest(state.q);
   preload_.rest(state, how.preload, how.in_steps);
   if (how.in_steps) {
     *limits |= limits_.clamp(state.period_s, &target);

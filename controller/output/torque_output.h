@@ -24,7 +24,10 @@ struct Standby {
 class TorqueOutput {
  public:
   explicit TorqueOutput(const Robot& robot)
-      : limits_(robot), blend_(robot.size()), preload_(robot) {}
+      : limits_(robot),
+        blend_(robot.size()),
+        preload_(robot),
+        walls_(VectorJ::Zero(robot.size())) {}
 
   /// The torque that is shaped next differs by a jump from the one before: it is blended.
   void blend_next() noexcept { blend_next_ = true; }
@@ -45,12 +48,15 @@ class TorqueOutput {
   const VectorJ& torque() const noexcept { return limits_.previous(); }
   /// Of two motors the sum of their torques, n; zero for joints with one.
   const VectorJ& preload_torque() const noexcept { return preload_.torque(); }
+  /// Of the soft walls in the last shape(), n; zero after stand_by().
+  const VectorJ& walls() const noexcept { return walls_; }
   const VectorJ& torque_limit() const noexcept { return limits_.torque_limit(); }
 
  private:
   JointLimits limits_;
   TorqueBlend blend_;
   PreloadServo preload_;
+  VectorJ walls_;
   bool blend_next_ = false;
 };
 

@@ -67,6 +67,11 @@ class BusEnd {
   /// Ends the interval over which the load is counted; `seconds`: its length.
   void close_interval(double seconds) noexcept;
   const std::string& name() const noexcept { return config_.name; }
+  /// What was exchanged before, such as a roll call, does not count in the status. Set-up only.
+  void count_from_here() noexcept {
+    sent_before_ = bus_->statistics().sent;
+    received_before_ = bus_->statistics().received;
+  }
   /// The fields of bus b.
   void write_status(std::size_t b, driver_status_t* status) const noexcept;
 
@@ -91,6 +96,8 @@ class BusEnd {
   std::int64_t foreign_ = 0;
   std::size_t first_ = 0;  ///< of the batch, in the order of add(), that is sent first
   std::int64_t refused_cycles_ = 0;
+  std::int64_t sent_before_ = 0;  ///< before count_from_here(), and TICKs; as the next, and TOCKs
+  std::int64_t received_before_ = 0;
   std::int64_t unsent_cycles_ = 0;
   std::int64_t tick_ = -1;
   bool tocked_ = false;

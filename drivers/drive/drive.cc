@@ -38,11 +38,18 @@ void Drive::enter(DriveState state, double present, double held) noexcept {
     case DriveState::kFallback:
       fallback_.start(present, held);
       break;
-    case DriveState::kOn:
     case DriveState::kDamp:
+      if (entered_ == DriveState::kFallback) {
+        fallback_.go_on_to(0.0);
+      } else {
+        fallback_.start(present, 0.0);
+      }
+      break;
+    case DriveState::kOn:
     case DriveState::kFault:
       break;
   }
+  entered_ = state;
 }
 
 CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept {
@@ -61,7 +68,7 @@ CanFrame Drive::next_frame(DriveState state, double tau, bool settling) noexcept
       return hold(settling);
     case DriveState::kDamp:
       if (!link_.enabled()) return link_.state_request();
-      return link_.command(damp(link_));
+      return link_.command(fallback_.damp(link_));
     case DriveState::kFault:
       break;
   }
@@ -72,10 +79,8 @@ CanFrame Drive::hold(bool settling) noexcept {
   // Angle or velocity is wrong, nobody knows which. A drive damps by the velocity that it reports:
   // a wrong one would drive the joint, and so would a hold at an angle that drifts.
   const bool motion_known = contradiction() != Contradiction::kVelocity;
-  const bool trusted = watch_.trusted() && !link_.jumped() && motion_known;
-  JointCommand held = fallback_.command(link_, settling, trusted);
-  if (!motion_known) held.kd = 0.0;
-  return link_.command(held);
+  const bool angle_known = watch_.trusted() && !link_.jumped() && motion_known && credible();
+  return link_.command(fallback_.hold(link_, settling, {angle_known, motion_known}));
 }
 
 CanFrame Drive::poll() noexcept {
@@ -91,12 +96,12 @@ void Drive::receive(DriveState state, const CanFrame& frame) noexcept {
   if (awaits_answer(state)) {
     if (configure_.receive(frame)) {
       answered_ = true;
-    } else if (!link_.take_unsolicited(frame)) {
+    } else if (!link_.answers_foreign(frame) && !link_.take_unsolicited(frame)) {
       ++invalid_;
     }
     return;
   }
-  if (settings_->receive(frame)) return;
+  if (settings_->receive(frame) || link_.answers_foreign(frame)) return;
   expect_angle(state);
   if (!link_.receive(frame)) {
     if (!link_.take_unsolicited(frame)) count_invalid();
@@ -126,14 +131,15 @@ void Drive::count_invalid() noexcept {
 void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
   const bool startup = awaits_answer(state);
   if (!startup && (settings_->receive(frame) || link_.take_unsolicited(frame))) return;
-  ++late_;
-  if (!startup) expect_angle(state);
-  if (!(startup ? configure_.receive(frame) : link_.receive(frame, 1))) {
-    if (!startup) count_invalid();
+  if (link_.answers_foreign(frame)) return;
+  if (startup) {  // where an answer may take two cycles
+    if (configure_.receive(frame)) late_answer_ = true;
     return;
   }
-  if (startup) {
-    late_answer_ = true;
+  ++late_;
+  expect_angle(state);
+  if (!link_.receive(frame, 1)) {
+    count_invalid();
     return;
   }
   if (link_.age_cycles() > 1) return;  // a part of a state
@@ -143,6 +149,8 @@ void Drive::receive_late(DriveState state, const CanFrame& frame) noexcept {
 }
 
 void Drive::close_cycle(DriveState state, std::int64_t cycle, double time_s) noexcept {
+  const bool doubted = invalid_cycle_ == cycle_;  // a reply of the cycle that ends
+  agreeing_cycles_ = link_.fresh() && !doubted ? agreeing_cycles_ + 1 : 0;
   cycle_ = cycle;
   check_feedback(state, time_s);
   if (state == DriveState::kConfiguring) {
@@ -154,10 +162,12 @@ void Drive::close_cycle(DriveState state, std::int64_t cycle, double time_s) noe
     configure_.close_cycle();
     return;
   }
-  counted_missing_ = !answered_;
+  counted_missing_ = !answered_ && !doubted;
   if (counted_missing_) ++missing_;
   if (state == DriveState::kEnabling) enable_.close_cycle(link_);
+  const bool was_lost = watch_.lost();
   watch_.close_cycle(link_.fresh(), cycle);
+  if (doubted && watch_.lost() && !was_lost) often_invalid_ = true;  // it came, and is the cause
 }
 
 void Drive::check_feedback(DriveState state, double time_s) noexcept {
@@ -184,8 +194,8 @@ DriveWarning Drive::warning() const noexcept {
   warning.flagged = link_.warns();
   // Of a drive in fault it is the fault's cause, and told with that.
   if (!link_.drive_error()) warning.emergency = link_.emergency();
-  warning.temperature_degC =
-      static_cast<std::int8_t>(std::clamp(link_.temperature_degC(), -128.0, 127.0));
+  warning.temperature_degC = static_cast<std::int16_t>(std::clamp(
+      std::round(link_.temperature_degC()), -DriveWarning::kMost_degC, DriveWarning::kMost_degC));
   return warning;
 }
 

@@ -31,6 +31,8 @@ class Drive {
   /// One of the drive's settings is asked for, besides; see SettingsWatch.
   bool ask_for_setting(CanFrame* request) noexcept { return settings_->request(request); }
   void begin_cycle() noexcept;
+  /// A frame of somebody else on its bus.
+  void note_foreign(const CanFrame& frame) noexcept { link_.note_foreign(frame); }
   /// A frame of this motor's.
   void receive(DriveState state, const CanFrame& frame) noexcept;
   /// One that answers the command of the cycle before: a state is one cycle old.
@@ -66,8 +68,11 @@ class Drive {
   bool enabling_done() const noexcept { return enable_.done(link_); }
   std::int64_t missing_cycles() const noexcept { return watch_.missing(); }
   /// In too many cycles within a second (ten on a wire, see LossWindow) replies were doubled or
-  /// could not be understood.
+  /// could not be understood, or one of these was the last of too many cycles without a state.
   bool often_invalid() const noexcept { return often_invalid_; }
+  /// After replies were often_invalid(), one of several senders is believed: an angle is one again
+  /// when two readings in a row agree, without another reply beside them.
+  bool credible() const noexcept { return !often_invalid_ || agreeing_cycles_ >= kAgreeing; }
   bool lost() const noexcept { return watch_.lost(); }
 
   const JointLink& link() const noexcept { return link_; }
@@ -89,6 +94,8 @@ class Drive {
   std::size_t bus() const noexcept { return static_cast<std::size_t>(link_.joint().drive.bus); }
 
  private:
+  static constexpr int kAgreeing = 2;
+
   CanFrame poll() noexcept;
   CanFrame hold(bool settling) noexcept;
   void expect_angle(DriveState state) noexcept;
@@ -104,6 +111,7 @@ class Drive {
   std::unique_ptr<SettingsWatch> settings_;  // atomics do not move
   EnableDialogue enable_;
   Fallback fallback_;
+  DriveState entered_ = DriveState::kConfiguring;
   ReplyWatch watch_;
   FeedbackWatch feedback_;
   HeatWatch warmth_;
@@ -115,6 +123,7 @@ class Drive {
   LossWindow invalid_window_;
   int cycles_per_second_;
   bool often_invalid_ = false;
+  std::int64_t agreeing_cycles_ = 0;
   std::int64_t cycle_ = 0;
   std::int64_t invalid_cycle_ = -1;  ///< of the last reply that could not be understood
   bool late_answer_ = false;         ///< of the start-up, in this cycle

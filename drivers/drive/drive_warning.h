@@ -9,10 +9,12 @@ namespace limber {
 
 /// One word, which another thread can be given at once.
 struct alignas(8) DriveWarning {
+  static constexpr double kMost_degC = 1000.0;  ///< no drive is hotter, whatever it reports
+
   bool hot = false;             ///< above DriveConfig::warning_temperature_degC
   bool flagged = false;         ///< the drive's own warning bit
   std::uint16_t emergency = 0;  ///< code of an announced error; 0: none
-  std::int8_t temperature_degC = 0;
+  std::int16_t temperature_degC = 0;
   bool too_hot = false;  ///< above DriveConfig::limit_temperature_degC
 
   bool any() const noexcept { return hot || too_hot || flagged || emergency != 0; }

@@ -53,6 +53,9 @@ class JointLink {
   bool is_foreign_command(const CanFrame& frame) const noexcept {
     return family_->is_foreign_command(frame);
   }
+  /// See DriveFamily, likewise the next.
+  void note_foreign(const CanFrame& frame) noexcept { family_->note_foreign(frame); }
+  bool answers_foreign(const CanFrame& frame) noexcept { return family_->answers_foreign(frame); }
   /// See DriveFamily. Allocates: set-up only.
   std::vector<CanFilter> receive_filters() const { return family_->receive_filters(); }
   /// True if the frame is from this drive, but no reply to a command, and nothing that must be

@@ -15,6 +15,7 @@ constexpr std::uint8_t kRead = 0x33;
 constexpr std::uint8_t kWrite = 0x55;
 constexpr std::uint8_t kStore = 0xAA;
 constexpr std::uint32_t kModeMit = 1;
+constexpr int kForeignCycles = 100;
 constexpr double kTolerance = 1e-4;  // float32 against what people write: 12.566 for 4 pi
 
 std::uint32_t as_float(double value) noexcept { return mit::float_bits(static_cast<float>(value)); }
@@ -110,6 +111,30 @@ bool DamiaoFamily::is_foreign_command(const CanFrame& frame) const noexcept {
   mit::RegisterRequest request;
   return mit::decode_register_request(frame, &request) && request.id == id() &&
          (request.operation == kWrite || request.operation == kStore);
+}
+
+void DamiaoFamily::note_foreign(const CanFrame& frame) noexcept {
+  mit::RegisterRequest request;
+  if (!mit::decode_register_request(frame, &request) || request.id != id()) return;
+  if (request.operation != kRead && request.operation != kWrite) return;
+  foreign_[next_foreign_++ % foreign_.size()] = {request.operation, request.reg, kForeignCycles};
+}
+
+bool DamiaoFamily::answers_foreign(const CanFrame& frame) noexcept {
+  std::uint32_t raw = 0;
+  const auto asked = std::ranges::find_if(foreign_, [&](const ForeignRequest& request) {
+    return request.cycles_left > 0 &&
+           mit::decode_register(frame, id(), request.operation,
+                                static_cast<mit::Register>(request.reg), &raw);
+  });
+  if (asked == foreign_.end()) return false;
+  asked->cycles_left = 0;
+  return true;
+}
+
+void DamiaoFamily::begin_cycle() noexcept {
+  for (ForeignRequest& request : foreign_)
+    request.cycles_left = std::max(0, request.cycles_left - 1);
 }
 
 std::vector<CanFilter> DamiaoFamily::receive_filters() const {

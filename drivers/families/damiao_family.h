@@ -34,6 +34,10 @@ class DamiaoFamily final : public DriveFamily {
   /// Frames with its identifier, and register writes to it.
   bool is_foreign_command(const CanFrame& frame) const noexcept override;
   std::vector<CanFilter> receive_filters() const override;
+  /// A register's answer looks like a state: only who asked tells them apart.
+  void note_foreign(const CanFrame& frame) noexcept override;
+  bool answers_foreign(const CanFrame& frame) noexcept override;
+  void begin_cycle() noexcept override;
   /// As delivered, a drive answers with identifier 0 (MST_ID).
   bool is_astray(const CanFrame& frame) const noexcept override;
   /// Half a count is added to the fields, because drives truncate.
@@ -60,6 +64,12 @@ class DamiaoFamily final : public DriveFamily {
     std::uint32_t raw;  ///< expected or written
   };
   static constexpr int kSteps = 8;
+  /// A register that somebody else reads or writes.
+  struct ForeignRequest {
+    std::uint8_t operation = 0;
+    std::uint8_t reg = 0;
+    int cycles_left = 0;  ///< in which the answer may come
+  };
 
   CanFrame special(mit::Special special) noexcept;
   std::uint16_t id() const noexcept { return static_cast<std::uint16_t>(drive_.command_id); }
@@ -69,6 +79,8 @@ class DamiaoFamily final : public DriveFamily {
   double most_torque_;  ///< N m: the limit less what rounding may add
   double carry_ = 0.0;  ///< rounding error not sent yet, N m
   std::array<Step, kSteps> steps_;
+  std::array<ForeignRequest, 8> foreign_;  ///< a ring: more at a time nobody asks
+  std::size_t next_foreign_ = 0;
 };
 
 }  // namespace limber

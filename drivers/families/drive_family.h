@@ -127,6 +127,13 @@ class DriveFamily {
   /// Whether a frame of somebody else commands this drive or writes its settings: sent by anybody
   /// but this driver, it must not go unnoticed.
   virtual bool is_foreign_command(const CanFrame& frame) const noexcept = 0;
+  /// A frame of somebody else on the bus: what he asks of this drive is not for this driver.
+  virtual void note_foreign(const CanFrame& frame) noexcept { static_cast<void>(frame); }
+  /// True if the frame answers what note_foreign() has seen, once for each.
+  virtual bool answers_foreign(const CanFrame& frame) noexcept {
+    static_cast<void>(frame);
+    return false;
+  }
   /// All identifiers of is_mine() and is_foreign_command(). Allocates: set-up only.
   virtual std::vector<CanFilter> receive_filters() const = 0;
   /// Whether the frame answers presence_request().

@@ -48,6 +48,8 @@ class ArmPort {
   /// Reads commands until one answers the state published last (true) or the deadline has come.
   bool wait_for_answer(std::int64_t deadline_ns);
   void publish_status();
+  /// To the log: this process did nothing for so long. Allowed in the cycle.
+  void note_stall(std::int64_t time_ns) noexcept { reporter_->note_stall(time_ns); }
   /// Keeps what goes over the arm plane; outlives this. Set-up only.
   void set_black_box(BlackBox* box) { arm_plane_.set_black_box(box); }
 

@@ -19,27 +19,11 @@
 namespace limber {
 namespace {
 
-// A virtual bus is as punctual as this machine's scheduler, which pauses a process for tens of
-// milliseconds now and then; a wire is not. What would be a cut cable there is a hiccup here.
-constexpr double kVirtualBridge_s = 0.05;
-constexpr double kVirtualWatchdog_s = 0.1;
-
 Robot load(const DriverProcessOptions& options) {
   Robot robot = load_robot(options.robot).robot;
   if (options.rate_hz > 0.0) robot.rate_hz = options.rate_hz;
   choose_buses(options.buses, &robot);
   return robot;
-}
-
-/// The tolerances of a realtime run on virtual buses: the drives' watchdogs wait longer, too.
-int bridged_cycles(const DriverProcessOptions& options, Robot* robot) {
-  const int on_a_wire = ArmDriverOptions().bridged_cycles;
-  if (options.lockstep || !robot->on_virtual_buses()) return on_a_wire;
-  for (JointConfig& joint : robot->joints) {
-    for (DriveConfig* drive : {&joint.drive, &joint.antagonist})
-      drive->watchdog_s = std::max(drive->watchdog_s, kVirtualWatchdog_s);
-  }
-  return std::max(on_a_wire, static_cast<int>(kVirtualBridge_s * robot->rate_hz));
 }
 
 std::vector<RunLock> lock_buses(const Robot& robot) {
@@ -50,12 +34,14 @@ std::vector<RunLock> lock_buses(const Robot& robot) {
   return locks;
 }
 
-RealtimeGrant request_realtime(const DriverProcessOptions& options) {
-  if (options.lockstep || options.realtime_priority == 0) return {};
-  return ask_for_realtime(options.realtime_priority);
+RealtimeGrant request_priority(const DriverProcessOptions& options) {
+  if (options.realtime_priority == 0) return {};
+  if (!in_lockstep(options.pace)) return ask_for_realtime(options.realtime_priority);
+  return {.reason = raise_priority(options.pace == Pace::kPaced)};
 }
 
-std::string text_of(const RealtimeGrant& grant, int priority) {
+std::string text_of(Pace pace, const RealtimeGrant& grant, int priority) {
+  if (in_lockstep(pace)) return pace == Pace::kPaced ? "not faster than the clock" : "no clock";
   if (priority == 0) return "real-time priority not requested";
   if (grant.fifo && grant.locked_memory)
     return fmt::format("real-time priority {} and locked memory granted", priority);
@@ -67,14 +53,12 @@ std::string text_of(const RealtimeGrant& grant, int priority) {
 DriverProcess::DriverProcess(const DriverProcessOptions& options)
     : options_(options),
       robot_(load(options)),
-      bridged_cycles_(bridged_cycles(options, &robot_)),
       locks_(lock_buses(robot_)),
-      black_box_(open_black_box("driver-" + robot_.name, robot_.rate_hz, options.lockstep)),
+      black_box_(open_black_box("driver-" + robot_.name, robot_.rate_hz, options.pace)),
       reporter_(robot_.joint_names()),
       user_plane_(user_plane_url(), LcmPort::Use::kPublishOnly),
-      grant_(request_realtime(options)),
-      port_(robot_, ArmDriverOptions{options.session, options.lockstep, bridged_cycles_},
-            &user_plane_, &reporter_) {
+      grant_(request_priority(options)),
+      port_(robot_, ArmDriverOptions{options.session, lockstep()}, &user_plane_, &reporter_) {
   port_.status().realtime_priority = grant_.fifo && grant_.locked_memory ? 1 : 0;
   port_.set_black_box(black_box_.get());
   user_plane_.set_black_box(black_box_.get());
@@ -84,10 +68,9 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
 int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
   log_start();
   check_interfaces();
-  if (!options_.lockstep) check_bus_is_free();
+  if (!lockstep()) check_bus_is_free();
   const std::string missing = discover_drives(
-      robot_, port_.buses(), options_.lockstep, options_.patience_s, stop,
-      [](const std::string& silent) {
+      robot_, port_.buses(), lockstep(), options_.patience_s, stop, [](const std::string& silent) {
         spdlog::warn(
             "warning: no answer yet from {}; check power, bit rate, termination and ids; still "
             "waiting",
@@ -98,7 +81,7 @@ int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
     spdlog::error("no answer for {:g} s from {}", options_.patience_s, missing);
     return kExitFailed;
   }
-  if (!options_.lockstep) {
+  if (!lockstep()) {
     const std::string twins = find_twins(robot_, port_.buses());
     if (!twins.empty()) {
       throw ConfigError(robot_.name + ": two motors answer to one id: " + twins +
@@ -116,10 +99,13 @@ int DriverProcess::run(const volatile std::sig_atomic_t& stop) {
 
 bool DriverProcess::run_cycles(const volatile std::sig_atomic_t& stop) {
   const RunLength length{options_.cycles, options_.duration_s};
-  if (options_.lockstep)
-    return LockstepRunner(&port_, robot_.rate_hz, options_.patience_s, length).run(stop);
-  RealtimeRunner(&port_, robot_.rate_hz, bridged_cycles_, length).run(stop);
-  return true;
+  if (!lockstep()) {
+    RealtimeRunner(&port_, robot_.rate_hz, length).run(stop);
+    return true;
+  }
+  LockstepRunner runner(&port_, robot_.rate_hz, options_.patience_s, length);
+  if (options_.pace == Pace::kPaced) runner.pace(grant_.reason);
+  return runner.run(stop);
 }
 
 void DriverProcess::check_interfaces() const {
@@ -180,9 +166,8 @@ void DriverProcess::log_start() const {
                          100.0 * expected_bus_load(robot_, static_cast<int>(b)));
   }
   spdlog::info("{}, {} joints, {:g} Hz {}, session {}; {}; {}", robot_.name, robot_.size(),
-               robot_.rate_hz, options_.lockstep ? "in lock step" : "in real time",
-               options_.session, buses,
-               options_.lockstep ? "no clock" : text_of(grant_, options_.realtime_priority));
+               robot_.rate_hz, lockstep() ? "in lock step" : "in real time", options_.session,
+               buses, text_of(options_.pace, grant_, options_.realtime_priority));
 }
 
 void DriverProcess::log_end() const {
@@ -193,7 +178,7 @@ void DriverProcess::log_end() const {
   for (const std::int64_t count : status.replies_lost) lost += count;
   spdlog::info("{} cycles; commands: {} accepted, {} refused, {} missing; replies lost: {}",
                status.cycles, status.commands_accepted, refused, status.commands_missing, lost);
-  if (options_.lockstep) return;
+  if (lockstep()) return;
   spdlog::info(
       "{} late and {} overrun cycles; start late by 50 %: {} us, 99 %: {} us, at most {} us; "
       "answer after 50 %: {} us, 99 %: {} us, at most {} us",

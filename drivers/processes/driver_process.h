@@ -10,6 +10,7 @@
 
 #include "common/black_box/black_box.h"
 #include "common/lcm_port.h"
+#include "common/pace.h"
 #include "common/realtime.h"
 #include "common/run_lock.h"
 #include "drivers/processes/arm_port.h"
@@ -22,7 +23,7 @@ struct DriverProcessOptions {
   std::string robot = "openarm";
   std::map<std::string, std::string> buses;  ///< name in robot.yaml -> address to use instead
   double rate_hz = 0.0;                      ///< 0: as in robot.yaml
-  bool lockstep = false;
+  Pace pace = Pace::kRealtime;
   std::int64_t session = 0;    ///< identifies this run, by run_id()
   std::int64_t cycles = 0;     ///< 0: for ever
   double duration_s = 0.0;     ///< arm time; 0: for ever
@@ -42,6 +43,7 @@ class DriverProcess {
   int run(const volatile std::sig_atomic_t& stop);
 
  private:
+  bool lockstep() const noexcept { return in_lockstep(options_.pace); }
   bool run_cycles(const volatile std::sig_atomic_t& stop);
   /// Adapters against robot.yaml: warns in the log, throws ConfigError for what is wrong.
   void check_interfaces() const;
@@ -54,7 +56,6 @@ class DriverProcess {
 
   DriverProcessOptions options_;
   Robot robot_;
-  int bridged_cycles_;
   std::vector<RunLock> locks_;  ///< on the arm plane and every bus: nobody else may drive them
   std::unique_ptr<BlackBox> black_box_;
   // In this order: the reporter's thread keeps normal priority.

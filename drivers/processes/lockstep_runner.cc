@@ -5,11 +5,14 @@
 #include <cmath>
 
 #include "common/clock.h"
+#include "common/pace_text.h"
+#include "common/realtime.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
 namespace {
 
+constexpr double kShutDownPatience_s = 1.0;
 constexpr std::int64_t kRepeat_ns = 100'000'000;  // then once more: a datagram may be lost
 
 /// Waits until `arrived(deadline)`, calling `repeat` in between. False after `patience_s`, or when
@@ -34,15 +37,56 @@ LockstepRunner::LockstepRunner(ArmPort* port, double rate_hz, double patience_s,
       period_ns_(std::llround(1e9 / rate_hz)),
       patience_s_(patience_s) {}
 
+void LockstepRunner::pace(const std::string& unraised) {
+  pacer_.emplace(period_ns_);
+  unraised_ = unraised;
+}
+
 bool LockstepRunner::run(const volatile std::sig_atomic_t& stop) {
   while (stop == 0 && !length_.reached(cycle_, static_cast<double>(cycle_ * period_ns_) * 1e-9)) {
+    if (pacer_) wait_until_due();
     const char* silent = cycle(stop);
     if (silent == nullptr) continue;
     if (stop != 0) break;
     spdlog::error("no {} for {:g} s (cycle {})", silent, patience_s_, cycle_);
     return false;
   }
+  if (!pacer_) return true;
+  report_pace();
+  if (stop != 0) shut_down();
   return true;
+}
+
+// Whoever stops a run that he watches sees the drives brake and go off, as those of a real arm.
+void LockstepRunner::shut_down() {
+  constexpr std::sig_atomic_t kGoOn = 0;
+  patience_s_ = kShutDownPatience_s;
+  const std::int64_t end = cycle_ + std::llround(kShutDownPatience_s * 1e9) / period_ns_;
+  port_->driver().request_shut_down();
+  while (!port_->driver().shut_down() && cycle_ < end) {
+    wait_until_due();
+    if (cycle(kGoOn) != nullptr) break;
+  }
+  spdlog::info(port_->driver().shut_down() ? "every drive reports disabled"
+                                           : "some drive does not report disabled");
+}
+
+void LockstepRunner::wait_until_due() {
+  sleep_until(pacer_->next_due_ns(monotonic_ns()));
+  const std::optional<double> share = pacer_->behind(monotonic_ns());
+  if (!share || told_) return;
+  told_ = true;
+  spdlog::warn(
+      "warning: {}: the three processes wait for one another's turn{}{}; nothing is lost. Close "
+      "other programs, or use --one-process",
+      pace_text(*share), unraised_.empty() ? "" : ", and ", unraised_);
+}
+
+void LockstepRunner::report_pace() const {
+  const double share = pacer_->share(monotonic_ns());
+  const std::string text = length_text(1e-9 * static_cast<double>(cycle_ * period_ns_), share);
+  share < Pacer::kBehind ? spdlog::warn("warning: {}; --one-process waits for no handovers", text)
+                         : spdlog::info("{}", text);
 }
 
 const char* LockstepRunner::cycle(const volatile std::sig_atomic_t& stop) {

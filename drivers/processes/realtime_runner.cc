@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/clock.h"
+#include "common/pace_text.h"
 #include "lcmtypes/channels.h"
 
 namespace limber {
@@ -14,13 +16,12 @@ constexpr std::int64_t kShutDownPatience_ns = 1'000'000'000;
 
 }  // namespace
 
-RealtimeRunner::RealtimeRunner(ArmPort* port, double rate_hz, int bridged_cycles,
-                               const RunLength& length)
+RealtimeRunner::RealtimeRunner(ArmPort* port, double rate_hz, const RunLength& length)
     : port_(port),
       length_(length),
       period_ns_(std::llround(1e9 / rate_hz)),
       loop_(period_ns_, PeriodicLoop::kSpin_ns),
-      overruns_(std::llround(std::ceil(rate_hz)), bridged_cycles) {}
+      overruns_(std::llround(std::ceil(rate_hz))) {}
 
 void RealtimeRunner::run(const volatile std::sig_atomic_t& stop) {
   first_ns_ = monotonic_ns();
@@ -39,6 +40,7 @@ void RealtimeRunner::cycle() {
   const std::int64_t lateness_ns = loop_.wait();
   const std::int64_t start_ns = monotonic_ns();
   if (cycle_ == 0) first_ns_ = start_ns;
+  started_ns_ = start_ns;
   note_start(lateness_ns);
 
   port_->read_commands();  // an answer that came during the sleep is still in time
@@ -55,11 +57,13 @@ void RealtimeRunner::note_start(std::int64_t lateness_ns) {
   CycleTiming& timing = port_->timing();
   timing.lateness.add(lateness_ns);
   if (lateness_ns > period_ns_ / 10) ++timing.late_cycles;
+  if (lateness_ns > std::max(kStall_ns, period_ns_)) port_->note_stall(lateness_ns);
 }
 
 void RealtimeRunner::note_end(std::int64_t lateness_ns) {
   const bool overrun = lateness_ns >= period_ns_ || monotonic_ns() > loop_.deadline_ns();
-  if (overruns_.too_many(overrun)) port_->driver().report_overruns();
+  longest_ns_ = overrun ? std::max(longest_ns_, monotonic_ns() - started_ns_ + lateness_ns) : 0;
+  if (overruns_.too_many(overrun)) port_->driver().report_overruns(longest_ns_);
   port_->timing().overrun_cycles = overruns_.count();
 }
 

@@ -13,8 +13,8 @@ namespace limber {
 
 class RealtimeRunner {
  public:
-  /// `port` outlives this. So many overruns in a row as `bridged_cycles` are bridged.
-  RealtimeRunner(ArmPort* port, double rate_hz, int bridged_cycles, const RunLength& length);
+  /// `port` outlives this.
+  RealtimeRunner(ArmPort* port, double rate_hz, const RunLength& length);
 
   /// Cycles until the end or until `stop` is set, then shuts the arm down: drives that are enabled
   /// brake for 0.3 s and are disabled.
@@ -32,7 +32,9 @@ class RealtimeRunner {
   PeriodicLoop loop_;
   OverrunWatch overruns_;
   std::int64_t cycle_ = 0;
-  std::int64_t first_ns_ = 0;  ///< CLOCK_MONOTONIC at cycle 0
+  std::int64_t first_ns_ = 0;    ///< CLOCK_MONOTONIC at cycle 0
+  std::int64_t started_ns_ = 0;  ///< at the present one
+  std::int64_t longest_ns_ = 0;  ///< of the overruns in a row
 };
 
 }  // namespace limber

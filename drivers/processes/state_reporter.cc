@@ -7,13 +7,14 @@
 #include <chrono>
 #include <limber/driver_status_t.hpp>
 
+#include "common/pace_text.h"
 #include "common/problem_text.h"
+#include "common/tell.h"
 #include "drivers/drives_text.h"
 
 namespace limber {
 namespace {
 
-constexpr std::uint64_t kNothing = ~std::uint64_t{0};
 constexpr auto kRound = std::chrono::milliseconds(20);
 constexpr int kRoundsPerSecond = std::chrono::seconds(1) / kRound;
 
@@ -21,19 +22,24 @@ int fault_of(std::uint64_t packed) noexcept { return static_cast<int>(packed >> 
 
 }  // namespace
 
-StateReporter::StateReporter(std::vector<std::string> joints)
-    : joints_(std::move(joints)), noted_(kNothing) {
+StateReporter::StateReporter(std::vector<std::string> joints) : joints_(std::move(joints)) {
   thread_ = std::jthread([this](const std::stop_token& stop) {
     std::uint64_t reported = kNothing;
     std::array<DriveWarning, kMaxMotors> warned{};
     bool last_round = false;
     while (!last_round) {
       last_round = stop.stop_requested();
-      const std::uint64_t noted = noted_.load(std::memory_order_acquire);
-      if (noted != reported) report_changes(reported, noted);
-      reported = noted;
-      report_warnings(&warned);
-      report_other_controller();
+      for (std::size_t k = taken_; k != queued_.load(std::memory_order_acquire);) {
+        const std::uint64_t noted = changes_[k % kChanges];
+        tell([&] { report_changes(reported, noted); });
+        reported = noted;
+        taken_.store(++k, std::memory_order_release);
+      }
+      tell([&] {
+        report_stall();
+        report_warnings(&warned);
+        report_other_controller();
+      });
       if (!last_round) std::this_thread::sleep_for(kRound);
     }
   });
@@ -62,12 +68,18 @@ void StateReporter::report_changes(std::uint64_t reported, std::uint64_t noted) 
 void StateReporter::report_warnings(std::array<DriveWarning, kMaxMotors>* reported) const {
   for (std::size_t m = 0; m < warnings_.size(); ++m) {
     const DriveWarning now = warnings_[m].load(std::memory_order_acquire);
-    if (now.differs((*reported)[m]) && warning_text_) {
+    const bool differs = now.differs((*reported)[m]);
+    (*reported)[m] = now;
+    if (differs && warning_text_) {
       const std::string text = warning_text_(static_cast<int>(m), now);
       now.any() ? spdlog::warn("warning: {}", text) : spdlog::info("{}", text);
     }
-    (*reported)[m] = now;
   }
+}
+
+void StateReporter::report_stall() {
+  const std::int64_t stall_ns = stall_ns_.exchange(0, std::memory_order_acq_rel);
+  if (stall_ns > 0) spdlog::warn("warning: {}", stall_text("limber-driver", stall_ns));
 }
 
 void StateReporter::report_other_controller() {

@@ -15,7 +15,7 @@
 
 namespace limber {
 
-/// A thread of normal priority that logs changes of the state noted last.
+/// A thread of normal priority that logs every change of the state, also one that lasts a cycle.
 class StateReporter {
  public:
   /// `joints`: names for messages. Start it before real-time priority is requested: threads inherit
@@ -61,12 +61,27 @@ class StateReporter {
     }
     last_fault_ = state.fault;
     if (by_controller_) packed |= kByController;
-    noted_.store(packed | std::uint64_t{fault_detail_} << 32U, std::memory_order_release);
+    queue(packed | std::uint64_t{fault_detail_} << 32U);
+  }
+  /// This process did nothing for so long: a line. Allowed inside the cycle.
+  void note_stall(std::int64_t time_ns) noexcept {
+    stall_ns_.store(time_ns, std::memory_order_release);
   }
 
  private:
   static constexpr std::uint64_t kSensorError = 1U << 24U;
   static constexpr std::uint64_t kByController = 1U << 25U;
+  static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
+  static constexpr std::size_t kChanges = 64;  ///< room for so many between two rounds
+
+  /// A change that finds no room is queued when there is some.
+  void queue(std::uint64_t packed) noexcept {
+    const std::size_t next = queued_.load(std::memory_order_relaxed);
+    if (packed == last_queued_ || next - taken_.load(std::memory_order_acquire) == kChanges) return;
+    changes_[next % kChanges] = packed;
+    last_queued_ = packed;
+    queued_.store(next + 1, std::memory_order_release);
+  }
   static std::uint32_t pack(std::int8_t state, std::int8_t fault, std::int8_t joint) noexcept {
     return static_cast<std::uint32_t>(static_cast<std::uint8_t>(state)) |
            static_cast<std::uint32_t>(static_cast<std::uint8_t>(fault)) << 8 |
@@ -75,6 +90,7 @@ class StateReporter {
   void report(std::uint64_t packed, int known_fault) const;
   void report_changes(std::uint64_t reported, std::uint64_t noted) const;
   void report_other_controller();
+  void report_stall();
 
   std::vector<std::string> joints_;
   FaultText fault_text_;
@@ -87,7 +103,11 @@ class StateReporter {
   std::int8_t last_fault_ = joint_state_t::FAULT_NONE;
   bool by_controller_ = false;
   std::uint16_t fault_detail_ = 0;  ///< when the fault began
-  std::atomic<std::uint64_t> noted_;
+  std::uint64_t last_queued_ = kNothing;
+  std::array<std::uint64_t, kChanges> changes_{};
+  std::atomic<std::size_t> queued_ = 0;
+  std::atomic<std::size_t> taken_ = 0;
+  std::atomic<std::int64_t> stall_ns_ = 0;          ///< 0: none to report
   std::atomic<std::int64_t> other_controller_ = 0;  ///< 0: none
   std::atomic<std::int64_t> holder_ = 0;
   std::int64_t controller_told_ = 0;  // of the thread, as the next

@@ -36,6 +36,8 @@ enum class Register : std::uint16_t {
   kTorqueD = 0x032,
   kTorqueFeedForward = 0x033,
   kTorqueTotal = 0x034,
+  kAux1GpioStatus = 0x05E,
+  kAux2GpioStatus = 0x05F,
   kMilliseconds = 0x070,
   kModel = 0x100,
   kFirmware = 0x101,

@@ -8,7 +8,7 @@ from limber.experiments import planar2r as arm
 from limber.experiments.context import Comparison, Context, at_most
 from limber.experiments.pictures import Axes, level, name_axes, note
 from limber.experiments.timeline import tip_gains
-from limber.experiments.truth import joints, motion, status
+from limber.experiments.truth import RAMP, joints, motion, status
 
 from .equilibria import closed_curve
 from .laws import ALONG, COLOR, DIRECT, P_D, Q_D, Form, K, name
@@ -17,6 +17,8 @@ from .laws import ALONG, COLOR, DIRECT, P_D, Q_D, Form, K, name
 # place where it could just rest
 START_S, SLOW_S, LONG_S = 2.0, 6.0, 30.0
 SHARES = (0.85, 1.15)
+# Once it snaps it swings as fast as its limits let it.
+SWINGS = RAMP | {"VELOCITY", "POSITION"}
 SNAPS: Form = ("full", "current")
 
 
@@ -48,7 +50,7 @@ def pushed(context: Context, form: Form, limit_N: float) -> Pushed:
     end = SLOW_S + LONG_S
     name = f"push_{'direct' if form == DIRECT else '_'.join(form)}"
     log = context.run_law(name, arm.ROBOT, gains, entries, end, start_q=Q_D)
-    status(log, START_S, end)
+    status(log, START_S, end, SWINGS)
     rows = motion(log, START_S, end)
     along = (rows["p_BT"][:, :2] - P_D) @ ALONG
     return Pushed(along, rows["F_push"][:, :2] @ ALONG, joints(rows)[:, 1])

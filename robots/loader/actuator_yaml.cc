@@ -29,6 +29,26 @@ void read_hydraulic(const YamlMap& yaml, ActuatorConfig* actuator) {
 
 }  // namespace
 
+namespace {
+
+/// Keys of the other kinds.
+void refuse_other_kinds(const YamlMap& yaml, ActuatorKind kind) {
+  const bool electric = kind == ActuatorKind::kCurrentDrive || kind == ActuatorKind::kVoltageDrive;
+  if (kind != ActuatorKind::kCurrentDrive) yaml.leave_to("kind: current_drive", {"lag_s"});
+  if (!electric) {
+    yaml.leave_to("kind: current_drive or voltage_drive",
+                  {"inductance_H", "back_emf_Vs_per_rad", "supply_V", "current_limit_A",
+                   "magnet_per_K", "copper_per_K", "thermal_resistance_K_per_W",
+                   "thermal_capacity_J_per_K", "cogging_Nm", "cogging_periods"});
+  }
+  if (kind != ActuatorKind::kHydraulic) {
+    yaml.leave_to("kind: hydraulic", {"fluid_stiffness_Nm_per_m3", "leakage_m3_per_s_per_Nm",
+                                      "displacement_m3_per_rad"});
+  }
+}
+
+}  // namespace
+
 ActuatorConfig read_actuator(const YamlMap& yaml) {
   ActuatorConfig actuator;
   const std::string kind =
@@ -41,6 +61,7 @@ ActuatorConfig read_actuator(const YamlMap& yaml) {
   } else if (kind != "ideal") {
     read_electric(yaml, &actuator);
   }
+  refuse_other_kinds(yaml, actuator.kind);
   yaml.finish();
   return actuator;
 }

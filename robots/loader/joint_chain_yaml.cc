@@ -36,6 +36,13 @@ SpringConfig read_spring(const YamlMap& yaml, const JointUnits& units) {
     spring.force_Nm = yaml.number("force" + units.force, {1e-9, 1e6});
     spring.rate_per_rad = yaml.number("rate_per" + units.position, kSteepness);
   }
+  if (law != "linear" && law != "cubic")
+    yaml.leave_to("law: linear or cubic", {"stiffness" + units.stiffness});
+  if (law != "cubic") yaml.leave_to("law: cubic", {power_key("k3", units, 3)});
+  if (law != "quadratic") yaml.leave_to("law: quadratic", {power_key("k2", units, 2)});
+  if (law != "exponential" && law != "sinh") {
+    yaml.leave_to("law: exponential or sinh", {"force" + units.force, "rate_per" + units.position});
+  }
   yaml.finish();
   return spring;
 }

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/complaints.h"
 #include "common/suggest.h"
+#include "common/unit_hint.h"
 #include "robots/loader/address_yaml.h"
 #include "robots/loader/joint_chain_yaml.h"
 #include "robots/loader/protocols/drive_protocol.h"
@@ -20,7 +22,8 @@ void tighten(const YamlMap& yaml, const std::string& key, double* limit) {
   if (!yaml.has(key)) return;
   const double wanted = yaml.number(key, {1e-6, 1e6});
   if (!(wanted <= *limit))
-    yaml.refuse(key, fmt::format("{} is wider than the {} of URDF and motor", wanted, *limit));
+    yaml.refuse(key, fmt::format("{} is wider than the {} of URDF and motor{}", wanted, *limit,
+                                 unit_hint(key, wanted, 0.0, *limit)));
   *limit = wanted;
 }
 
@@ -36,6 +39,19 @@ void need_limits(const YamlMap& yaml, const JointUnits& units, bool has_ends) {
                 "ignore: then robot.yaml gives every limit; missing: " + joined(keys));
 }
 
+/// As in a URDF: no joint turns further than twice.
+void refuse_degrees(const YamlMap& yaml, const JointConfig& joint, const std::string& low,
+                    const std::string& high) {
+  constexpr double kFurthest_rad = 4.0 * std::numbers::pi;
+  if (joint.type != JointType::kRevolute) return;
+  for (const auto& [key, value] :
+       {std::pair{low, joint.position_min}, std::pair{high, joint.position_max}}) {
+    if (!yaml.has(key) || std::abs(value) <= kFurthest_rad) continue;
+    yaml.refuse(key, fmt::format("{} rad is more than two turns{}", value,
+                                 unit_hint(key, value, -kFurthest_rad, kFurthest_rad)));
+  }
+}
+
 void read_limits(const YamlMap& yaml, JointConfig* joint) {
   const JointUnits& units = units_of(*joint);
   const std::string low = "position_min" + units.position;
@@ -44,19 +60,22 @@ void read_limits(const YamlMap& yaml, JointConfig* joint) {
   if (yaml.has(low)) {
     const double wanted = yaml.number(low, {-1e3, 1e3});
     if (!(wanted >= joint->position_min))
-      yaml.refuse(low, fmt::format("{} is below the {} of the URDF", wanted, joint->position_min));
+      yaml.refuse(low, fmt::format("{} is below the {} of the URDF{}", wanted, joint->position_min,
+                                   unit_hint(low, wanted, joint->position_min, 0.0)));
     joint->position_min = wanted;
   }
   if (yaml.has(high)) {
     const double wanted = yaml.number(high, {-1e3, 1e3});
     if (!(wanted <= joint->position_max))
-      yaml.refuse(high, fmt::format("{} is above the {} of the URDF", wanted, joint->position_max));
+      yaml.refuse(high, fmt::format("{} is above the {} of the URDF{}", wanted, joint->position_max,
+                                    unit_hint(high, wanted, 0.0, joint->position_max)));
     joint->position_max = wanted;
   }
   if (!(joint->position_min < joint->position_max)) {
     yaml.refuse(yaml.has(high) ? high : low,
                 fmt::format("no room between {} and {}", joint->position_min, joint->position_max));
   }
+  refuse_degrees(yaml, *joint, low, high);
   const DriveConfig& drive = joint->drive;
   joint->velocity_limit = std::min(joint->velocity_limit, drive.range.velocity_rad_per_s);
   joint->torque_limit_Nm =
@@ -139,8 +158,10 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
   joint.home = yaml.number("home" + units.position, {-1e3, 1e3});
   if (!(joint.home >= joint.position_min && joint.home <= joint.position_max)) {
     yaml.refuse("home" + units.position,
-                fmt::format("{} is outside the limits {} to {}", joint.home, joint.position_min,
-                            joint.position_max));
+                fmt::format("{} is outside the limits {} to {}{}", joint.home, joint.position_min,
+                            joint.position_max,
+                            unit_hint("home" + units.position, joint.home, joint.position_min,
+                                      joint.position_max)));
   }
   read_joint_chain(yaml, robot->rate_hz, &joint);
   joint.drive.frames = frames_of(joint, *robot);

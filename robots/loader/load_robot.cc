@@ -9,6 +9,7 @@
 
 #include "common/config_error.h"
 #include "common/suggest.h"
+#include "robots/loader/doubtful_figures.h"
 #include "robots/loader/mass_check.h"
 #include "robots/loader/required_keys.h"
 #include "robots/loader/robot_yaml.h"
@@ -106,6 +107,8 @@ LoadedRobot load_from(const YamlMap& yaml, const fs::path& folder) {
   read_robot_yaml(yaml, &loaded.robot);
   check_tool_mass(yaml, loaded);
   check_mass_matrix(loaded, parts.unphysical);
+  for (std::string& note : doubtful_figures(yaml, loaded.robot))
+    loaded.notes.push_back(std::move(note));
   return loaded;
 }
 

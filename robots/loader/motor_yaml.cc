@@ -58,7 +58,7 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
 
 BusConfig read_bus(const YamlMap& yaml) {
   BusConfig bus;
-  bus.name = yaml.text("name");
+  bus.name = yaml.name("name");
   bus.can = yaml.text("can");
   const auto colon = bus.can.find(':');
   const std::string kind = bus.can.substr(0, colon);
@@ -75,6 +75,8 @@ BusConfig read_bus(const YamlMap& yaml) {
   if (bus.fd) {
     bus.data_bitrate_bps =
         static_cast<int>(yaml.integer("data_bitrate_bps", bus.bitrate_bps, 8'000'000));
+  } else {
+    yaml.leave_to("fd: true", {"data_bitrate_bps"});
   }
   std::vector<std::string> adapters;
   for (const AdapterTiming& adapter : kAdapters) adapters.emplace_back(adapter.word);
@@ -83,6 +85,7 @@ BusConfig read_bus(const YamlMap& yaml) {
     if (adapter.word == word) bus.adapter = adapter.adapter;
   }
   if (bus.fd && !timing_of(bus.adapter).fd) yaml.refuse("adapter", word + " carries no CAN-FD");
+  bus.reply_window_s = yaml.number_or("reply_window_s", {1e-5, 1.0}, 0.0);
   yaml.finish();
   return bus;
 }

@@ -26,6 +26,9 @@ struct BusConfig {
   int bitrate_bps = 1'000'000;
   int data_bitrate_bps = 5'000'000;  ///< FD data phase
   CanAdapter adapter = CanAdapter::kNative;
+  /// How long the driver waits for replies, s after the start of a cycle; 0: as predicted for the
+  /// bus (drivers/bus_load.h).
+  double reply_window_s = 0.0;
 };
 
 /// Bytes between driver and drive; what the loaders know of each is in protocols/drive_protocol.h.

@@ -61,7 +61,7 @@ std::set<std::string> ignored_limits(const YamlMap& yaml) {
 RobotHeader read_robot_header(const YamlMap& yaml) {
   yaml.word("format", {kFormat});
   RobotHeader header;
-  header.name = yaml.text("name");
+  header.name = yaml.name("name");
   yaml.text_or("description", "-");
   header.urdf = yaml.text("urdf");
   header.base = yaml.text("base");

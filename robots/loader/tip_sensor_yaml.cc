@@ -96,7 +96,10 @@ void read_wire(const YamlMap& yaml, const Robot& robot, TipSensorConfig* sensor)
     yaml.refuse("bus",
                 fmt::format("'{}' is a classic bus; {} needs fd: true", bus.name, traits.word));
   }
-  if (!traits.counts) return;
+  if (!traits.counts) {
+    yaml.leave_to("protocol: robotous_rft", {"counts_per_N", "counts_per_Nm"});
+    return;
+  }
   sensor->counts_per_N = yaml.number_or("counts_per_N", {0.1, 1e5}, sensor->counts_per_N);
   sensor->counts_per_Nm = yaml.number_or("counts_per_Nm", {0.1, 1e6}, sensor->counts_per_Nm);
 }
@@ -121,6 +124,8 @@ void read_ids(const YamlMap& yaml, const Robot& robot, TipSensorConfig* sensor) 
   sensor->command_id = static_cast<std::uint32_t>(yaml.integer("id", 1, kMostId));
   const bool two = sensor->replies() == 2;
   const std::string key = two ? "reply_ids" : "reply_id";
+  yaml.leave_to(two ? "protocol: limber_ft" : "protocol: robotous_rft",
+                {two ? "reply_id" : "reply_ids"});
   if (two) {
     const auto ids = yaml.numbers(key, 2, {1.0, kMostId});
     for (std::size_t i = 0; i < 2; ++i) {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "common/config_error.h"
+#include "robots/loader/xml_text.h"
 
 namespace limber {
 namespace {
@@ -28,11 +29,6 @@ std::string read_text(const std::string& path) {
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
-}
-
-int line_at(const std::string& text, std::size_t position) {
-  return 1 + static_cast<int>(
-                 std::count(text.begin(), text.begin() + static_cast<long>(position), '\n'));
 }
 
 /// The five characters that XML has names for, and nothing else: of a bare `&`, and of characters
@@ -89,11 +85,17 @@ void scan(const std::string& text, const std::string& path) {
   scan_references(text, path);
 }
 
+bool is_known_version(const std::string& version) {
+  return std::ranges::any_of(std::array{"1.0", "1.1", "1.2", "1"},
+                             [&](const char* known) { return version == known; });
+}
+
 }  // namespace
 
 std::shared_ptr<const tinyxml2::XMLDocument> read_urdf_file(const std::string& path) {
   const std::string text = read_text(path);
   scan(text, path);
+  check_xml_text(text, path);
   auto document = std::make_shared<tinyxml2::XMLDocument>();
   if (document->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw ConfigError::at(path, document->ErrorLineNum(), "",
@@ -102,6 +104,12 @@ std::shared_ptr<const tinyxml2::XMLDocument> read_urdf_file(const std::string& p
   const tinyxml2::XMLElement* root = document->RootElement();
   if (root == nullptr || std::string(root->Name()) != "robot")
     throw ConfigError::at(path, 0, "", "no <robot> at the top: not a URDF");
+  const char* version = root->Attribute("version");
+  if (version != nullptr && !is_known_version(version)) {
+    throw ConfigError::at(
+        path, root->GetLineNum(), "<robot>",
+        fmt::format("version \"{}\"; limber reads URDF 1.0, 1.1 and 1.2", version));
+  }
   return document;
 }
 

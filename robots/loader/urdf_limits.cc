@@ -38,6 +38,11 @@ void read_travel(const tinyxml2::XMLElement& limit, const std::string& type,
 
 void read_most(const tinyxml2::XMLElement& limit, const char* attribute, const std::string& where,
                const LimitFindings& findings, double* most) {
+  if (limit.Attribute(attribute) == nullptr) {
+    findings.placeholders->add(limit.GetLineNum(), where,
+                               fmt::format("<limit> without {}", attribute));
+    return;
+  }
   const auto value = attribute_numbers(limit, attribute);
   if (value.empty()) return;
   if (value[0] == 0.0) {

@@ -19,6 +19,9 @@ using tinyxml2::XMLElement;
 /// No joint limit or mounting angle is two turns; 90 or 180 is.
 constexpr double kLargestAngle_rad = 4.0 * std::numbers::pi;
 
+/// Of a quaternion's length: what is written with three digits is one.
+constexpr double kRoundedQuaternion = 5e-3;
+
 struct NumberRule {
   const char* element;
   const char* attribute;
@@ -29,6 +32,7 @@ struct NumberRule {
 constexpr NumberRule kNumberRules[] = {
     {"origin", "xyz", 3, false},
     {"origin", "rpy", 3, false},
+    {"origin", "quat_xyzw", 4, false},
     {"mass", "value", 1, true},
     {"inertia", "ixx", 1, true},
     {"inertia", "ixy", 1, true},
@@ -39,8 +43,11 @@ constexpr NumberRule kNumberRules[] = {
     {"axis", "xyz", 3, true},
     {"limit", "lower", 1, false},
     {"limit", "upper", 1, false},
-    {"limit", "effort", 1, true},
-    {"limit", "velocity", 1, true},
+    {"limit", "effort", 1, false},
+    {"limit", "velocity", 1, false},
+    {"limit", "acceleration", 1, false},
+    {"limit", "deceleration", 1, false},
+    {"limit", "jerk", 1, false},
     {"dynamics", "damping", 1, false},
     {"dynamics", "friction", 1, false},
     {"mimic", "multiplier", 1, false},
@@ -55,6 +62,8 @@ constexpr NumberRule kNumberRules[] = {
     {"cylinder", "radius", 1, true},
     {"cylinder", "length", 1, true},
     {"sphere", "radius", 1, true},
+    {"capsule", "radius", 1, true},
+    {"capsule", "length", 1, true},
     {"mesh", "scale", 3, false},
     {"color", "rgba", 4, true},
 };
@@ -96,6 +105,19 @@ void check_angle(const XMLElement& element, const char* attribute, const std::st
   }
 }
 
+void check_quaternion(const XMLElement& element, const std::string& where, Complaints* complaints) {
+  const auto q = attribute_numbers(element, "quat_xyzw");
+  if (q.size() != 4) return;
+  const std::string place = fmt::format("<{}> quat_xyzw: ", element.Name());
+  if (element.Attribute("rpy") != nullptr)
+    complaints->add(element.GetLineNum(), where, place + "rpy is here, too; leave one of them out");
+  const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  if (std::abs(norm - 1.0) <= kRoundedQuaternion) return;
+  complaints->add(
+      element.GetLineNum(), where,
+      place + fmt::format("a quaternion of length {:.6g} is no rotation; expected 1", norm));
+}
+
 void check_number(const XMLElement& element, const NumberRule& rule, const std::string& where,
                   Complaints* complaints) {
   const char* text = element.Attribute(rule.attribute);
@@ -121,6 +143,7 @@ void check_attribute_names(const XMLElement& element, const std::string& where,
   }
   for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
     if (std::find(allowed.begin(), allowed.end(), attribute->Name()) != allowed.end()) continue;
+    if (is_foreign(attribute->Name())) continue;
     if (shared && nearest_word(attribute->Name(), allowed).empty()) continue;
     complaints->add(attribute->GetLineNum(), where,
                     fmt::format("<{}>: unknown attribute '{}'; allowed here: {}", element.Name(),
@@ -137,6 +160,7 @@ void check_children(const XMLElement& element, const std::string& where,
                                                                : nullptr;
   for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
     const std::string tag = child->Name();
+    if (is_foreign(child->Name())) continue;
     if (is_one_of(child->Name(), kSingleElements) &&
         element.FirstChildElement(child->Name()) != child) {
       complaints_of(tag)->add(child->GetLineNum(), where, fmt::format("<{}> is here twice", tag));
@@ -155,14 +179,18 @@ void check_element(const XMLElement& element, const std::string& where, Complain
       check_number(element, rule, where, complaints);
   }
   check_angle(element, "rpy", where, complaints);
+  check_quaternion(element, where, complaints);
   check_attribute_names(element, where, complaints);
   check_children(element, where, [&](const std::string&) { return complaints; });
   // The parser refuses nesting deeper than 100, so this recursion is bounded.
-  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
-    check_element(*child, where, complaints);
+  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    if (!is_foreign(child->Name())) check_element(*child, where, complaints);
+  }
 }
 
 }  // namespace
+
+bool is_foreign(const char* name) { return std::strchr(name, ':') != nullptr; }
 
 std::vector<double> attribute_numbers(const XMLElement& element, const char* attribute) {
   const char* text = element.Attribute(attribute);
@@ -184,8 +212,9 @@ double attribute_number(const XMLElement& element, const char* attribute, double
 void check_urdf_numbers(const XMLElement& top, const std::string& where,
                         const ComplaintsOf& complaints_of) {
   check_children(top, where, complaints_of);
-  for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement())
-    check_element(*child, where, complaints_of(child->Name()));
+  for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    if (!is_foreign(child->Name())) check_element(*child, where, complaints_of(child->Name()));
+  }
 }
 
 }  // namespace limber

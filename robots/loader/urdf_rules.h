@@ -17,6 +17,9 @@ std::vector<double> attribute_numbers(const tinyxml2::XMLElement& element, const
 double attribute_number(const tinyxml2::XMLElement& element, const char* attribute,
                         double otherwise);
 
+/// A name with a prefix, as drake:acceleration: somebody's extension, which limber does not read.
+bool is_foreign(const char* name);
+
 /// Where the complaints about a part of a link or joint go, by the name of its element.
 using ComplaintsOf = std::function<Complaints*(const std::string& tag)>;
 

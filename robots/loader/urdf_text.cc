@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/complaints.h"
+#include "robots/loader/doubtful_figures.h"
 #include "robots/loader/urdf_reduce.h"
 #include "robots/loader/urdf_rules.h"
 
@@ -56,6 +57,40 @@ void check_link(const XMLElement& link, const UrdfUse& use, Findings* findings) 
                        moves ? "; used as it is" : "", moves ? &findings->unphysical : &fixed});
 }
 
+/// Ends of a joint that has none.
+void tell_of_travel(const UrdfJointText& joint, const std::string& where, Complaints* told) {
+  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  if (limit == nullptr || joint.type != "continuous") return;
+  const double lower = attribute_number(*limit, "lower", 0.0);
+  const double upper = attribute_number(*limit, "upper", 0.0);
+  if (lower == 0.0 && upper == 0.0) return;
+  told->add(limit->GetLineNum(), where,
+            fmt::format("<limit>: lower {} and upper {} are ignored: a continuous joint turns "
+                        "without end; with ends it is revolute",
+                        lower, upper));
+}
+
+/// A speed that no joint reaches.
+void tell_of_speed(const UrdfJointText& joint, const std::string& where, Complaints* told) {
+  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  if (limit == nullptr) return;
+  const double speed = attribute_number(*limit, "velocity", 0.0);
+  const std::string doubt = doubtful_speed(speed, joint.type == "prismatic");
+  if (!doubt.empty())
+    told->add(limit->GetLineNum(), where, fmt::format("<limit> velocity: {}{}", speed, doubt));
+}
+
+/// Distances that no arm has.
+void tell_of_lengths(const UrdfJointText& joint, const std::string& where, Complaints* told) {
+  const XMLElement* origin = joint.element->FirstChildElement("origin");
+  if (origin == nullptr) return;
+  for (const double length : attribute_numbers(*origin, "xyz")) {
+    const std::string doubt = doubtful_length(length);
+    if (!doubt.empty())
+      told->add(origin->GetLineNum(), where, fmt::format("<origin> xyz: {} m{}", length, doubt));
+  }
+}
+
 /// A joint of the arm.
 UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bool ignores_limit,
                         Findings* findings) {
@@ -65,6 +100,8 @@ UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bo
   check_axis(*joint.element, where, &findings->refused, &findings->told);
   if (joint.element->FirstChildElement("mimic") != nullptr)
     findings->told.add(joint.line, where, "<mimic> is ignored: it moves by itself");
+  tell_of_travel(joint, where, &findings->told);
+  tell_of_speed(joint, where, &findings->told);
   if (ignores_limit) {
     findings->told.add(joint.line, where, "<limit> ignored (urdf_limits: ignore)");
     return {};
@@ -74,6 +111,21 @@ UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bo
                        "no <limit>, so neither speed nor torque is limited by the URDF");
   }
   return read_urdf_limits(joint, where, {&findings->refused, &findings->placeholders});
+}
+
+/// A joint that is frozen where it cannot be.
+void tell_of_zero(const UrdfJointText& joint, const std::string& where, Complaints* told) {
+  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  if (limit == nullptr || joint.type == "continuous") return;
+  const double lower = attribute_number(*limit, "lower", 0.0);
+  const double upper = attribute_number(*limit, "upper", 0.0);
+  if (!(lower < upper) || (lower <= 0.0 && upper >= 0.0)) return;
+  told->add(
+      limit->GetLineNum(), where,
+      fmt::format("frozen at zero, which lies outside its limits {} to {}: what hangs from it "
+                  "is placed, and weighs, as if it were there; a fixed joint at the pose it "
+                  "has would be right",
+                  lower, upper));
 }
 
 /// A joint that keeps its place, or is not used at all. `carried`: by a link of the arm.
@@ -86,6 +138,7 @@ void check_resting(const UrdfJointText& joint, const std::string& where, JointUs
   if (const std::string problem = joint.type_problem(); !problem.empty())
     findings->elsewhere.add(joint.line, where, problem);
   if (use == JointUse::kNone || !joint.moves()) return;
+  tell_of_zero(joint, where, &findings->told);
   if (carried) {
     findings->frozen.push_back(&joint);
   } else {
@@ -111,12 +164,60 @@ void check_joint(const UrdfJointText& joint, const UrdfUse& use,
                  std::map<std::string, UrdfLimits>* limits) {
   const std::string where = fmt::format("joint '{}'", joint.name);
   const JointUse joint_use = use.of(joint);
+  if (joint_use != JointUse::kNone) tell_of_lengths(joint, where, &findings->told);
   if (joint_use == JointUse::kMoves) {
     (*limits)[joint.name] = check_moving(joint, where, ignored.contains(joint.name), findings);
   } else {
     check_resting(joint, where, joint_use, use.moving_links.contains(joint.child), findings);
   }
 }
+
+/// What an element or attribute would change, if limber read it.
+const std::map<std::string, std::string> kUnread = {
+    {"<safety_controller>", "soft limits"},
+    {"acceleration", "limber limits position, speed and torque"},
+    {"deceleration", "limber limits position, speed and torque"},
+    {"jerk", "limber limits position, speed and torque"},
+};
+
+/// What is in the file and nobody reads, each kind once, with the first line of it.
+class Unread {
+ public:
+  explicit Unread(const XMLElement& root) { visit(root); }
+
+  void tell(Complaints* told) const {
+    for (const auto& [name, place] : places_) {
+      const auto [line, count] = place;
+      const auto why = kUnread.find(name);
+      told->add(line, name,
+                fmt::format("not read{}{}", count > 1 ? fmt::format(" ({} times)", count) : "",
+                            why == kUnread.end() ? ": an extension" : ": " + why->second));
+    }
+  }
+
+ private:
+  void visit(const XMLElement& element) {
+    const bool limit = std::string_view(element.Name()) == "limit";
+    for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
+      const std::string name = attribute->Name();
+      const bool declares = name.starts_with("xmlns:");
+      if ((is_foreign(name.c_str()) && !declares) || (limit && kUnread.contains(name)))
+        add(name, attribute->GetLineNum());
+    }
+    for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+      const std::string name = fmt::format("<{}>", child->Name());
+      if (is_foreign(child->Name()) || kUnread.contains(name)) add(name, child->GetLineNum());
+      if (!is_foreign(child->Name())) visit(*child);
+    }
+  }
+
+  void add(const std::string& name, int line) {
+    const auto place = places_.emplace(name, std::pair{line, 0}).first;
+    ++place->second.second;
+  }
+
+  std::map<std::string, std::pair<int, int>> places_;  ///< by name: first line, how often
+};
 
 void append(const Complaints& complaints, const std::string& ending,
             std::vector<std::string>* notes) {
@@ -138,6 +239,7 @@ UrdfText check_urdf(const UrdfTree& tree, const UrdfUse& use,
   }
   findings.refused.throw_if_any();
   tell_of_frozen(findings.frozen, &findings.told);
+  Unread(*tree.document->RootElement()).tell(&findings.told);
   urdf.placeholders = findings.placeholders.lines();
   urdf.unphysical = std::move(findings.unphysical);
   append(findings.told, "", &urdf.notes);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/complaints.h"
+#include "common/names.h"
 #include "common/suggest.h"
 #include "robots/loader/urdf_file.h"
 
@@ -26,6 +27,8 @@ std::string name_of(const XMLElement& element, std::map<std::string, int>* lines
     complaints->add(element.GetLineNum(), tag, "has no name");
     return "";
   }
+  if (const std::string problem = shown_name_problem(name); !problem.empty())
+    complaints->add(element.GetLineNum(), tag, problem);
   const auto [earlier, added] = lines->emplace(name, element.GetLineNum());
   if (!added) {
     complaints->add(element.GetLineNum(), tag,

@@ -7,6 +7,7 @@
 #include "common/complaints.h"
 #include "common/yaml_reader.h"
 #include "scenarios/loader/entry_yaml.h"
+#include "scenarios/loader/reality_keys.h"
 #include "scenarios/loader/scenario.h"
 #include "scenarios/loader/values_yaml.h"
 
@@ -39,10 +40,10 @@ double read_step(const YamlMap& yaml, double rate_hz) {
 
 /// Same joints, same buses: only what an arm is like may differ.
 LoadedRobot read_reality(const YamlMap& yaml, const LoadedRobot& robot) {
-  for (const char* key : {"format", "name", "base", "tip", "rate_hz", "buses", "watchdog"}) {
-    if (yaml.has(key)) yaml.refuse(key, "cannot differ between robot.yaml and reality");
-  }
-  return load_reality(robot.robot.folder, yaml);
+  check_reality_keys(yaml);
+  LoadedRobot real = load_reality(robot.robot.folder, yaml);
+  check_reality_sensors(yaml, robot.robot, real.robot);
+  return real;
 }
 
 WireOptions read_wire(const YamlMap& yaml, std::uint64_t seed) {
@@ -122,7 +123,8 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   yaml.word("format", {kFormat});
   Scenario scenario;
   scenario.path = path;
-  scenario.name = yaml.text_or("name", std::filesystem::path(path).stem());
+  scenario.name =
+      yaml.has("name") ? yaml.name("name") : std::filesystem::path(path).stem().string();
   yaml.text_or("description", "-");
   scenario.robot = yaml.text("robot");
   scenario.lockstep = yaml.word_or("mode", {"lockstep", "realtime"}, "lockstep") == "lockstep";
@@ -133,6 +135,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
                             : Integrator::kReference;
   scenario.step_s = read_step(yaml, robot.robot.rate_hz);
   scenario.friction = yaml.boolean_or("friction", true);
+  scenario.allow_unstable = yaml.boolean_or("allow_unstable", false);
   scenario.wire = read_wire(yaml, scenario.seed);
   scenario.stand = yaml.boolean_or("stand", true);
   if (yaml.has("reality")) scenario.reality = read_reality(yaml.map("reality"), robot);

@@ -48,6 +48,7 @@ struct Scenario {
   Integrator integrator = Integrator::kOde;
   double step_s = 250e-6;  ///< integration step; a whole number of them makes a control period
   bool friction = true;
+  bool allow_unstable = false;  ///< gains known to be unstable act, with a warning; else refused
   WireOptions wire;
   bool stand = true;  ///< the arm is carried at its start pose until the drives hold it
   /// The simulated arm, where it differs from what drives and controller believe.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/unit_hint.h"
+
 namespace limber {
 
 int index_of(const std::string& word, const std::vector<std::string>& words) {
@@ -32,8 +34,11 @@ void read_joint_pose(const YamlMap& yaml, const std::string& key, const Robot& r
   for (std::size_t i = 0; i < pose.size(); ++i) {
     const JointConfig& joint = robot.joints[i];
     if (!(pose[i] >= joint.position_min && pose[i] <= joint.position_max)) {
-      yaml.refuse(key, fmt::format("{} for {} is outside its limits {} to {}", pose[i], joint.name,
-                                   joint.position_min, joint.position_max));
+      const std::string unit = joint.type == JointType::kPrismatic ? "_m" : "_rad";
+      yaml.refuse(key,
+                  fmt::format("{} for {} is outside its limits {} to {}{}", pose[i], joint.name,
+                              joint.position_min, joint.position_max,
+                              unit_hint(unit, pose[i], joint.position_min, joint.position_max)));
     }
     q[i] = pose[i];
   }

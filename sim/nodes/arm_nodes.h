@@ -28,6 +28,9 @@ class ArmNodes {
   int size() const noexcept { return motors_.size() + 2; }
   /// Hands a frame from a bus to its nodes and sends their answers there.
   void receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept;
+  void send_pending_of(int bus, std::int64_t now_ns, BusSide* out) noexcept {
+    motors_.send_pending_of(bus, now_ns, out);
+  }
   /// After an integration step of h seconds: sensors, loops, watchdogs, unsolicited frames.
   void update(const SimulatedArm& arm, double h, std::int64_t now_ns,
               std::vector<BusSide>* buses) noexcept;

@@ -171,6 +171,9 @@ bool MoteusNode::read(std::uint16_t reg, const JointReading& joint, double* valu
       return is(kVoltage_V);
     case Register::kFault:
       return is(fault_);
+    case Register::kAux1GpioStatus:
+    case Register::kAux2GpioStatus:
+      return is(0.0);  // nothing is wired to its auxiliary ports
     case Register::kMilliseconds:
       return is(static_cast<double>(now_ns_ / 1'000'000));
     case Register::kModel:

@@ -18,6 +18,18 @@ JointConfig antagonist_of(const JointConfig& joint) {
   return out;
 }
 
+/// What drives know is from robot.yaml; how they are mounted and wired is the arm's.
+JointConfig as_mounted(const JointConfig& believed, const JointConfig& real) {
+  JointConfig out = believed;
+  out.drive.command_id = real.drive.command_id;
+  out.drive.reply_id = real.drive.reply_id;
+  out.drive.sign = real.drive.sign;
+  out.drive.offset_rad = real.drive.offset_rad;
+  out.antagonist.sign = real.antagonist.sign;
+  out.antagonist.offset_rad = real.antagonist.offset_rad;
+  return out;
+}
+
 bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(ratio)) < 1e-6; }
 
 }  // namespace
@@ -25,9 +37,10 @@ bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(rat
 MotorNodes::MotorNodes(const Robot& robot, const Robot& reality, const ForceModel& forces,
                        const ArmState& x) {
   for (int i = 0; i < robot.size(); ++i) {
-    add(robot.joints[i], i, robot);
-    if (robot.joints[i].has_antagonist) add(antagonist_of(robot.joints[i]), i, robot);
     const JointConfig& real = reality.joints[i];
+    const JointConfig joint = as_mounted(robot.joints[i], real);
+    add(joint, i, robot);
+    if (joint.has_antagonist) add(antagonist_of(joint), i, robot);
     const auto seed = static_cast<unsigned>(i);
     for (int k = 0; k < real.motors(); ++k)
       motor_encoders_.emplace_back(real.motor_encoder,
@@ -89,6 +102,12 @@ void MotorNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns,
       out->send(k, reply, now_ns);
     }
     send_pending(k, now_ns, out);
+  }
+}
+
+void MotorNodes::send_pending_of(int bus, std::int64_t now_ns, BusSide* out) noexcept {
+  for (int k = 0; k < size(); ++k) {
+    if (nodes_[k].bus == bus) send_pending(k, now_ns, out);
   }
 }
 

@@ -30,6 +30,8 @@ class MotorNodes {
   int size() const noexcept { return static_cast<int>(nodes_.size()); }
   /// Hands a frame from a bus to its nodes and sends their answers there.
   void receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept;
+  /// What the nodes of a bus send unasked, such as a boot-up message.
+  void send_pending_of(int bus, std::int64_t now_ns, BusSide* out) noexcept;
   /// After an integration step of h seconds: sensors, loops, watchdogs, then unsolicited
   /// frames.
   void update(const ForceModel& forces, const ArmState& x, double h, std::int64_t now_ns,

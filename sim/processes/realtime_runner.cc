@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/clock.h"
+#include "common/pace_text.h"
 
 namespace limber::sim {
 namespace {
@@ -44,11 +45,10 @@ void RealtimeRunner::drop_time(std::int64_t behind_ns) {
   dropped_ns_ += behind_ns;
   ++drops_;
   anchored_ = false;  // simulated time now lags arm time by more
-  port_.complain("cannot keep up: simulated time was dropped");
+  port_.complain("warning: " + stall_text("limber-sim", behind_ns));
 }
 
 void RealtimeRunner::on_state(const joint_state_t& state) {
-  port_.watch_faults(state);
   if (state.session != session_) {
     session_ = state.session;
     anchored_ = false;

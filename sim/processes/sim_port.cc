@@ -1,15 +1,18 @@
 #include "sim/processes/sim_port.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "common/clock.h"
 #include "common/problem_text.h"
+#include "common/tell.h"
+#include "sim/processes/world_requests.h"
 
 namespace limber::sim {
 namespace {
 
 constexpr std::int64_t kComplaintInterval_ns = 1'000'000'000;
-constexpr int kUserQueue = 100;  // a push or an event now and then
+constexpr int kUserQueue = 100;
 
 std::vector<RunLock> lock_buses(const Robot& robot) {
   std::vector<RunLock> locks;
@@ -39,14 +42,19 @@ SimPort::SimPort(const LoadedRobot& robot, const std::vector<TimedMessage>* time
       simulator_(robot, bus_pointers_, options),
       user_(user_plane_url()) {
   simulator_.set_timeline(timeline);
-  user_.subscribe<push_t>(channels::kPush, kUserQueue, [this](const push_t& push) {
-    if (!simulator_.push(push)) complain("a PUSH was refused (values, link, or no free slot)");
+  take_world_requests(&user_, &simulator_, [this](const char* what) { complain(what); });
+}
+
+void SimPort::handle_messages() noexcept {
+  user_.handle_waiting(kMessagesAtOnce);
+  if (user_.undecodable() == undecodable_told_ || !may_complain()) return;
+  undecodable_told_ = user_.undecodable();
+  tell([this] {
+    complain(
+        fmt::format("{} messages to the simulator (PUSH, SCENARIO_EVENT) were dropped: no such "
+                    "message, or of another version of limber",
+                    undecodable_told_));
   });
-  user_.subscribe<scenario_event_t>(
-      channels::kScenarioEvent, kUserQueue, [this](const scenario_event_t& event) {
-        if (!simulator_.event(event))
-          complain("a SCENARIO_EVENT was refused (values out of range)");
-      });
 }
 
 void SimPort::publish_truth() noexcept { user_.publish(channels::kSimTruth, simulator_.truth()); }
@@ -58,11 +66,13 @@ void SimPort::set_black_box(BlackBox* box) {
   user_.subscribe<controller_status_t>(
       channels::kControllerStatus, kUserQueue,
       [this](const controller_status_t& status) { watch_faults(status); });
+  user_.subscribe<driver_status_t>(channels::kDriverStatus, kUserQueue,
+                                   [this](const driver_status_t& status) { watch_faults(status); });
 }
 
-void SimPort::watch_faults(const joint_state_t& state) {
-  if (state.fault == fault_) return;
-  fault_ = state.fault;
+void SimPort::watch_faults(const driver_status_t& status) {
+  if (status.fault == fault_) return;
+  fault_ = status.fault;
   const Problem* problem = find_problem(problems::kDriver, fault_);
   if (problem != nullptr && fault_ != joint_state_t::FAULT_REQUESTED)
     keep(black_box_, problem->code);
@@ -77,10 +87,13 @@ void SimPort::watch_faults(const controller_status_t& status) {
     keep(black_box_, problem->code);
 }
 
-void SimPort::complain(const char* what) {
-  const std::int64_t now_ns = monotonic_ns();
-  if (complained_ns_ != 0 && now_ns - complained_ns_ < kComplaintInterval_ns) return;
-  complained_ns_ = now_ns;
+bool SimPort::may_complain() const noexcept {
+  return complained_ns_ == 0 || monotonic_ns() - complained_ns_ >= kComplaintInterval_ns;
+}
+
+void SimPort::complain(const std::string& what) {
+  if (!may_complain()) return;
+  complained_ns_ = monotonic_ns();
   spdlog::warn("{}", what);
 }
 

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <limber/controller_status_t.hpp>
+#include <limber/driver_status_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/lcm_port.h"
@@ -33,18 +35,19 @@ class SimPort {
   void wait(std::int64_t deadline_ns) noexcept {
     wait_readable(bus_pointers_, deadline_ns, user_.descriptor());
   }
-  void handle_messages() noexcept { user_.handle_waiting(kMessagesAtOnce); }
+  void handle_messages() noexcept;
   void publish_truth() noexcept;
   /// Keeps what is published and heard from now on, as an incident when driver or controller has a
   /// fault. Outlives this. Set-up only.
   void set_black_box(BlackBox* box);
-  /// Each state of the driver. Not for lock step.
-  void watch_faults(const joint_state_t& state);
-  void watch_faults(const controller_status_t& status);
   /// To the log, at most once a second.
-  void complain(const char* what);
+  void complain(const std::string& what);
 
  private:
+  bool may_complain() const noexcept;
+  void watch_faults(const driver_status_t& status);
+  void watch_faults(const controller_status_t& status);
+
   static constexpr int kMessagesAtOnce = 64;  // a flood must not keep the arm
 
   std::vector<RunLock> locks_;  ///< a second simulator's drives would answer to the same ids
@@ -53,6 +56,7 @@ class SimPort {
   Simulator simulator_;
   LcmPort user_;
   std::int64_t complained_ns_ = 0;
+  std::int64_t undecodable_told_ = 0;
   BlackBox* black_box_ = nullptr;
   int fault_ = joint_state_t::FAULT_NONE;
   int controller_mode_ = controller_status_t::MODE_BOOT;

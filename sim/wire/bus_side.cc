@@ -16,7 +16,10 @@ std::int64_t rounded_ns(double seconds) noexcept { return std::llround(seconds *
 
 BusSide::BusSide(CanBus* bus, const BusConfig& config, const WireOptions& options, int nodes,
                  std::uint64_t stream)
-    : inbox_(bus), adapter_(timing_of(config.adapter)), random_(options.seed * 999'983U + stream) {
+    : inbox_(bus),
+      adapter_(timing_of(config.adapter)),
+      seed_(options.seed * 999'983U + stream),
+      random_(seed_) {
   if (options.on) wire_.emplace(config, options, nodes + 1, stream);
 }
 
@@ -90,6 +93,8 @@ void BusSide::to_driver(CanFrame frame, std::int64_t end_ns, std::int64_t offset
 
 void BusSide::clear() noexcept {
   if (wire_) wire_->clear();
+  random_.seed(seed_);
+  last_accepted_ns_ = last_delivered_ns_ = 0;
 }
 
 std::int64_t BusSide::jitter_ns() noexcept {

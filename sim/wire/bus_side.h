@@ -44,6 +44,8 @@ class BusSide {
              std::int64_t* at_ns) noexcept;
   /// A frame of the driver's that waits in its adapter is taken out, without time; false: none.
   bool take_waiting(CanFrame* frame) noexcept { return wire_->take(kDriver, frame); }
+  /// A driver begins: nothing is under way, and its adapter's times vary as from the start,
+  /// whatever was sent before time ran.
   void clear() noexcept;
 
   const Wire* wire() const noexcept { return wire_ ? &*wire_ : nullptr; }
@@ -61,6 +63,7 @@ class BusSide {
   AdapterTiming adapter_;
   std::optional<Wire> wire_;
   bool direct_ = false;
+  std::uint64_t seed_;
   std::mt19937_64 random_;
   std::int64_t last_accepted_ns_ = 0;   // an adapter keeps the order
   std::int64_t last_delivered_ns_ = 0;  // likewise

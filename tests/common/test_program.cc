@@ -17,7 +17,7 @@ struct Given {
   std::int64_t integer = 0;
   std::vector<double> numbers;
   std::map<std::string, std::string> buses;
-  std::optional<bool> lockstep;
+  std::optional<Pace> pace;
   int priority = 80;
   bool flag = false;
 };
@@ -30,7 +30,7 @@ int run(std::vector<std::string> arguments, Given* given, const std::function<in
   line.numbers("--numbers", &given->numbers, "").count(3);
   line.flag("--flag", &given->flag, "");
   line.buses(&given->buses);
-  line.pace(&given->lockstep, "");
+  line.pace(&given->pace, "");
   line.priority(&given->priority);
   std::vector<char*> argv;
   std::string name = "limber-test";
@@ -59,17 +59,21 @@ TEST(Program, FillsInItsOptions) {
   EXPECT_EQ(given.numbers, (std::vector<double>{0.0, 0.0, -9.81}));
   EXPECT_EQ(given.buses,
             (std::map<std::string, std::string>{{"a", "virtual:x"}, {"b", "socketcan:can0"}}));
-  EXPECT_EQ(given.lockstep, true);
+  EXPECT_EQ(given.pace, Pace::kLockstep);
   EXPECT_EQ(given.priority, 80);
   EXPECT_FALSE(given.flag);
 }
 
-TEST(Program, LockStepIsOpenUntilSomebodyChooses) {
+TEST(Program, ThePaceIsOpenUntilSomebodyChooses) {
   Given given;
   run({}, &given, [] { return kExitDone; });
-  EXPECT_FALSE(given.lockstep.has_value());
+  EXPECT_FALSE(given.pace.has_value());
   run({"--realtime"}, &given, [] { return kExitDone; });
-  EXPECT_EQ(given.lockstep, false);
+  EXPECT_EQ(given.pace, Pace::kRealtime);
+  run({"--paced"}, &given, [] { return kExitDone; });
+  EXPECT_EQ(given.pace, Pace::kPaced);
+  EXPECT_EQ(refused({"--paced", "--lockstep"}).first, 2);
+  EXPECT_EQ(refused({"--paced", "--realtime"}).first, 2);
 }
 
 TEST(Program, WrongArgumentsEndWithTwoAndOneLine) {

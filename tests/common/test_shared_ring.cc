@@ -142,6 +142,75 @@ TEST_F(SharedRingTest, GarbageIsNoMessageThatDoesNotFitAndPasses) {
   }
 }
 
+/// Each bit of number, size, check and bytes that flips: dropped and counted, and the next is read.
+TEST_F(SharedRingTest, AMessageThatWasDamagedIsNone) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  constexpr std::uint32_t kSize = 37;
+  std::int64_t damaged = 0;
+  const auto expect_dropped = [&](auto&& damage) {
+    writer.write(Bytes(kSize, 0x5A));
+    damage(ring().slots[ring().newest % ArmRing::kSlots]);
+    writer.write(message(3));
+    ASSERT_EQ(read(reader), message(3));
+    ASSERT_EQ(reader.dropped(), ++damaged);
+  };
+  for (std::uint32_t bit = 0; bit < 8 * kSize; ++bit)
+    expect_dropped([&](ArmRing::Slot& slot) { slot.words[bit / 64] ^= 1ULL << bit % 64; });
+  for (std::uint32_t bit = 0; bit < 64; ++bit)
+    expect_dropped([&](ArmRing::Slot& slot) { slot.check ^= 1ULL << bit; });
+  for (std::uint32_t bit = 0; bit < 32; ++bit) {
+    expect_dropped([&](ArmRing::Slot& slot) { slot.bytes ^= 1U << bit; });
+    expect_dropped([&](ArmRing::Slot& slot) { slot.number ^= 1U << bit; });
+  }
+}
+
+/// Words exchanged within a message, one message's bytes under the next one's number, and a slot
+/// that is all 0: all are words that a writer has written.
+TEST_F(SharedRingTest, WordsOfAnotherPlaceAreNoMessage) {
+  RingWriter writer(&ring());
+  RingReader reader(&ring());
+  Bytes bytes(64);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i);
+  writer.write(bytes);
+  ArmRing::Slot& exchanged = ring().slots[1];
+  const std::uint64_t word = exchanged.words[2];
+  exchanged.words[2] = exchanged.words[5].load();
+  exchanged.words[5] = word;
+  EXPECT_EQ(read(reader), Bytes());
+  writer.write(bytes);
+  ring().slots[3].bytes = ring().slots[2].bytes.load();
+  ring().slots[3].check = ring().slots[2].check.load();
+  for (std::size_t i = 0; i < 8; ++i) ring().slots[3].words[i] = ring().slots[2].words[i].load();
+  ring().slots[3].number = 3;
+  ring().newest = 3;
+  EXPECT_EQ(read(reader), bytes);
+  EXPECT_EQ(read(reader), Bytes()) << "the message before, again";
+  ring().slots[4].number = 4;
+  ring().newest = 4;
+  EXPECT_EQ(read(reader), Bytes()) << "all 0";
+  EXPECT_EQ(reader.dropped(), 3);
+}
+
+/// Random bytes all over the ring, numbers and sizes right: as when a program scribbles there.
+TEST_F(SharedRingTest, RandomBytesAreNeverAMessage) {
+  std::mt19937_64 random(2);
+  RingReader reader(&ring());
+  for (int round = 0; round < 200; ++round) {
+    ring().newest += ArmRing::kSlots;
+    for (std::uint32_t i = 0; i < ArmRing::kSlots; ++i) {
+      const std::uint32_t number = ring().newest - i;
+      ArmRing::Slot& slot = ring().slots[number % ArmRing::kSlots];
+      slot.number = number;
+      slot.bytes = static_cast<std::uint32_t>(random() % (ArmRing::kLongest + 1));
+      slot.check = random();
+      for (auto& word : slot.words) word = random();
+    }
+    ASSERT_EQ(read(reader), Bytes()) << round;
+  }
+  EXPECT_EQ(reader.dropped(), 200 * std::int64_t{ArmRing::kSlots});
+}
+
 /// A writer that is faster than the reader: the ring is overtaken all the time. Also under thread
 /// sanitizer.
 TEST_F(SharedRingTest, NoTornMessageIsReadWhileTheWriterOvertakes) {

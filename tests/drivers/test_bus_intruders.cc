@@ -53,6 +53,9 @@ TEST(BusIntruders, AnotherMastersCommandStopsTheArmWithTheReason) {
   EXPECT_EQ(cycles_until_off(&arm, 10), 1);
   EXPECT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_HOLD);
   EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
+  EXPECT_EQ(arm.state->fault_joint, 1);
+  EXPECT_EQ(arm.driver->fault_text(arm.state->fault, 1, arm.driver->fault_detail()),
+            "joint2 (id 0x2)");
 }
 
 /// TMAX (register 23) of motor 2: 8 N m become 10. Written, or stored.
@@ -73,6 +76,7 @@ TEST(BusIntruders, AWrittenRegisterStopsTheArmWithTheReason) {
     arm.intrusion = {register_frame(operation)};
     EXPECT_EQ(cycles_until_off(&arm, 10), 1);
     EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_FOREIGN_COMMAND);
+    EXPECT_EQ(arm.state->fault_joint, 1);
   }
 }
 
@@ -85,6 +89,38 @@ TEST(BusIntruders, ARegisterThatIsReadOrOfAnotherDriveDoesNothing) {
   EXPECT_EQ(cycles_until_off(&arm, 100), -1);
   arm.intrusion = {register_frame(0x33)};
   EXPECT_EQ(cycles_until_off(&arm, 1), -1);
+}
+
+// A register's answer has the shape of a state: "disabled", and what its value makes of heat.
+TEST(BusIntruders, AnswersToSomebodyElsesReadsAreNoStates) {
+  for (const int state :
+       {joint_state_t::DRIVE_OFF + 0, joint_state_t::DRIVE_ON + 0, joint_state_t::DRIVE_HOLD + 0}) {
+    IntrudedArm arm(test_robot(3));
+    ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, joint_command_t::REQUEST_KEEP));
+    if (state != joint_state_t::DRIVE_OFF) ASSERT_TRUE(arm.switch_on());
+    if (state == joint_state_t::DRIVE_HOLD) arm.cycle_with(joint_command_t::REQUEST_HOLD);
+    constexpr std::uint8_t kBoardVoltage = 60;      // which this driver does not read
+    arm.motors[1].set_float(kBoardVoltage, -1e30);  // bytes that would be 73 and 241 degC
+    CanFrame read = register_frame(0x33);
+    read.data[3] = kBoardVoltage;
+    arm.intrusion = {read};
+    for (int i = 0; i < 200; ++i) {
+      arm.cycle_with(joint_command_t::REQUEST_KEEP);
+      ASSERT_EQ(arm.state->drive_state, state) << "cycle " << i;
+      ASSERT_EQ(arm.state->temperature_degC[1], 35.0F);
+    }
+    EXPECT_EQ(arm.read_status().replies_invalid[1], 0);
+    EXPECT_EQ(arm.read_status().replies_lost[1], 0);
+  }
+}
+
+TEST(BusIntruders, AnAnswerThatNobodyAskedForIsStillInvalid) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  CanFrame answer;
+  arm.motors[1].handle(register_frame(0x33), &answer);
+  arm.intrusion = {answer};
+  EXPECT_GT(cycles_until_off(&arm, 50), 0);
 }
 
 // While nothing has power, too: the settings are compared again after the acknowledgement.
@@ -122,6 +158,32 @@ TEST(BusIntruders, ReplayedRepliesAreNoticedWithinTenCycles) {
   EXPECT_LE(cycles, 11);
   EXPECT_EQ(arm.state->fault, +joint_state_t::FAULT_REPLY_INVALID);
   EXPECT_EQ(arm.state->fault_joint, 0);
+}
+
+bool fresh(const IntrudedArm& arm, int joint) {
+  return (arm.state->joint_flags[joint] & joint_state_t::JOINT_FRESH) != 0;
+}
+
+// The replay comes first and is believed; the true angle is the second.
+TEST(BusIntruders, ADoubtedAngleIsNeitherFreshNorHeldUntilTwoReadingsAgree) {
+  IntrudedArm arm(test_robot(3));
+  ASSERT_TRUE(arm.switch_on());
+  arm.intrusion = {reply_now(&arm, 0)};
+  ASSERT_GT(cycles_until_off(&arm, 50), 0);
+  ASSERT_EQ(arm.state->fault, +joint_state_t::FAULT_REPLY_INVALID);
+  for (int i = 0; i < 300; ++i) {
+    arm.cycle_with(joint_command_t::REQUEST_KEEP);
+    ASSERT_FALSE(fresh(arm, 0));
+    ASSERT_TRUE(fresh(arm, 1));
+  }
+  EXPECT_EQ(testing::raw_command(arm.motors[0].last()).kp, 0) << "no pull towards that angle";
+  EXPECT_GT(testing::raw_command(arm.motors[0].last()).kd, 0);
+  EXPECT_GT(testing::raw_command(arm.motors[1].last()).kp, 0) << "the others are held";
+  arm.intrusion.clear();
+  arm.cycle_with(joint_command_t::REQUEST_KEEP);
+  EXPECT_FALSE(fresh(arm, 0)) << "one reading agrees with nothing";
+  arm.cycle_with(joint_command_t::REQUEST_KEEP);
+  EXPECT_TRUE(fresh(arm, 0));
 }
 
 TEST(BusIntruders, UnreadableFramesAfterTheRepliesCountToo) {

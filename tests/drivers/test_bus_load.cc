@@ -118,6 +118,25 @@ TEST(BusLoad, TheWindowLeavesRoomForAFrameOfAnotherDevice) {
   EXPECT_NEAR(reply_window_s(seven_joints(true)), kLatestReply / 1000.0, 1e-9);
 }
 
+// For wires that the prediction does not know.
+TEST(BusLoad, AWindowThatIsGivenIsTheWindowAndLeavesTheControllerItsShare) {
+  Robot robot = seven_joints(false);
+  robot.joints.resize(2);
+  robot.buses[0].reply_window_s = 0.3e-3;
+  EXPECT_EQ(reply_window_s(robot), 0.3e-3);
+  robot.buses[0].reply_window_s = 0.85e-3;
+  EXPECT_EQ(reply_window_s(robot), 0.85e-3);
+  EXPECT_NO_THROW(checked_bus_load(robot, 0));
+  robot.buses[0].reply_window_s = 0.91e-3;
+  try {
+    checked_bus_load(robot, 0);
+    ADD_FAILURE() << "0.91 of the period";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("reply_window_s: is 0.00091"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(BusLoad, BothMotorsOfAPairCountWhereTheyAre) {
   Robot robot = seven_joints(false);
   robot.joints.resize(2);

@@ -101,6 +101,18 @@ TEST(Heat, TenHotRepliesInARowStopTheArmWhichTheDrivesHold) {
   }
 }
 
+// A byte of the reply holds up to 255.
+TEST(Heat, OneHeatHasOneTemperature) {
+  FakeArm arm = arm_with_limits(2);
+  ASSERT_TRUE(arm.switch_on());
+  arm.motors[1].rotor_degC = 150;
+  ASSERT_EQ(cycles_until_off(&arm, 100), 10);
+  const std::string fault = arm.driver->fault_text(arm.state->fault, 1, arm.driver->fault_detail());
+  EXPECT_EQ(fault, "150 degC, limit 90 (limit_temperature_degC)");
+  const std::string warning = arm.driver->warning_text(1, arm.driver->warning(1));
+  EXPECT_EQ(warning.find("joint2 (id 0x2): 150 degC, more than 90"), 0U) << warning;
+}
+
 TEST(Heat, OddReadingsAndTheLimitItselfAreNone) {
   FakeArm arm = arm_with_limits(1);
   ASSERT_TRUE(arm.switch_on());

@@ -52,6 +52,18 @@ TEST(WrongArm, ATurnedSignDoesNotMoveIt) {
   }
 }
 
+TEST(WrongArm, AnAngleThatIsOffIsReadSo) {
+  const LoadedRobot robot = openarm();
+  LoadedRobot real = openarm();
+  real.robot.joints[1].drive.offset_rad += 0.3;
+  Scenario scenario;
+  Lab lab(robot, scenario, LabOptions{&real, {}, {}});
+  for (int cycle = 0; cycle < 300; ++cycle) lab.step();
+  const double sign = robot.robot.joints[1].drive.sign;
+  EXPECT_NEAR(lab.state().q[1] - lab.truth().q[1], 0.3 * sign, 1e-3);
+  EXPECT_NEAR(lab.state().q[0], lab.truth().q[0], 1e-3);
+}
+
 TEST(WrongArm, SwappedNeighboursDoNotMoveIt) {
   const LoadedRobot robot = openarm();
   for (std::size_t i = 0; i + 1 < robot.robot.joints.size(); ++i) {

@@ -19,7 +19,7 @@ def programs() -> set[str]:
 
 def test_the_script_builds_and_doctor_knows_every_program():
     script = re.search(r"^programs=\((.*)\)$", (ROOT / "limber").read_text(), re.MULTILINE)
-    assert set(script[1].split()) == {*programs(), "limber_messages"}
+    assert set(script[1].split()) == {*programs(), "limber_messages", "limber_receiver"}
     assert set(doctor.PROGRAMS) == programs()
 
 

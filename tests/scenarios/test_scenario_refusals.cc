@@ -55,6 +55,41 @@ const Mutation kHead[] = {
 INSTANTIATE_TEST_SUITE_P(Head, ScenarioRefusal, ::testing::ValuesIn(kHead),
                          testing::MutationName());
 
+std::string with_reality(const std::string& reality) {
+  return good_scenario() + "reality: " + reality + "\n";
+}
+
+// The simulated arm would be the same: said, not passed over.
+TEST(ScenarioReality, KeysThatChangeNothingAreRefused) {
+  for (const char* reality :
+       {"{rate_hz: 1000}", "{base: link}", "{gains: {law: joint_impedance}}", "{buses: []}",
+        "{watchdog: {timeout_s: 1}}", "{motors: {big: {protocol: moteus}}}",
+        "{motors: {big: {peak_torque_Nm: 1}}}", "{motors: {big: {encoder_bits: 8}}}",
+        "{motors: {big: {mit_range: {torque_Nm: 1}}}}", "{joints: {turn: {torque_limit_Nm: 1}}}",
+        "{joints: {turn: {velocity_limit_rad_per_s: 1}}}", "{joints: {turn: {home_rad: 1}}}",
+        "{joints: {turn: {hold: {kp_Nm_per_rad: 1}}}}", "{joints: {turn: {id: 3}}}",
+        "{joints: {turn: {bus: right}}}"}) {
+    std::string file;
+    const std::string complaint = refusal(with_reality(reality), &file);
+    testing::expect_complaint(complaint, file, testing::kNoLine,
+                              "cannot differ between robot.yaml and reality");
+  }
+}
+
+TEST(ScenarioReality, WhatIsMountedOtherwiseIs) {
+  const testing::TemporaryFolder folder;
+  const std::string file =
+      folder.write("s.yaml", with_reality("{joints: {turn: {sign: 1, offset_rad: 0.2}, "
+                                          "slide: {friction: {coulomb_N: 30}}}}"));
+  const Scenario scenario = load_scenario(file, arm(), &controller::law_catalog());
+  ASSERT_TRUE(scenario.reality);
+  const std::vector<JointConfig>& real = scenario.reality->robot.joints;
+  EXPECT_EQ(real[0].drive.sign, 1.0);
+  EXPECT_EQ(real[0].drive.offset_rad, 0.2);
+  EXPECT_EQ(real[1].friction.coulomb_Nm, 30.0);
+  EXPECT_EQ(real[1].drive.sign, arm().robot.joints[1].drive.sign) << "the rest is robot.yaml's";
+}
+
 const Mutation kEntries[] = {
     {"TimeMissing", "{at_s: 0.5, mode: hold}", "{mode: hold}", "timeline[0]: 'at_s' is missing"},
     {"TimeNegative", "at_s: 0.5,", "at_s: -0.5,", "timeline[0].at_s: '-0.5' is out of range"},

@@ -1,7 +1,7 @@
 """`limber monitor` in a headless browser, with a stack behind it: for tests and for pictures.
 
-The stack runs in lock step and behind the browser: drawing without a graphics card takes all the
-processor that a control loop in real time would need.
+The stack runs in lock step at the clock's pace, and behind the browser: drawing without a graphics
+card takes all the processor that a control loop in real time would need.
 """
 
 import shutil
@@ -12,11 +12,15 @@ import threading
 import time
 from collections import defaultdict
 from contextlib import closing, contextmanager
+from io import BytesIO
 
 import numpy as np
+from PIL import Image
 from scipy.spatial.transform import Rotation
 
+from limber import messages
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.live.receiver import Receiver
 from limber.model.robot import load_robot
 from limber.monitor.live_feed import LiveFeed
 from limber.monitor.scene import camera
@@ -36,6 +40,8 @@ class Arm:
 
     def __init__(self, directory) -> None:
         self.directory, self.feed = directory, LiveFeed()
+        self._requests = Receiver("PUSH", "MODE_REQUEST")
+        self._streams = {name: self._requests.stream(name) for name in self._requests.channels}
         self.processes: dict[str, subprocess.Popen] = {}
         self.sent = defaultdict(list)
         self._end = threading.Event()
@@ -46,6 +52,9 @@ class Arm:
         while not self._end.wait(0.02):
             for name, found in self.feed.take().objects.items():
                 self.sent[name] += found
+            for name, stream in self._streams.items():
+                kind = self._requests.channels[name].type_name
+                self.sent[name] += [messages.decode(kind, data) for data in stream.raw()]
 
     def start(self, name: str, *arguments: str) -> None:
         command = ["nice", "-n", "19", BIN / f"limber-{name}", "--robot", ROBOT, *arguments]
@@ -53,10 +62,17 @@ class Arm:
             self.processes[name] = subprocess.Popen(command, stdout=log, stderr=log)
 
     def start_all(self) -> None:
-        self.start("sim", "--lockstep")
-        self.start("controller", "--lockstep")
+        self.start("sim", "--paced")
+        self.start("controller", "--paced")
         time.sleep(0.5)
-        self.start("driver", "--lockstep")
+        self.start("driver", "--paced")
+
+    def start_anew(self) -> None:
+        """At home again, where nothing covers the arm."""
+        for name in self.processes:
+            self.kill(name)
+        self.start_all()
+        self.until(lambda: self.newest("JOINT_STATE")["time_ns"] < 1_000_000_000, "a new run")
 
     def newest(self, channel: str):
         return self.feed.newest.get(channel)
@@ -85,6 +101,7 @@ class Arm:
         self._end.set()
         self._thread.join()
         self.feed.close()
+        self._requests.close()
 
 
 def free_port() -> int:
@@ -104,14 +121,16 @@ def monitor(*arguments: str):
         yield f"http://127.0.0.1:{port}"
     finally:
         process.terminate()
-        assert process.wait(timeout=20) == 0
+        assert process.wait(timeout=300) == 0
 
 
 @contextmanager
 def launched(driver):
     browser = driver.chromium.launch(executable_path=CHROMIUM, headless=True, args=FLAGS)
-    yield browser
-    browser.close()
+    try:
+        yield browser
+    finally:
+        browser.close()
 
 
 @contextmanager
@@ -121,9 +140,11 @@ def opened(browser, url: str, size: dict = SIZE):
     page.set_default_timeout(60_000)
     local = (url, "data:", "blob:")
     page.on("request", lambda r: None if r.url.startswith(local) else outside.append(r.url))
-    page.goto(url)
-    yield page
-    page.close()
+    try:
+        page.goto(url)
+        yield page
+    finally:
+        page.close()  # one that is left draws on and slows the tests after it
     assert outside == []
 
 
@@ -163,6 +184,31 @@ def drag(page, start: tuple, end: tuple, hold_s: float = 0.0, let_go: bool = Tru
     time.sleep(hold_s)
     if let_go:
         page.mouse.up()
+
+
+def drawn(page, point: tuple) -> bool:
+    """Something darker or more colourful than the ground is near that point of the window."""
+    clip = {"x": point[0] - 40, "y": point[1] - 40, "width": 80, "height": 80}
+    image = Image.open(BytesIO(page.screenshot(clip=clip))).convert("RGB")
+    return np.asarray(image).min() < 100
+
+
+def settled(where, also=lambda _place: True) -> tuple[float, float]:
+    """A place of the window, once it stays: panels take their width, and lines come and go."""
+    end, before = time.monotonic() + 120.0, (np.nan, np.nan)
+    while True:
+        place = where()
+        if np.allclose(place, before, atol=1.0) and also(place):
+            return place
+        assert time.monotonic() < end, f"nothing rests, or is drawn, at {place}"
+        before = place
+        time.sleep(1.0)
+
+
+def grab(page, where, way: tuple[float, float], let_go: bool = True) -> None:
+    """Drags something of the scene, once it is drawn: before, the camera would be dragged."""
+    start = settled(where, lambda place: drawn(page, place))
+    drag(page, start, (start[0] + way[0], start[1] + way[1]), let_go=let_go)
 
 
 def upper_arm(page, stack) -> tuple[float, float]:

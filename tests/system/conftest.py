@@ -9,9 +9,9 @@ import pytest
 from limber.faults.matrix import read_matrix
 from limber.referee.judge import judge_file
 from limber.referee.stops import Expectation
-from stack import BIN, Stack
+from stack import BIN, Stack, slow_arm
 
-BRIDGED_CYCLES = 60  # 50 on virtual buses in real time, and what the machine adds
+PAUSE_CYCLES = 60  # the frames' stamps are the clock's: what the machine adds
 
 # A shell that starts the tests in the background has its children ignore Ctrl-C; tests send it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -41,10 +41,16 @@ def own_incidents(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def stack(tmp_path):
-    running = Stack(tmp_path)
-    yield running
-    running.close()
+def stack(request, tmp_path):
+    """Paced; of tests marked `realtime` in real time, of an arm slow enough for a busy machine."""
+    if request.node.get_closest_marker("realtime"):
+        running = Stack(tmp_path, slow_arm(tmp_path / "slow_openarm"), "--realtime")
+    else:
+        running = Stack(tmp_path)
+    try:
+        yield running
+    finally:
+        running.close()
 
 
 def pytest_collection_modifyitems(items):
@@ -70,9 +76,11 @@ def refereed(stack, tmp_path):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
-    yield stack
-    recorder.send_signal(signal.SIGINT)
-    recorder.wait(timeout=20)
-    verdict = judge_file(trace, stack.robot, Expectation(silent_cycles=BRIDGED_CYCLES))
+    try:
+        yield stack
+    finally:
+        recorder.send_signal(signal.SIGINT)
+        recorder.wait(timeout=300)
+    verdict = judge_file(trace, stack.robot, Expectation(silent_cycles=PAUSE_CYCLES))
     assert verdict.commands > 0
     assert verdict.breaches == [], verdict.breaches[:3]

@@ -11,13 +11,7 @@ from playwright.sync_api import sync_playwright
 
 from browser_page import ROBOT, Arm, activate, drag, launched, monitor, opened, upper_arm
 
-SIZE = {"width": 1440, "height": 860}
-
-
-def close_note(page) -> None:
-    """The browser's, that there is no graphics card."""
-    for note in page.get_by_text("Software WebGL rendering detected").all():
-        note.locator("xpath=ancestor::*[@role='alert']").get_by_role("button").click()
+SIZE = {"width": 1600, "height": 900}
 
 
 def shoot(page, path: Path) -> None:
@@ -33,7 +27,6 @@ def pushed_arm(browser, path: Path) -> None:
             activate(page, stack)
             page.get_by_role("combobox", name="show").click()
             page.get_by_text("tip", exact=True).click()
-            close_note(page)
             time.sleep(3.0)
             start = upper_arm(page, stack)
             drag(page, start, (start[0] + 110, start[1] - 60), hold_s=3.0, let_go=False)

@@ -8,7 +8,15 @@ import yaml
 
 from stack import BIN, ROOT
 
-CHANNELS = ("JOINT_STATE", "JOINT_TORQUE")
+CHANNELS = (
+    "JOINT_STATE",
+    "JOINT_TORQUE",
+    "SIM_TRUTH",
+    "CONTROLLER_STATUS",
+    "DRIVER_STATUS",
+    "ROBOT_INFO",
+    "REQUEST_ANSWER",
+)
 
 
 def shipped() -> list[str]:
@@ -43,9 +51,11 @@ def of_the_lab(scenario: Path, out: Path) -> dict[str, list[bytes]]:
     return payloads(log)
 
 
-def of_three_processes(scenario: Path, out: Path, *options: str) -> dict[str, list[bytes]]:
+def of_three_processes(
+    scenario: Path, out: Path, *options: str, pace: tuple[str, ...] = ("--lockstep",)
+) -> dict[str, list[bytes]]:
     limber = str(ROOT / ".venv" / "bin" / "limber")
-    command = [limber, "run", str(scenario), "--lockstep", "--record-plain", "--out", str(out)]
+    command = [limber, "run", str(scenario), *pace, "--record-plain", "--out", str(out)]
     subprocess.run([*command, *options], check=True, timeout=300, stdin=subprocess.DEVNULL)
     return payloads(out / "run.lcmlog")
 

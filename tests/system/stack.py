@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import threading
@@ -10,14 +11,16 @@ import time
 from collections import defaultdict
 from pathlib import Path
 
-import lcm
+import yaml
 
+from limber import messages
 from limber.lcmtypes.controller_status_t import controller_status_t
 from limber.lcmtypes.driver_status_t import driver_status_t
 from limber.lcmtypes.joint_command_t import joint_command_t
 from limber.lcmtypes.joint_state_t import joint_state_t
 from limber.lcmtypes.mode_request_t import mode_request_t
 from limber.lcmtypes.sim_truth_t import sim_truth_t
+from limber.live.line import Line
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(os.environ.get("LIMBER_BIN", ROOT / "build" / "dev" / "bin"))
@@ -31,18 +34,22 @@ TYPES = {
     "SIM_TRUTH": sim_truth_t,
 }
 CLIENT = 77
+GENEROUS = 4  # on a machine that is busy elsewhere
 
 
 class Listener:
-    """Keeps the newest message and all raw messages of each channel of a plane."""
+    """Keeps the newest message and all raw messages of each channel of a plane, and `also` of
+    these, which are none of limber's.
+    """
 
-    def __init__(self, url: str) -> None:
-        self.lcm = lcm.LCM(url)
+    def __init__(self, url: str, *also: str) -> None:
+        self.lcm = Line(url)
         self.raw: dict[str, list[bytes]] = defaultdict(list)
         self._lock = threading.Lock()
         self._stop = False
-        self._subscription = self.lcm.subscribe(".*", self._on_message)
-        self._subscription.set_queue_capacity(0)
+        # The arm plane's two have the same names there.
+        for channel in (*messages.channels(), *also):
+            self.lcm.subscribe(channel, self._on_message)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -55,11 +62,9 @@ class Listener:
             self.lcm.handle_timeout(50)
 
     def close(self) -> None:
-        """Frees the LCM instance: while its callback refers to it, its own thread queues on."""
         self._stop = True
         self._thread.join()
-        self.lcm.unsubscribe(self._subscription)
-        del self.lcm, self._subscription
+        self.lcm.close()
 
     def count(self, channel: str) -> int:
         with self._lock:
@@ -76,12 +81,39 @@ class Listener:
         return [TYPES[channel].decode(item) for item in data]
 
 
-class Stack:
-    """The three processes of one arm, realtime, on a virtual bus."""
+PACES = ("--paced", "--lockstep", "--realtime")
+SLOW_HZ = 50
 
-    def __init__(self, directory: Path, robot: str = "openarm") -> None:
+
+def slow_arm(folder: Path) -> str:
+    """openarm for real time on a machine that is busy elsewhere: what a wire's two cycles bridge
+    is 40 ms at its rate, its gains are as soft as that rate needs.
+    """
+    shutil.copytree(ROOT / "robots" / "openarm", folder)
+    path = folder / "robot.yaml"
+    robot = yaml.safe_load(path.read_text(encoding="utf-8"))
+    robot["rate_hz"] = SLOW_HZ
+    robot["watchdog"]["timeout_s"] = 0.3
+    robot["gains"] |= {
+        "K_q_Nm_per_rad": [20, 20, 13, 13, 1.3, 1.3, 1.3],
+        "K_x_translation_N_per_m": 70,
+        "K_x_rotation_Nm_per_rad": 1.2,
+        "K_null_Nm_per_rad": [2, 2, 2, 2, 0.3, 0.3, 0.3],
+        "D_null_Nms_per_rad": [0.5, 0.5, 0.5, 0.5, 0.03, 0.03, 0.03],
+    }
+    path.write_text(yaml.safe_dump(robot), encoding="utf-8")
+    return str(folder)
+
+
+class Stack:
+    """The three processes of one arm on a virtual bus: in lock step at the clock's pace, so that
+    simulated time waits for the machine, unless `pace` says otherwise.
+    """
+
+    def __init__(self, directory: Path, robot: str = "openarm", pace: str = PACES[0]) -> None:
         self.directory = directory
         self.robot = robot
+        self.pace = pace
         self.processes: dict[str, subprocess.Popen] = {}
         self.starts: dict[str, int] = defaultdict(int)
         self.user = Listener(USER_URL)
@@ -90,7 +122,8 @@ class Stack:
         tag = tag or name
         self.starts[tag] += 1
         path = self.directory / f"{tag}-{self.starts[tag]}.log"
-        command = [str(BIN / f"limber-{name}"), "--robot", self.robot, *arguments]
+        pace = [] if set(arguments) & set(PACES) else [self.pace]
+        command = [str(BIN / f"limber-{name}"), "--robot", self.robot, *pace, *arguments]
         with open(path, "w", encoding="utf-8") as log:
             process = subprocess.Popen(
                 command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
@@ -134,9 +167,20 @@ class Stack:
     def driver_status(self) -> driver_status_t:
         return self.user.latest("DRIVER_STATUS")
 
+    @property
+    def time_s(self) -> float:
+        """Arm time."""
+        state = self.user.latest("JOINT_STATE")
+        return 0.0 if state is None else 1e-9 * state.time_ns
+
+    def pass_time(self, seconds: float) -> None:
+        """Of the arm."""
+        end_s = self.time_s + seconds
+        self.until(lambda: self.time_s >= end_s, 10 + seconds, f"{seconds} s of arm time")
+
     def until(self, condition, seconds: float, what: str) -> None:
         """Waits for a condition; a generous bound, since tests never judge wall-clock speed."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + GENEROUS * seconds
         while time.monotonic() < end:
             for tag, process in self.processes.items():
                 if process.poll() not in (None, -signal.SIGKILL):
@@ -146,7 +190,9 @@ class Stack:
             if condition():
                 return
             time.sleep(0.01)
-        raise AssertionError(f"waited {seconds} s in vain for: {what}\n" + self.describe())
+        raise AssertionError(
+            f"waited {GENEROUS * seconds} s in vain for: {what}\n" + self.describe()
+        )
 
     def log(self, tag: str) -> str:
         text = (self.directory / f"{tag}-{self.starts[tag]}.log").read_text(encoding="utf-8")
@@ -170,7 +216,7 @@ class Stack:
             controller_status_t.MODE_HOLD: mode_request_t.REQUEST_HOLD,
             controller_status_t.MODE_ACTIVE: mode_request_t.REQUEST_ACTIVE,
         }
-        end = time.monotonic() + 20
+        end = time.monotonic() + GENEROUS * 20
         while self.mode != mode and time.monotonic() < end:
             below_hold = self.mode is None or self.mode < controller_status_t.MODE_HOLD
             self.request(mode_request_t.REQUEST_HOLD if below_hold else ask[mode])
@@ -179,7 +225,7 @@ class Stack:
 
     def acknowledge(self) -> None:
         """Until the fault is gone: an operator is refused as long as its cause is there."""
-        end = time.monotonic() + 20
+        end = time.monotonic() + GENEROUS * 20
         while self.mode != controller_status_t.MODE_IDLE and time.monotonic() < end:
             self.request(mode_request_t.REQUEST_ACKNOWLEDGE)
             time.sleep(0.1)

@@ -25,14 +25,12 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from limber.log.reader import Log
 from stack import BIN
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
-
 
 @pytest.fixture
 def standing(stack):
-    """Drives that may be enabled, in a planar arm without friction."""
-    stack.robot = "planar2r"
+    """Drives that may be enabled, in a planar arm without friction; in real time the slow one."""
+    if stack.pace != "--realtime":
+        stack.robot = "planar2r"
     stack.start_all()
     stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
     return stack
@@ -81,9 +79,8 @@ def test_moves_and_says_how_far_it_came(arm):
     assert missed.value.angle_rad is None
     arm.go_to(start)
     arm.no_wall()
-    with pytest.raises(RefusedError) as refused:
-        arm.go_to(position_m=[11, 0, 0])  # no arm is so long
-    assert refused.value.code == "request.GOAL_LIMIT"
+    with pytest.raises(InputError, match="11 m is no arm's reach"):
+        arm.go_to(position_m=[11, 0, 0])
     arm.gains(law="joint_impedance")
     arm.go_to(joints_rad=[0.6, 1.1])
     np.testing.assert_allclose(arm.q, [0.6, 1.1], atol=0.02)
@@ -103,9 +100,30 @@ def test_gains_change_what_they_name(arm):
     np.testing.assert_allclose(arm.joint_stiffness, [80, 40])
 
 
-def test_a_warning_of_the_controller_is_passed_on(arm):
-    with pytest.warns(UserWarning, match="taken, but: "):
-        arm.gains(law="joint_pd", K_q_Nm_per_rad=10_000, joint_damping_ratio=0.1)
+STIFFEST = {"law": "joint_pd", "K_q_Nm_per_rad": 10_000, "joint_damping_ratio": 0.1}
+
+
+def test_unstable_gains_are_refused(arm):
+    with pytest.raises(RefusedError) as refused:
+        arm.gains(**STIFFEST)
+    assert refused.value.code == "request.UNSTABLE"
+
+
+def test_a_warning_of_the_controller_is_passed_on(stack, tmp_path):
+    """Where the scenario wants to show unstable gains."""
+    scenario = tmp_path / "unstable.yaml"
+    scenario.write_text(
+        "format: limber-scenario/1\nrobot: planar2r\nallow_unstable: true\nduration_s: 60\n",
+        encoding="utf-8",
+    )
+    stack.robot = "planar2r"
+    stack.start("sim")
+    stack.start("controller", "--scenario", str(scenario))
+    time.sleep(0.3)
+    stack.start("driver")
+    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
+    with Arm() as arm, pytest.warns(UserWarning, match="taken, but: "):
+        arm.gains(**STIFFEST)
 
 
 def test_a_push_yields_as_the_stiffness_says(arm):
@@ -213,7 +231,7 @@ def test_the_block_leaves_the_arm_held_and_the_lease_free(standing):
 def test_a_script_that_forgets_to_close_leaves_it_held_too(standing):
     code = "from limber import Arm; arm = Arm(); arm.activate(); print(arm.mode)"
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd="/"
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd="/"
     )
     assert done.stdout.strip() == "active", done.stderr
     standing.until(lambda: standing.mode == Status.MODE_HOLD, 5, "HOLD")
@@ -253,6 +271,7 @@ def test_a_stop_ends_a_motion(arm):
     assert arm.wait(mode="hold", timeout_s=5).mode == "hold"
 
 
+@pytest.mark.realtime
 def test_a_fault_ends_what_waits_and_is_acknowledged(standing, arm):
     arm.activate()
     killer = threading.Timer(0.3, lambda: standing.kill("sim"))
@@ -277,6 +296,7 @@ def acknowledged(arm: Arm) -> bool:
     return True
 
 
+@pytest.mark.realtime
 def test_a_stack_that_ends_is_told(standing):
     with closing(Arm()) as arm:
         standing.kill("driver")
@@ -320,6 +340,7 @@ def test_the_requests_are_those_of_limber_send(standing, arm):
         period_cycles={"inertia": 4},
         ramp_s=0.5,
     )
+    standing.until(lambda: standing.user.count("COMPLIANCE_GAINS") == 2, 5, "both")
     theirs, ours = standing.user.raw["COMPLIANCE_GAINS"]
     theirs, ours = compliance_gains_t.decode(theirs), compliance_gains_t.decode(ours)
     assert sorted(theirs.named) == sorted(ours.named)

@@ -45,7 +45,7 @@ def test_the_bytes_are_those_of_the_lab(arm_plane, tmp_path):
         assert list(arm_plane.iterdir()) == []
 
 
-@pytest.mark.flaky(reruns=2)
+@pytest.mark.realtime
 @pytest.mark.parametrize("arm_plane", KINDS[:3], indirect=True)
 def test_a_killed_controller_is_replaced(arm_plane, stack):
     stack.start_all()
@@ -58,7 +58,7 @@ def test_a_killed_controller_is_replaced(arm_plane, stack):
     stack.bring_to(Status.MODE_ACTIVE)
 
 
-@pytest.mark.flaky(reruns=2)
+@pytest.mark.realtime
 @pytest.mark.parametrize("arm_plane", KINDS[:3], indirect=True)
 def test_a_killed_driver_is_replaced(arm_plane, stack):
     """What it has left in the memory is not taken for a state of the new one."""
@@ -85,7 +85,7 @@ def test_a_second_controller_is_refused(arm_plane, stack):
     assert stack.mode == Status.MODE_HOLD
 
 
-@pytest.mark.flaky(reruns=2)
+@pytest.mark.realtime
 @pytest.mark.parametrize("arm_plane", KINDS[2:3], indirect=True)
 def test_a_killed_simulator_is_replaced(arm_plane, stack):
     """Its place on the bus is free at once, and what it has left there is not taken for replies."""

@@ -11,7 +11,7 @@ from stack import BIN, ROOT
 def test_the_controller_answers_in_active():
     command = [BIN / "limber-bench-loop", "--controller", BIN / "limber-controller"]
     done = subprocess.run(
-        [*command, "--rounds", "400"], capture_output=True, text=True, timeout=60, check=False
+        [*command, "--rounds", "400"], capture_output=True, text=True, timeout=300, check=False
     )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
@@ -21,13 +21,12 @@ def test_the_controller_answers_in_active():
 
 def run(program: str, *options: str) -> dict:
     done = subprocess.run(
-        [BIN / program, *options], capture_output=True, text=True, timeout=60, check=False
+        [BIN / program, *options], capture_output=True, text=True, timeout=300, check=False
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
-@pytest.mark.flaky(reruns=4)  # a pause of this machine is a late reply, and many of them a trip
 def test_the_drives_answer_over_the_virtual_bus():
     found = run("limber-bench-exchange", "--rounds", "400")
     assert found["rounds"] == 400

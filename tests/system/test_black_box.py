@@ -10,18 +10,17 @@ import yaml
 from limber.incident.black_box import incidents, read
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.log.reader import Log
-from stack import ROOT
+from stack import ROOT, SLOW_HZ
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
 LIMBER = str(ROOT / ".venv" / "bin" / "limber")
 RECORDED_s = 3.0
 
 
+@pytest.mark.realtime
 def test_the_cycles_before_a_kill_are_kept(stack, tmp_path):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
-    time.sleep(RECORDED_s)
+    stack.pass_time(RECORDED_s)
     stack.kill("driver")
     time.sleep(0.2)
     last = stack.state.seq
@@ -38,7 +37,7 @@ def test_the_cycles_before_a_kill_are_kept(stack, tmp_path):
 
     out = tmp_path / "told"
     done = subprocess.run(
-        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=60
+        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
     assert "controller.STATE_LOST" in done.stdout
@@ -47,10 +46,10 @@ def test_the_cycles_before_a_kill_are_kept(stack, tmp_path):
     sessions, counts = np.unique(states["session"], return_counts=True)
     numbers = states["seq"][states["session"] == sessions[np.argmax(counts)]]
     assert numbers[-1] in (last, last + 1)
-    assert len(kept) > RECORDED_s * 900
+    assert len(kept) > RECORDED_s * 0.9 * SLOW_HZ
     assert np.all(np.diff(numbers[-len(kept) :]) == 1), "no cycle is missing"
     torques = Log(out).read("JOINT_TORQUE")
-    assert len(torques) > RECORDED_s * 800
+    assert len(torques) > RECORDED_s * 0.8 * SLOW_HZ
 
 
 FROZEN = """format: limber-scenario/1
@@ -71,7 +70,7 @@ def play(tmp_path, end_s: float, fault_s: float | None) -> subprocess.CompletedP
     text = FROZEN.format(end_s=end_s, fault_s=fault_s)
     scenario.write_text(text if fault_s else text[: text.index("  - {at_s: None")])
     command = [LIMBER, "run", str(scenario), "--out", str(tmp_path / "run")]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300)
 
 
 def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
@@ -81,7 +80,7 @@ def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
     out = tmp_path / "told"
     done = subprocess.run(
-        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=60
+        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
     assert "ENCODER_STOPPED" in done.stdout

@@ -122,7 +122,7 @@ def test_a_driver_does_not_start_beside_another_master(start):
             [str(BIN / "limber-driver"), "--robot", "desktop2r"],
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=300,
             check=False,
         )
     finally:

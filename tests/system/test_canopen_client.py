@@ -40,7 +40,7 @@ def drive(stack, request, tmp_path):
     booted = threading.Event()
     node.nmt.add_heartbeat_callback(lambda state: booted.set() if state == 0 else None)
     stack.start("sim", "--realtime")
-    assert booted.wait(timeout=20)
+    assert booted.wait(timeout=300)
     yield node
     network.disconnect()
 

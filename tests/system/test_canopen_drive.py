@@ -14,9 +14,6 @@ from limber.lcmtypes.joint_state_t import joint_state_t
 from local_drive import COUNTS, ENABLED, GEAR, LocalDrive, bus, multicast_group
 from stack import ROOT
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
-
 PORT = 43113
 TESTBENCH = ROOT / "robots" / "testbench"
 RATE_HZ = 25  # what Python answers in time, whatever else the machine does
@@ -58,6 +55,7 @@ def invalid_replies(stack) -> int:
     return stack.driver_status.replies_invalid[0]
 
 
+@pytest.mark.realtime
 def test_it_comes_up_is_enabled_and_holds(stack, drive):
     stack.start("controller")
     time.sleep(0.3)
@@ -80,6 +78,7 @@ def test_it_comes_up_is_enabled_and_holds(stack, drive):
     assert invalid_replies(stack) == invalid_at_start
 
 
+@pytest.mark.realtime
 def test_what_the_drive_lacks_is_told(stack, drive):
     stack.start("driver")
     stack.until(
@@ -100,7 +99,7 @@ def test_the_emulated_drive_on_classic_can(stack, tmp_path):
     robot["buses"] = [{"name": "arm", "can": "virtual:testbench", "bitrate_bps": 1000000}]
     (tmp_path / "robot.yaml").write_text(yaml.safe_dump(robot), encoding="utf-8")
     stack.robot = str(tmp_path)
-    stack.start_all("--realtime")
+    stack.start_all()
     stack.bring_to(controller_status_t.MODE_HOLD)
     stack.until(lambda: stack.state.drive_state == joint_state_t.DRIVE_ON, 10, "the drive")
     stack.until(lambda: stack.state.age_cycles[0] == 0, 10, "a state of this cycle")

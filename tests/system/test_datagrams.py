@@ -48,15 +48,13 @@ def garble(data: bytearray, choose: random.Random) -> None:
             del data[at : at + choose.randrange(1, 8)]
 
 
-def datagram(
-    number: int, channel: str, message: bytes, garbled_head: bool, choose: random.Random
-) -> bytes:
+def datagram(number: int, channel: str, message: bytes, choose: random.Random) -> bytes:
     body = bytearray(message)
     garble(body, choose)
     whole = bytearray(b"LC02" + struct.pack(">I", number) + channel.encode() + b"\0" + body)
-    if garbled_head and choose.random() < 0.2:
+    if choose.random() < 0.2:
         garble(whole, choose)
-    if garbled_head and choose.random() < 0.1:
+    if choose.random() < 0.1:
         whole[3:4] = b"3"  # a fragment of a longer message
     return bytes(whole)
 
@@ -69,10 +67,8 @@ def test_garbled_datagrams_end_no_process(stack, tmp_path):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
         for number in range(DATAGRAMS):
-            # LCM's Python binding, which listens on the user plane, does not survive every head.
-            plane = choose.choice(PLANES)
-            data = datagram(number, *choose.choice(inputs), plane == PLANES[1], choose)
-            sender.sendto(data, plane)
+            data = datagram(number, *choose.choice(inputs), choose)
+            sender.sendto(data, choose.choice(PLANES))
             if number % AT_ONCE == 0:
                 stack.until(lambda: True, 1, "all are alive")
     before = stack.user.count("JOINT_STATE"), stack.user.count("SIM_TRUTH")
@@ -83,4 +79,4 @@ def test_garbled_datagrams_end_no_process(stack, tmp_path):
         assert stack.processes[name].poll() is None, stack.log(name)
     assert recorder.poll() is None
     recorder.terminate()
-    assert recorder.wait(timeout=30) == 0
+    assert recorder.wait(timeout=300) == 0

@@ -15,10 +15,8 @@ from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import BIN, ROOT, Stack
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
 DEGREE = np.pi / 180
-FREEZE_s = 0.4  # longer than any watchdog waits, 50 ms being bridged on virtual buses
+FREEZE_s = 0.6  # longer than any watchdog waits
 
 
 def active(stack: Stack) -> None:
@@ -43,6 +41,7 @@ def speed_since(stack: Stack, index: int) -> float:
     return max(np.abs(truth.v[: truth.num_joints]).max() for truth in truths)
 
 
+@pytest.mark.realtime
 def test_a_controller_that_freezes_is_not_followed_again(refereed):
     active(refereed)
     before = positions(refereed)
@@ -58,6 +57,7 @@ def test_a_controller_that_freezes_is_not_followed_again(refereed):
     refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 5, "the drives to obey")
 
 
+@pytest.mark.realtime
 def test_a_driver_that_freezes_sends_no_old_commands(refereed):
     active(refereed)
     index = refereed.user.count("SIM_TRUTH")
@@ -73,6 +73,7 @@ def test_a_driver_that_freezes_sends_no_old_commands(refereed):
         assert power_W.max() < 0.5, "a torque that drives the arm"
 
 
+@pytest.mark.realtime
 def test_an_arm_that_comes_back_elsewhere_stays_there(refereed):
     active(refereed)
     home = positions(refereed)
@@ -105,6 +106,7 @@ def test_a_recorder_that_hangs_is_not_noticed(refereed, tmp_path):
         recorder.wait()
 
 
+@pytest.mark.realtime
 def test_a_simulator_that_stalls_is_a_fault(refereed):
     active(refereed)
     freeze(refereed, "sim")
@@ -132,6 +134,7 @@ def test_a_flood_of_telemetry_stops_no_arm(refereed):
     assert np.abs(positions(refereed) - before).max() < 1 * DEGREE
 
 
+@pytest.mark.realtime
 def test_replayed_requests_enable_nothing(refereed):
     """An old log, played to the user plane of a stack that has been started anew."""
     active(refereed)
@@ -149,6 +152,7 @@ def test_replayed_requests_enable_nothing(refereed):
     assert refereed.state.drive_state == State.DRIVE_OFF
 
 
+@pytest.mark.realtime
 def test_a_network_that_goes_down_is_a_fault(refereed):
     active(refereed)
     before = positions(refereed)
@@ -174,7 +178,7 @@ def start_with_descriptors(count: int) -> subprocess.CompletedProcess:
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (count, count)),
         capture_output=True,
         text=True,
-        timeout=20,
+        timeout=300,
         check=False,
     )
 

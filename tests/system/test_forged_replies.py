@@ -12,8 +12,6 @@ from local_drive import multicast_group
 
 JOINT, REPLY_ID = 2, 19  # joint3 of openarm
 
-pytestmark = pytest.mark.flaky(reruns=2)  # real time on a machine that others use
-
 
 def send_again_and_again(node: can.BusABC, reply: can.Message, ended: threading.Event) -> None:
     while not ended.is_set():
@@ -21,6 +19,7 @@ def send_again_and_again(node: can.BusABC, reply: can.Message, ended: threading.
         time.sleep(0.0002)
 
 
+@pytest.mark.realtime
 def test_a_node_that_answers_beside_a_drive(stack):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)

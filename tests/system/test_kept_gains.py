@@ -1,12 +1,9 @@
 """A gains request changes what it names, in the running processes, whoever sends it."""
 
 import numpy as np
-import pytest
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from test_send import limber_send
-
-pytestmark = pytest.mark.flaky(reruns=2)
 
 
 def stiffness(stack) -> np.ndarray:

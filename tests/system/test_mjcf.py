@@ -37,7 +37,7 @@ def test_a_fall(tmp_path):
     (tmp_path / "fall.yaml").write_text(FALL)
     log = tmp_path / "run.lcmlog"
     command = [str(BIN / "limber-lab"), str(tmp_path / "fall.yaml"), "--log", str(log)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     model = mujoco.MjModel.from_xml_string(mjcf.text(load_arm("openarm")))
     data, n = mujoco.MjData(model), model.nv

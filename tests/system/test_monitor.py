@@ -17,10 +17,12 @@ from browser_page import (
     Arm,
     activate,
     drag,
+    grab,
     launched,
     monitor,
     opened,
     screen,
+    settled,
     upper_arm,
 )
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
@@ -30,7 +32,7 @@ from stack import BIN, ROOT
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 pytestmark = [
-    pytest.mark.flaky(reruns=1),
+    pytest.mark.browser,
     pytest.mark.skipif(CHROMIUM is None, reason="no chromium: ./limber test installs it"),
 ]
 
@@ -62,9 +64,13 @@ def active(page, stack):
     activate(page, stack)
 
 
+def middle_of(locator) -> tuple[float, float]:
+    box = locator.bounding_box()
+    return box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+
+
 def test_a_slider_makes_the_arm_stiffer(page, stack, active):
-    box = page.get_by_role("slider").nth(0).bounding_box()
-    middle = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+    middle = settled(lambda: middle_of(page.get_by_role("slider").nth(0)))
     drag(page, middle, (middle[0] + 40, middle[1]))
 
     def stiffness() -> np.ndarray:
@@ -80,9 +86,10 @@ def test_the_gizmo_moves_the_goal(page, stack, active):
     start = stack.status
     R = Rotation.from_quat(start["quat_BD"], scalar_first=True)
     axis, grip = R.apply([1.0, 0.0, 0.0]), 0.28 * figure(load_robot(ROBOT)).reach_m
-    time.sleep(1.0)
     p = start["p_BD"].copy()
-    drag(page, screen(page, p + grip * axis), screen(page, p + (grip + 0.08) * axis))
+    begin, end = screen(page, p + grip * axis), screen(page, p + (grip + 0.08) * axis)
+    way = end[0] - begin[0], end[1] - begin[1]
+    grab(page, lambda: screen(page, p + grip * axis), way)
     stack.until(lambda: (stack.status["p_BD"] - p) @ axis > 0.04, "the goal along the axis")
     moved = stack.status["p_BD"] - p
     assert np.linalg.norm(moved - (moved @ axis) * axis) < 0.01
@@ -93,8 +100,7 @@ def test_a_dragged_link_is_pushed_until_it_is_let_go(page, stack, active):
     def force() -> float:
         return float(np.linalg.norm(stack.newest("SIM_TRUTH")["F_push"][:3]))
 
-    start = upper_arm(page, stack)
-    drag(page, start, (start[0] + 60, start[1] - 30), let_go=False)
+    grab(page, lambda: upper_arm(page, stack), (60, -30), let_go=False)
     stack.until(lambda: force() > 2.0, "a push")
     time.sleep(1.5)
     stack.until(lambda: force() > 2.0, "the push, refreshed while the pointer rests")
@@ -144,8 +150,7 @@ def test_a_log_jumps_and_plays(browser, run_folder):
     with monitor(str(run_folder)) as url, opened(browser, url) as page:
         page.get_by_role("button", name="play", exact=True).wait_for()
         assert place(page) == 0.0
-        box = page.get_by_role("slider").first.bounding_box()
-        start = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+        start = settled(lambda: middle_of(page.get_by_role("slider").first))
         drag(page, start, (start[0] + 60, start[1]))
         time.sleep(1.0)
         there = place(page)

@@ -16,8 +16,6 @@ import pytest
 from local_drive import multicast_group
 from stack import ROOT
 
-# Realtime on a machine that others use: a pause longer than a client waits is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
 SHOULDER, ELBOW = 1, 2  # of planar2r
 GROUP = multicast_group("planar2r")
 PATIENCE_S = 30.0
@@ -26,6 +24,7 @@ PATIENCE_S = 30.0
 @pytest.fixture(autouse=True)
 def arm(stack):
     stack.robot = "planar2r"
+    stack.pace = "--realtime"
     stack.start("sim", "--realtime")
     stack.until(lambda: stack.truth is not None, 20, "the simulator")
     return stack
@@ -73,6 +72,13 @@ def test_the_tool_reads_what_robot_yaml_says():
     assert found["servo.pid_position.kp"] == pytest.approx(4000.0)
     assert found["servo.pid_position.kd"] == pytest.approx(200.0)
     assert math.isnan(found["servopos.position_min"])
+
+
+def test_the_auxiliary_ports_are_read_as_unwired():
+    async def conversation(shoulder, _elbow):
+        return await shoulder.read_gpio()
+
+    assert talk(conversation) == bytes(2)
 
 
 def test_the_tool_restores_a_configuration(tmp_path):

@@ -16,7 +16,7 @@ def test_a_page_beside_a_run_ends_with_it(tmp_path):
     address = run.stdout.readline().split()[0]
     with urllib.request.urlopen(address) as answer:
         assert b"<html" in answer.read()
-    output, _ = run.communicate(timeout=120)
+    output, _ = run.communicate(timeout=300)
     assert run.returncode == 0, output
     assert "refused" not in (tmp_path / "limber-controller.log").read_text(encoding="utf-8")
     with pytest.raises(OSError):

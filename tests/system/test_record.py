@@ -42,7 +42,7 @@ def test_a_broken_datagram_is_left_out(tmp_path):
         lcm.LCM(USER_URL).publish("MODE_REQUEST", mode_request_t().encode())
         time.sleep(0.3)
         recorder.send_signal(signal.SIGINT)
-        assert recorder.wait(timeout=20) == 0, output.read_text()
+        assert recorder.wait(timeout=300) == 0, output.read_text()
     assert output.read_text().count("impossible size") == 1
     assert [event.channel for event in lcm.EventLog(str(path))] == ["MODE_REQUEST"]
 
@@ -80,7 +80,7 @@ def test_nothing_is_lost_at_five_times_the_rate_of_an_arm(tmp_path, name):
     with recording(path) as recorder:
         publish(3000, pause_s=0.012)
         recorder.send_signal(signal.SIGINT)
-        assert recorder.wait(timeout=20) == 0
+        assert recorder.wait(timeout=300) == 0
     report = json.loads(path.with_suffix(".txt").read_text().splitlines()[-1])
     assert report["lost"] == {"JOINT_STATE": 0} and report["messages"] == 3000
     assert report["file_bytes"] == path.stat().st_size
@@ -95,7 +95,7 @@ def report_of(path):
 
 def ended(recorder):
     recorder.send_signal(signal.SIGINT)
-    return recorder.wait(timeout=60) == 0
+    return recorder.wait(timeout=300) == 0
 
 
 @contextmanager
@@ -146,7 +146,7 @@ def test_what_had_arrived_when_the_user_stops_is_recorded_without_a_tail(tmp_pat
         with held_up(recorder):
             publish(500)
             recorder.send_signal(signal.SIGINT)
-        assert recorder.wait(timeout=20) == 0
+        assert recorder.wait(timeout=300) == 0
     assert report_of(path)["messages"] == 500
 
 

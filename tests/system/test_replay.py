@@ -74,7 +74,7 @@ def test_it_takes_as_long_as_the_recording(log):
 
 
 def test_commands_under_another_name_and_on_an_address_of_their_own(log):
-    user, private = Listener(USER_URL), Listener(PRIVATE)
+    user, private = Listener(USER_URL, "OLD_MODE_REQUEST"), Listener(PRIVATE)
     replay(log, "--speed", "20", "--commands-as", "OLD_").communicate()
     time.sleep(0.3)
     assert len(user.raw["OLD_MODE_REQUEST"]) == 40 and "MODE_REQUEST" not in user.raw
@@ -87,7 +87,7 @@ def test_commands_under_another_name_and_on_an_address_of_their_own(log):
 
 def test_a_long_pause_is_shortened_and_told(tmp_path):
     log = write(tmp_path / "run.lcmlog", last_s=86_400)
-    out, _ = replay(log, "--speed", "20").communicate(timeout=20)
+    out, _ = replay(log, "--speed", "20").communicate(timeout=300)
     assert "a pause of 86393 s in the log was shortened to 1 s" in out
     assert "sent 401 messages" in out
 
@@ -96,7 +96,7 @@ def test_refused_where_a_stack_runs(stack, log):
     stack.start_all()
     before = stack.user.count("JOINT_STATE")
     process = replay(log)
-    out, errors = process.communicate(timeout=20)
+    out, errors = process.communicate(timeout=300)
     stack.until(lambda: stack.user.count("JOINT_STATE") > before, 5, "a state of the stack")
     assert process.returncode == 3 and out == ""
     assert "a stack, or another replay, is running there" in errors
@@ -119,6 +119,6 @@ def test_stopped_by_a_driver_that_starts_meanwhile(log):
         time.sleep(0.01)
         if process.poll() is not None:
             break
-    _, errors = process.communicate(timeout=20)
+    _, errors = process.communicate(timeout=300)
     assert process.returncode == 3
     assert "a driver has started on this address: the replay is stopped" in errors

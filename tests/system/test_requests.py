@@ -16,9 +16,6 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from limber.lcmtypes.mode_request_t import mode_request_t
 from stack import ARM_URL, BIN, CLIENT, USER_URL
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
-
 LOGPLAYER = str(Path(sys.executable).parent / "lcm-logplayer")
 
 
@@ -29,7 +26,7 @@ def active(stack) -> None:
 
 def send(*entries: str) -> None:
     command = [str(BIN / "limber-send"), "--client", str(CLIENT), *entries]
-    subprocess.run(command, check=True, timeout=30)
+    subprocess.run(command, check=True, timeout=300)
 
 
 def status(stack) -> Status:
@@ -40,7 +37,7 @@ def record_session(stack, path: Path) -> int:
     """Brings the arm to motion by requests, into an LCM log; returns how many there were."""
     with_log = subprocess.Popen([str(BIN / "limber-record"), "--out", str(path)])
     active(stack)
-    send("goal: {offset_m: [0, 0, 0.05], duration_s: 1}", "gains: {K_x_translation_N_per_m: 300}")
+    send("goal: {offset_m: [0, 0, 0.05], duration_s: 1}", "gains: {K_x_translation_N_per_m: 50}")
     time.sleep(1.0)
     with_log.terminate()
     with_log.wait(20)
@@ -53,11 +50,12 @@ def replay(path: Path) -> None:
     subprocess.run(
         [LOGPLAYER, "--speed", "10", *url, "--regexp", "MODE_.*|COMPLIANCE_.*", str(path)],
         check=True,
-        timeout=60,
+        timeout=300,
         stdout=subprocess.DEVNULL,
     )
 
 
+@pytest.mark.realtime
 def test_a_log_replayed_to_another_run_moves_nothing(stack, tmp_path):
     requests = record_session(stack, tmp_path / "log")
     assert requests >= 4
@@ -120,6 +118,7 @@ def test_a_second_simulator_does_not_start(stack):
     assert stack.state.drive_state == State.DRIVE_ON
 
 
+@pytest.mark.realtime
 def test_a_driver_starts_where_a_killed_one_was(stack):
     active(stack)
     stack.kill("driver")
@@ -131,7 +130,7 @@ def test_a_driver_starts_where_a_killed_one_was(stack):
 def test_a_log_nobody_reads_does_not_stop_the_controller(stack, tmp_path):
     reader, writer = os.pipe()  # never read
     stack.start("sim")
-    command = [str(BIN / "limber-controller"), "--robot", "openarm"]
+    command = [str(BIN / "limber-controller"), "--robot", "openarm", "--paced"]
     controller = subprocess.Popen(command, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL)
     try:
         os.write(writer, bytes(60_000))
@@ -181,6 +180,7 @@ def test_a_flood_of_requests_does_not_stop_the_arm(stack):
     assert stack.state.drive_state == State.DRIVE_ON
 
 
+@pytest.mark.realtime
 def test_a_forged_state_ends_in_a_fault_that_can_be_acknowledged(stack):
     active(stack)
     arm = lcm.LCM(ARM_URL)
@@ -221,7 +221,7 @@ def on_a_network(*command: str) -> subprocess.CompletedProcess:
         ["unshare", "-n", "sh", "-c", ON_A_NETWORK, "sh", *command],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
 

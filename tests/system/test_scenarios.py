@@ -1,6 +1,7 @@
 """Shipped scenarios end to end, as a user starts them: exit status, summary, log, picture."""
 
 import json
+import re
 import signal
 import subprocess
 import time
@@ -10,6 +11,7 @@ import pytest
 from stack import ROOT
 
 LIMBER = str(ROOT / ".venv/bin/limber")
+TABLE = re.compile(r"^```\n(along .*?)^```", re.DOTALL | re.MULTILINE)  # README's, of the demo
 MOST_IN_A_LOG_bytes = 1200  # of a cycle, compressed
 
 
@@ -72,6 +74,10 @@ def test_demo_in_lock_step(tmp_path):
     out = tmp_path / "out"
     done = limber("demo", "--lockstep", "--no-watch", "--out", str(out))
     assert done.returncode == 0, done.stdout + done.stderr
+    shown = [line.split() for line in done.stdout.splitlines()]
+    table = TABLE.search((ROOT / "README.md").read_text(encoding="utf-8"))[1]
+    for line in table.splitlines():
+        assert line.split() in shown, f"README.md: {line}\n{done.stdout}"
     found = numbers(out)
     assert found["cycles"]["value"] == 26000
     assert 5 < found["peak contact force"]["value"] < 40
@@ -83,25 +89,19 @@ def test_demo_in_lock_step(tmp_path):
     assert (out / "run.lcmlog.zst").stat().st_size > 3_000_000
 
 
-# A pause of this machine longer than the driver bridges is not our fault. Without real-time
-# priority any other program's work is such a pause: there only what is said is judged.
-@pytest.mark.flaky(reruns=4)
-@pytest.mark.parametrize(("unprivileged", "seconds"), [(False, 30), (True, 10)])
-def test_demo_in_real_time(tmp_path, unprivileged, seconds):
-    """At 1 kHz; how late the cycles were is reported, never judged here."""
+@pytest.mark.realtime
+@pytest.mark.parametrize("unprivileged", [False, True])
+def test_a_simulated_arm_in_real_time(tmp_path, unprivileged):
+    """What this machine makes of it is told, never judged here."""
     out = tmp_path / "out"
     done = limber(
-        "demo",
-        *("--seconds", str(seconds), "--no-watch", "--out", str(out)),
+        "run",
+        *("scenarios/quick.yaml", "--realtime", "--out", str(out)),
         unprivileged=unprivileged,
     )
     found = numbers(out)
-    print(done.stdout)
-    assert 0 < found["cycles"]["value"] <= 1000 * seconds + 500
-    assert "late cycles" in found
-    if not unprivileged:
-        assert found["cycles"]["value"] >= 1000 * (seconds - 1)
-        assert found["faults"]["pass"] is True, done.stdout + done.stderr
+    assert 0 < found["cycles"]["value"] <= 3500
+    assert "late cycles" in found and "lateness, median" in found
     status = done.stdout + (out / "limber-driver.log").read_text(encoding="utf-8")
     assert ("NOT real-time" in status) == unprivileged or "granted" in status
 
@@ -115,7 +115,7 @@ def test_plain_lcm_logger_hears_a_run(tmp_path):
         stderr=subprocess.DEVNULL,
     )
     try:
-        done = limber("run", "scenarios/quick.yaml", "--realtime", "--out", str(tmp_path / "out"))
+        done = limber("run", "scenarios/quick.yaml", "--out", str(tmp_path / "out"))
         time.sleep(1.0)  # the logger writes to disk now and then
     finally:
         logger.send_signal(signal.SIGINT)

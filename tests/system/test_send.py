@@ -8,9 +8,6 @@ import pytest
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from stack import BIN, ROOT
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
-
 
 def limber_send(*entries: str, client: int | None = None) -> subprocess.CompletedProcess:
     """Through the command line; as another client, by the program itself."""
@@ -20,7 +17,7 @@ def limber_send(*entries: str, client: int | None = None) -> subprocess.Complete
     return subprocess.run(
         [*command, *entries],
         cwd=ROOT / "tools",
-        timeout=30,
+        timeout=300,
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -71,7 +68,7 @@ def test_one_line_an_entry(standing):
         input="\n".join(lines),
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=300,
     )
     answers = done.stdout.splitlines()
     assert [answer.split(":")[0] for answer in answers] == ["ok", "error", "error", "ok"]

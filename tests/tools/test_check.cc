@@ -46,6 +46,48 @@ TEST(Check, AResultThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(check("robot openarm | true").status, 0);
 }
 
+/// A scenario of a shipped robot with these lines.
+std::string scenario_of(const testing::TemporaryFolder& folder, const std::string& robot,
+                        const std::string& lines) {
+  return folder.write("s.yaml", "format: limber-scenario/1\nrobot: " + robot +
+                                    "\nmode: lockstep\nduration_s: 3\n" + lines);
+}
+
+// desktop2r's joints end at 2.6 rad; its soft walls are 0.1 rad wide.
+TEST(Check, NotesAStartInASoftWallOrAtItsEdge) {
+  const testing::TemporaryFolder folder;
+  const auto notes = [&](const std::string& pose) {
+    return check("scenario " + scenario_of(folder, "desktop2r", "start_q: " + pose + "\n")).output;
+  };
+  EXPECT_TRUE(
+      contains(notes("[2.55, 0]"), "start: shoulder at 2.55, 0.05 rad from its end at 2.6"));
+  EXPECT_TRUE(contains(notes("[2.55, 0]"), "in its soft wall, which pushes with"));
+  EXPECT_TRUE(contains(notes("[0, -2.499]"), "elbow at -2.499, 0.101 rad from its end at -2.6"));
+  EXPECT_TRUE(contains(notes("[0, -2.499]"), "at the edge of its soft wall"));
+  EXPECT_FALSE(contains(notes("[2.4, -2.4]"), "soft wall"));
+}
+
+TEST(Check, TellsWhichWayAContinuousJointTurns) {
+  const testing::TemporaryFolder folder;
+  std::string urdf = testing::read_text(LIMBER_SOURCE_DIR "/robots/desktop2r/robot.urdf");
+  const std::string type = "type=\"revolute\"";
+  for (std::size_t at; (at = urdf.find(type)) != std::string::npos;)
+    urdf.replace(at, type.size(), "type=\"continuous\"");
+  std::string yaml = testing::read_text(LIMBER_SOURCE_DIR "/robots/desktop2r/robot.yaml");
+  for (const char* home : {"    home_rad: -1.2", "    home_rad: 1.4"})
+    yaml.replace(yaml.find(home), 4, "    position_min_rad: -6\n    position_max_rad: 6\n    ");
+  folder.write("robot.urdf", urdf);
+  folder.write("robot.yaml", yaml);
+  const std::string file =
+      scenario_of(folder, ".",
+                  "start_q: [3, 0]\ntimeline:\n"
+                  "  - {at_s: 1, goal: {joints_rad: [-3, 0.5], duration_s: 1}}\n");
+  const std::string output = check("scenario " + file).output;
+  EXPECT_TRUE(contains(output, "turns by -6 rad, from 3 to -3")) << output;
+  EXPECT_TRUE(contains(output, "is reached by +0.2832 rad: 3.283")) << output;
+  EXPECT_EQ(output.find("elbow turns"), std::string::npos);
+}
+
 TEST(Check, TellsOfAShippedRobot) {
   const Outcome outcome = check("robot openarm");
   EXPECT_EQ(outcome.status, 0);

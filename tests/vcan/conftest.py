@@ -19,7 +19,9 @@ def stack(monkeypatch):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     monkeypatch.setenv("LIMBER_INCIDENTS", str(folder / "incidents"))
-    running = Stack(folder)
-    yield running
-    running.close()
-    shutil.rmtree(folder, ignore_errors=True)
+    running = Stack(folder, pace="--realtime")
+    try:
+        yield running
+    finally:
+        running.close()
+        shutil.rmtree(folder, ignore_errors=True)

@@ -46,16 +46,23 @@ def start(stack, driver: str, simulator: str):
 @pytest.fixture
 def arm(stack):
     """The bus is a cable between two interfaces."""
-    yield start(stack, "vxcan0", "vxcan1")
-    subprocess.run("tc qdisc del dev vxcan1 root", shell=True, check=False, capture_output=True)
+    try:
+        yield start(stack, "vxcan0", "vxcan1")
+    finally:
+        subprocess.run("tc qdisc del dev vxcan1 root", shell=True, check=False, capture_output=True)
 
 
 @pytest.fixture
 def gateway(stack):
-    """The bus is a gateway between two buses."""
-    sh("cangw -A -s vcan0 -d vcan1 -e && cangw -A -s vcan1 -d vcan0 -e")
-    yield start(stack, "vcan0", "vcan1")
+    """The bus is a gateway between two buses, which never stays behind: it would copy the frames of
+    every later test.
+    """
     sh("cangw -F")
+    try:
+        sh("cangw -A -s vcan0 -d vcan1 -e && cangw -A -s vcan1 -d vcan0 -e")
+        yield start(stack, "vcan0", "vcan1")
+    finally:
+        sh("cangw -F")
 
 
 def test_a_flood_of_foreign_frames_is_not_even_heard(arm):

@@ -1,7 +1,7 @@
 """An arm of each family of drives over the kernel's CAN gives the bytes of the lab.
 
 Frames on vcan have no stamps of the simulated wire: a reply between the end of the window and the
-end of the period is in time there. These arms have none; antagonist2r has two in its start-up.
+end of the period is in time there. These arms have none.
 """
 
 import pytest

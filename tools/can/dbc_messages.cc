@@ -1,8 +1,11 @@
 #include "tools/can/dbc_messages.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
@@ -19,13 +22,15 @@ using dbc::Message;
 using dbc::motorola_bit;
 using dbc::Signal;
 
+constexpr const char* kAll = "all";
+
 Message message_of(const Motor& motor, const std::string& what, std::uint32_t id, bool fd,
                    int bytes, bool from_host) {
   Message message;
   message.id = id;
   message.extended = id > kStandardIdMax;
   message.fd = fd;
-  message.node = dbc::identifier(motor.name);
+  message.node = motor.node;
   message.name = message.node + "_" + what;
   message.bytes = bytes;
   message.from_host = from_host;
@@ -70,6 +75,13 @@ Signal plain(const char* name, int start, int bits, bool motorola, const char* u
   return signal;
 }
 
+/// Whoever hears frames that are meant for all.
+Motor all_nodes() {
+  Motor all;
+  all.name = all.node = kAll;
+  return all;
+}
+
 void add_damiao(const Motor& motor, bool fd, std::vector<Message>* messages) {
   const DriveConfig& drive = motor.joint.drive;
   const CommandRange& range = drive.range;
@@ -105,9 +117,7 @@ void add_damiao(const Motor& motor, bool fd, std::vector<Message>* messages) {
 }
 
 Message damiao_registers(bool fd) {
-  Motor all;
-  all.name = "all";
-  Message message = message_of(all, "register", mit::kRegisterId, fd, 8, true);
+  Message message = message_of(all_nodes(), "register", mit::kRegisterId, fd, 8, true);
   message.comment =
       "Register request to the motor with this id: its answer has the reply's identifier.";
   Signal operation = plain("operation", 16, 8, false);
@@ -212,9 +222,7 @@ void add_canopen(const Motor& motor, bool fd, double period_s, std::vector<Messa
 }
 
 Message network_management() {
-  Motor all;
-  all.name = "all";
-  Message message = message_of(all, "NMT", canopen::kNmtId, false, 2, true);
+  Message message = message_of(all_nodes(), "NMT", canopen::kNmtId, false, 2, true);
   Signal command = plain("command", 0, 8, false);
   command.words = {{1, "start"},
                    {2, "stop"},
@@ -225,11 +233,7 @@ Message network_management() {
   return message;
 }
 
-Message sync() {
-  Motor all;
-  all.name = "all";
-  return message_of(all, "SYNC", canopen::kSyncId, false, 0, true);
-}
+Message sync() { return message_of(all_nodes(), "SYNC", canopen::kSyncId, false, 0, true); }
 
 // --- tip sensors ---------------------------------------------------------------------------------
 
@@ -275,9 +279,20 @@ std::array<Message, 2> robotous_replies(const Motor& tip, const TipSensorConfig&
   return halves;
 }
 
-void add_tip_sensor(const TipSensorConfig& sensor, std::vector<Message>* messages) {
+/// A node's name that no other node has: "rot y" and "rot_y" are the same letters to a DBC file.
+std::string take_node(const std::string& name, std::set<std::string>* taken) {
+  const std::string wanted = dbc::identifier(name);
+  std::string node = wanted;
+  for (int number = 2; !taken->insert(node).second; ++number)
+    node = fmt::format("{}_{}", wanted, number);
+  return node;
+}
+
+void add_tip_sensor(const TipSensorConfig& sensor, const std::string& node,
+                    std::vector<Message>* messages) {
   Motor tip;
   tip.name = "tip";
+  tip.node = node;
   const TipSensorTraits& traits = traits_of(sensor.protocol);
   Message request =
       message_of(tip, "request", sensor.command_id, traits.fd, traits.request_bytes, true);
@@ -298,7 +313,10 @@ std::vector<Message> dbc_messages(const Robot& robot, int bus) {
   std::vector<Message> messages;
   bool damiao = false;
   bool canopen_nodes = false;
-  for (const Motor& motor : motors_on_bus(robot, bus)) {
+  std::set<std::string> nodes = {"limber", kAll};  // the host, and what all hear
+  auto motors = motors_on_bus(robot, bus);
+  for (Motor& motor : motors) {
+    motor.node = take_node(motor.name, &nodes);
     switch (motor.joint.drive.protocol) {
       case DriveProtocol::kDamiaoMit:
         damiao = true;
@@ -319,7 +337,7 @@ std::vector<Message> dbc_messages(const Robot& robot, int bus) {
     messages.push_back(sync());
   }
   if (robot.has_tip_sensor && robot.tip_sensor.bus == bus)
-    add_tip_sensor(robot.tip_sensor, &messages);
+    add_tip_sensor(robot.tip_sensor, take_node("tip", &nodes), &messages);
   return messages;
 }
 

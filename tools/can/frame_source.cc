@@ -101,19 +101,27 @@ ListeningLosses listen(const Robot& robot, const FrameSource& source, const Fram
 
 bool opens_fd(const BusConfig& bus) { return bus.fd || bus.can.rfind("virtual:", 0) == 0; }
 
-int bus_of_interface(const Robot& robot, const std::string& interface, const std::string& file) {
-  std::string known;
+std::optional<int> bus_of_interface(const Robot& robot, const std::string& interface) {
   for (std::size_t i = 0; i < robot.buses.size(); ++i) {
     const BusConfig& bus = robot.buses[i];
-    const std::string name = candump_interface(bus.can);
-    if (interface == bus.name || interface == name) return static_cast<int>(i);
-    known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", bus.name, name);
+    if (interface == bus.name || interface == candump_interface(bus.can))
+      return static_cast<int>(i);
   }
-  throw ConfigError::at(
-      file, 0, "",
-      fmt::format("interface '{}' is none of {}'s buses, which are {}; add --bus "
-                  "{}=socketcan:{} if it is that one",
-                  interface, robot.name, known, robot.buses.front().name, interface));
+  return std::nullopt;
+}
+
+std::string elsewhere_text(const Robot& robot, const ListeningLosses& losses) {
+  std::string others;
+  std::string known;
+  for (const auto& [name, frames] : losses.elsewhere)
+    others += fmt::format("{}{} ({} frames)", others.empty() ? "" : ", ", name, frames);
+  for (const BusConfig& bus : robot.buses)
+    known +=
+        fmt::format("{}{} ({})", known.empty() ? "" : ", ", bus.name, candump_interface(bus.can));
+  return fmt::format(
+      "{}: none of {}'s buses, which are {}; if one of them is, add --bus "
+      "{}=socketcan:{}",
+      others, robot.name, known, robot.buses.front().name, losses.elsewhere.begin()->first);
 }
 
 ListeningLosses each_frame(const Robot& robot, const FrameSource& source, const FrameSink& sink,
@@ -121,11 +129,20 @@ ListeningLosses each_frame(const Robot& robot, const FrameSource& source, const 
   if (source.file.empty()) return listen(robot, source, sink, idle);
   CandumpReader reader(source.file);
   LoggedFrame logged;
+  ListeningLosses losses;
+  bool any = false;
   while ((source.stop == nullptr || *source.stop == 0) && reader.next(&logged)) {
-    const int bus = bus_of_interface(robot, logged.interface, source.file);
-    if (!sink(logged.time_ns, bus, logged.frame)) break;
+    const std::optional<int> bus = bus_of_interface(robot, logged.interface);
+    any = any || bus;
+    if (!bus) {
+      ++losses.elsewhere[logged.interface];
+    } else if (!sink(logged.time_ns, *bus, logged.frame)) {
+      break;
+    }
   }
-  return {};
+  if (!any && !losses.elsewhere.empty())
+    throw ConfigError::at(source.file, 0, "", elsewhere_text(robot, losses));
+  return losses;
 }
 
 }  // namespace limber::bus_tools

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 
 #include "drivers/can/can_frame.h"
@@ -24,15 +26,20 @@ using FrameSink = std::function<bool(std::int64_t time_ns, int bus, const CanFra
 struct ListeningLosses {
   std::int64_t overflow = 0;
   std::int64_t malformed = 0;
+  std::map<std::string, std::int64_t> elsewhere;  ///< of a file's interfaces that are none of these
 };
 
 /// Gives every frame to `sink`. A file's interfaces are the names of the robot's buses, or of their
-/// addresses. `idle` is called now and then while nothing arrives. Throws ConfigError.
+/// addresses; frames of other interfaces are counted only. `idle` is called now and then while
+/// nothing arrives. Throws ConfigError.
 ListeningLosses each_frame(const Robot& robot, const FrameSource& source, const FrameSink& sink,
                            const std::function<void()>& idle = {});
 
-/// The robot's bus that a file's interface is. Throws ConfigError, with the buses there are.
-int bus_of_interface(const Robot& robot, const std::string& interface, const std::string& file);
+/// The robot's bus that a file's interface is; none: another arm's, or a gripper's.
+std::optional<int> bus_of_interface(const Robot& robot, const std::string& interface);
+
+/// Which interfaces were left out, how many frames each, and what to do if one is a bus.
+std::string elsewhere_text(const Robot& robot, const ListeningLosses& losses);
 
 /// Whether FD frames can be opened there: always in user space, else if the bus carries them.
 bool opens_fd(const BusConfig& bus);

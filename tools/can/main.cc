@@ -10,6 +10,7 @@
 
 #include "common/config_error.h"
 #include "common/program.h"
+#include "common/realtime.h"
 #include "drivers/can/candump_log.h"
 #include "robots/loader/choose_buses.h"
 #include "robots/loader/load_robot.h"
@@ -47,7 +48,8 @@ FrameSource source_of(const Arguments& given) {
   return {given.file, given.duration_s, &stop_on_signals()};
 }
 
-void warn_of_losses(const ListeningLosses& losses) {
+void warn_of_losses(const Robot& robot, const ListeningLosses& losses) {
+  if (!losses.elsewhere.empty()) spdlog::info("left out: {}", elsewhere_text(robot, losses));
   if (losses.overflow > 0)
     spdlog::warn("{} frames were lost on their way here: the machine is too busy", losses.overflow);
   if (losses.malformed > 0) spdlog::warn("{} datagrams that were no CAN frames", losses.malformed);
@@ -78,7 +80,8 @@ int dump(const Arguments& given) {
     // A pipe whose reader has gone shows when it is flushed.
     return std::fputs(text.c_str(), stdout) >= 0 && std::ferror(stdout) == 0;
   };
-  warn_of_losses(each_frame(robot, source_of(given), print, [] { std::fflush(stdout); }));
+  const auto flush = [] { std::fflush(stdout); };
+  warn_of_losses(robot, each_frame(robot, source_of(given), print, flush));
   return kExitDone;
 }
 
@@ -90,13 +93,14 @@ int stats(const Arguments& given) {
     return true;
   };
   if (given.file.empty() && given.duration_s == 0.0) spdlog::info("counting until Ctrl-C");
-  warn_of_losses(each_frame(robot, source_of(given), add));
+  warn_of_losses(robot, each_frame(robot, source_of(given), add));
   std::fputs(statistics.text().c_str(), stdout);
   return kExitDone;
 }
 
 int record(const Arguments& given) {
   const Robot robot = load(given);
+  raise_priority(/*paced=*/true);  // a run in lock step beside other work waits for nobody
   CandumpWriter file(given.out);
   FrameSource source = source_of(given);
   const auto write = [&](std::int64_t time_ns, int bus, const CanFrame& frame) {
@@ -107,7 +111,7 @@ int record(const Arguments& given) {
   spdlog::info("recording the buses of {} to {}", robot.name, given.out);
   const ListeningLosses losses = each_frame(robot, source, write, [&] { file.flush(); });
   file.flush();
-  warn_of_losses(losses);
+  warn_of_losses(robot, losses);
   std::printf("%s: %lld frames\n", given.out.c_str(), static_cast<long long>(file.frames()));
   return kExitDone;
 }

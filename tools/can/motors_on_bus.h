@@ -10,8 +10,9 @@
 namespace limber::bus_tools {
 
 struct Motor {
-  std::string name;   ///< of its joint, with /2 for a second motor
-  JointConfig joint;  ///< `drive` is this motor's
+  std::string name;       ///< of its joint, with /2 for a second motor
+  JointConfig joint;      ///< `drive` is this motor's
+  std::string node = {};  ///< its name in a DBC file, each once on a bus; see dbc_messages()
 };
 
 inline std::vector<Motor> motors_on_bus(const Robot& robot, int bus) {

@@ -52,13 +52,15 @@ std::vector<Planned> read_plan(const Robot& robot, const ReplayOptions& options,
   std::vector<Planned> plan;
   FrameSource source;
   source.file = options.file;
-  each_frame(robot, source, [&](std::int64_t time_ns, int bus, const CanFrame& frame) {
-    if (wanted(decoders[static_cast<std::size_t>(bus)].read(frame)))
-      plan.push_back({time_ns, bus, frame});
-    else
-      ++count->left_out;
-    return true;
-  });
+  const auto losses =
+      each_frame(robot, source, [&](std::int64_t time_ns, int bus, const CanFrame& frame) {
+        if (wanted(decoders[static_cast<std::size_t>(bus)].read(frame)))
+          plan.push_back({time_ns, bus, frame});
+        else
+          ++count->left_out;
+        return true;
+      });
+  for (const auto& [interface, frames] : losses.elsewhere) count->left_out += frames;
   return plan;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/check/json.h"
+#include "tools/check/pose_report.h"
 #include "tools/check/print.h"
 #include "tools/check/refusal_report.h"
 #include "tools/check/stiffness_report.h"
@@ -67,6 +68,12 @@ const char* integrator_name(const Scenario& scenario) {
   return scenario.integrator == Integrator::kOde ? "ode" : "reference";
 }
 
+std::vector<std::string> all_notes(const Scenario& scenario, const LoadedRobot& robot) {
+  std::vector<std::string> notes = robot.notes;
+  for (std::string& note : pose_notes(scenario, robot.robot)) notes.push_back(std::move(note));
+  return notes;
+}
+
 }  // namespace
 
 std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
@@ -79,12 +86,12 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
     text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
                         describe(timed));
   }
-  for (const std::string& note : robot.notes) text += "  note: " + note + "\n";
+  for (const std::string& note : all_notes(scenario, robot)) text += "  note: " + note + "\n";
   if (!robot.robot.has_drives) return text;
   const auto reports = make_stiffness_reports(scenario, robot);
   text += stiffness_text(reports, robot.robot.rate_hz);
   for (const auto& warnings :
-       {stiffness_warnings(reports, robot.robot.rate_hz), doubtful_requests(scenario, robot)}) {
+       {stiffness_warnings(reports, robot.robot), doubtful_requests(scenario, robot)}) {
     for (const std::string& warning : warnings) text += "  warning: " + warning + "\n";
   }
   return text;
@@ -112,9 +119,9 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
                        {"start_q", json::numbers(scenario.start_q)},
                        {"timeline", json::list(timeline)},
                        {"stiffness", stiffness_json(reports)},
-                       {"warnings", json::texts(stiffness_warnings(reports, robot.robot.rate_hz))},
+                       {"warnings", json::texts(stiffness_warnings(reports, robot.robot))},
                        {"refused", json::texts(doubtful_requests(scenario, robot))},
-                       {"notes", json::texts(robot.notes)}}) +
+                       {"notes", json::texts(all_notes(scenario, robot))}}) +
          "\n";
 }
 

@@ -105,6 +105,7 @@ std::vector<std::string> doubtful_requests(const Scenario& scenario, const Loade
   if (!robot.robot.has_drives || timeline.empty()) return lines;
   ArmControllerOptions options;
   options.measure_time = false;
+  options.allow_unstable = scenario.allow_unstable;
   ArmController controller(robot, options);
   controller.set_timeline(&timeline);
   StandingArm arm(robot.robot, scenario.start_q);

@@ -34,7 +34,9 @@ class StartPose {
     controller::Gains gains(robot_.size());
     controller::read_gains(fields, &gains);
     const double T = 1.0 / robot_.rate_hz;
-    if (!springs_.any()) return {at_s, tip_modes(gains, terms_, T), joint_modes(gains, terms_, T)};
+    const StiffnessModes null_space = null_modes(gains, terms_, T);
+    if (!springs_.any())
+      return {at_s, tip_modes(gains, terms_, T), joint_modes(gains, terms_, T), null_space};
     controller::JointElasticity elastic(robot_, springs_);
     elastic.position = gains.settings.position_feedback;
     if (elastic.position == PositionFeedback::kAuto) elastic.position = PositionFeedback::kStatic;
@@ -46,7 +48,7 @@ class StartPose {
       gains.K_q = controller::JointSprings::within(gains.K_q, elastic.K_J, gravity_gradient_);
     }
     return {at_s, tip_modes(gains, terms_, T, &elastic), joint_modes(gains, terms_, T, &elastic),
-            asked};
+            null_space, asked};
   }
 
  private:
@@ -61,6 +63,8 @@ std::span<const controller::StiffnessMode> each(const StiffnessModes& modes) {
 }
 
 std::string summary(const StiffnessModes& modes) {
+  if (!(modes.damping_share <= 1.0))
+    return fmt::format("damped {:.3g} times more than is stable", modes.damping_share);
   if (modes.count == 0) return "no spring";
   const double share = modes.highest_share();
   if (!std::isfinite(share)) return "unstable with this damping";
@@ -100,11 +104,26 @@ std::vector<StiffnessReport> make_stiffness_reports(const Scenario& scenario,
 }
 
 std::vector<std::string> stiffness_warnings(const std::vector<StiffnessReport>& reports,
-                                            double rate_hz) {
+                                            const Robot& robot) {
+  const double rate_hz = robot.rate_hz;
   std::vector<std::string> warnings;
   for (const StiffnessReport& report : reports) {
-    for (const auto& [name, modes] : {std::pair{"K_x", &report.tip}, {"K_q", &report.joints}}) {
-      const double share = modes->highest_share();
+    struct Judged {
+      const char* spring;
+      const char* damper;
+      const StiffnessModes& modes;
+    };
+    for (const auto& [name, damper, modes] : {Judged{"K_x", "D_x", report.tip},
+                                              {"K_q", "D_q", report.joints},
+                                              {"K_null", "D_null", report.null_space}}) {
+      if (!(modes.damping_share <= 1.0)) {
+        warnings.push_back(fmt::format(
+            "gains at {:g} s: {} is {:.3g} times what is stable at {:g} Hz at the start pose, "
+            "most of it at {}",
+            report.at_s, damper, modes.damping_share, rate_hz,
+            robot.joints[static_cast<std::size_t>(modes.damped_joint)].name));
+      }
+      const double share = modes.highest_share();
       if (share <= 1.0) continue;
       const std::string much = std::isfinite(share)
                                    ? fmt::format("{:.3g} times what is stable", share)
@@ -126,8 +145,8 @@ std::string stiffness_text(const std::vector<StiffnessReport>& reports, double r
   std::string text = fmt::format(
       "  modes at the start pose, against the stiffest that is stable at {:g} Hz:\n", rate_hz);
   for (const StiffnessReport& report : reports) {
-    text += fmt::format("  {:8.3f} s  tip {}; joints {}\n", report.at_s, summary(report.tip),
-                        summary(report.joints));
+    text += fmt::format("  {:8.3f} s  tip {}; joints {}; null space {}\n", report.at_s,
+                        summary(report.tip), summary(report.joints), summary(report.null_space));
   }
   return text;
 }
@@ -137,7 +156,8 @@ std::string stiffness_json(const std::vector<StiffnessReport>& reports) {
   for (const StiffnessReport& report : reports) {
     written.push_back(json::object({{"at_s", json::number(report.at_s)},
                                     {"tip", modes_json(report.tip)},
-                                    {"joints", modes_json(report.joints)}}));
+                                    {"joints", modes_json(report.joints)},
+                                    {"null_space", modes_json(report.null_space)}}));
   }
   return json::list(written);
 }

@@ -18,15 +18,16 @@ struct StiffnessReport {
   double at_s = 0.0;                  ///< of the gains entry; 0 also for the gains of robot.yaml
   controller::StiffnessModes tip;     ///< of K_x
   controller::StiffnessModes joints;  ///< of K_q, for joint laws and for holding
+  controller::StiffnessModes null_space;  ///< of K_null and D_null, beside K_x
   double springs = 0.0;  ///< K_x over the most that springs in the joints allow; 0 where none do
 };
 
 /// Gains of robot.yaml and of each entry, at the start pose.
 std::vector<StiffnessReport> make_stiffness_reports(const Scenario& scenario,
                                                     const LoadedRobot& robot);
-/// One line for each report with an unstable mode, or a tip stiffer than its springs.
+/// One line for each report with an unstable mode or damper, or a tip stiffer than its springs.
 std::vector<std::string> stiffness_warnings(const std::vector<StiffnessReport>& reports,
-                                            double rate_hz);
+                                            const Robot& robot);
 
 std::string stiffness_text(const std::vector<StiffnessReport>& reports, double rate_hz);
 std::string stiffness_json(const std::vector<StiffnessReport>& reports);

@@ -18,6 +18,7 @@ _FROM = {
     "StackLostError": "limber.live.arm_errors",
     "RefusedError": "limber.live.arm_errors",
     "FaultError": "limber.live.arm_errors",
+    "RecoveryError": "limber.live.arm_errors",
     "NotReachedError": "limber.live.arm_errors",
     "WaitTimeoutError": "limber.live.arm_errors",
 }

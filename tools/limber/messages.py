@@ -34,9 +34,10 @@ SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
 SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
 SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = 0x50590000, 32  # the first of Python's Arm, and how many
 MONITOR_CLIENT = 0x4D4F0000  # of `limber monitor`; its port is added
+SEND_CLIENT = 0x48414E44  # of `limber send`
 CLIENTS = {
     SCENARIO_CLIENT: "scenario",
-    0x48414E44: "limber send",
+    SEND_CLIENT: "limber send",
     MONITOR_CLIENT + 8080: "limber monitor",
     **{SCRIPT_CLIENT + i: "Python" for i in range(NUM_SCRIPT_CLIENTS)},
 }

@@ -1,7 +1,9 @@
 """Where the repository, the built programs and the shipped robots are."""
 
 import os
+import subprocess
 from pathlib import Path
+from typing import Any
 
 from limber.errors import InputError, RunError
 
@@ -24,6 +26,13 @@ def program(name: str) -> Path:
             f"{path} does not exist: run ./limber to build it, or set LIMBER_BIN to its folder"
         )
     return path
+
+
+def captured(command: list[str], **more: Any) -> subprocess.CompletedProcess[str]:
+    """The finished program with what it printed, which is UTF-8 whatever the locale is."""
+    return subprocess.run(
+        command, capture_output=True, encoding="utf-8", errors="replace", check=False, **more
+    )
 
 
 def robots_root() -> Path:

@@ -8,6 +8,7 @@
 #include "common/clock.h"
 #include "common/lcm_url.h"
 #include "common/program.h"
+#include "common/realtime.h"
 #include "common/wait_readable.h"
 #include "tools/record/lcm_listener.h"
 #include "tools/record/recorder.h"
@@ -28,6 +29,7 @@ struct Options {
 
 int record(const Options& given, const std::string& url) {
   const auto& stop = limber::stop_on_signals();
+  limber::raise_priority(/*paced=*/true);  // a run in lock step beside other work waits for nobody
   limber::Recorder recorder(given.path, static_cast<std::int64_t>(given.least_free_MB * 1e6));
   limber::LcmListener listener(url);
   const auto write = [&](std::int64_t time_us, const limber::LcmDatagram& message) {

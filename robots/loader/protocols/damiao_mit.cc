@@ -25,9 +25,11 @@ void read_damiao_mit_motor(const YamlMap& yaml, DriveConfig* drive) {
   drive->range = read_range(yaml.map("mit_range"));
   drive->counts_per_turn = std::exp2(yaml.integer("encoder_bits", 8, 24));
   if (!(drive->peak_torque_Nm <= drive->range.torque_Nm)) {
+    const bool exchanged = drive->peak_torque_Nm <= drive->range.velocity_rad_per_s;
     yaml.refuse("peak_torque_Nm",
-                fmt::format("{} is more than the {} the torque field can carry (mit_range)",
-                            drive->peak_torque_Nm, drive->range.torque_Nm));
+                fmt::format("{} is more than the {} the torque field can carry (mit_range){}",
+                            drive->peak_torque_Nm, drive->range.torque_Nm,
+                            exchanged ? "; are velocity_rad_per_s and torque_Nm exchanged?" : ""));
   }
 }
 

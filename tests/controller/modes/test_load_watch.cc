@@ -43,7 +43,7 @@ struct Bench {
     state.period_ns = std::int64_t{1'000'000'000} / 64;
     watch.begin();
   }
-  int next(double dt_s = kStep_s) { return watch.wrong(state, {g, Cv, M, B, J}, dt_s); }
+  int next(double dt_s = kStep_s) { return watch.wrong(state, {g, Cv, M, B, J, walls}, dt_s); }
   void apply(const VectorJ& tau) { Eigen::Map<VectorJ>(state.tau_applied, 2) = tau; }
   /// The joint that is found within half a second of this torque from outside, -1: none.
   int found(const VectorJ& outside_Nm) {
@@ -67,6 +67,7 @@ struct Bench {
   VectorJ B = vector(0.1, 0.05);
   MatrixJ M = MatrixJ::Zero(2, 2);
   Matrix6J J = Matrix6J::Zero(6, 2);
+  VectorJ walls = vector(0.0, 0.0);
 };
 
 TEST(LoadWatch, FollowsATorqueFromOutsideWithTheMemoryAsTimeConstant) {
@@ -135,6 +136,24 @@ TEST(LoadWatch, AnyPayloadAtTheTipIsExplained) {
 TEST(LoadWatch, SoIsAStandThatCarriesTheArm) {
   for (const double share : {0.1, 0.5, 1.0})
     EXPECT_EQ(Bench().found(share * vector(2.0, 1.0)), -1) << share;
+}
+
+// A joint that cannot leave its wall yet: a stand or friction takes up to all of the wall's push.
+TEST(LoadWatch, SoIsWhatKeepsAJointInItsSoftWall) {
+  for (const double wall_Nm : {6.0, -6.0}) {
+    for (const double share : {0.3, 1.0}) {
+      Bench bench;
+      bench.walls = vector(0.0, wall_Nm);
+      EXPECT_EQ(bench.found(vector(0.0, -share * wall_Nm)), -1) << wall_Nm << " " << share;
+    }
+    Bench on_a_stand;
+    on_a_stand.walls = vector(0.0, wall_Nm);
+    EXPECT_EQ(on_a_stand.found(vector(0.0, on_a_stand.g[1])), -1) << wall_Nm;
+    Bench other_way;
+    other_way.walls = vector(0.0, wall_Nm);
+    EXPECT_EQ(other_way.found(vector(0.0, wall_Nm)), 1) << "the wall does not push that way";
+    EXPECT_EQ(Bench().found(vector(0.0, -wall_Nm)), 1) << "without a wall";
+  }
 }
 
 TEST(LoadWatch, AMotorWithTheWrongSignIsNot) {
@@ -214,7 +233,9 @@ TEST(LoadWatch, IsJudgedFromAnEighthOfASecondToOneAfterTheDrivesCameOn) {
   for (int k = 1; k < 8; ++k) EXPECT_EQ(bench.next(), -1) << k;
   EXPECT_GE(bench.next(), 0);
   LoadWatch never(two_joints());
-  EXPECT_EQ(never.wrong(bench.state, {bench.g, bench.Cv, bench.M, bench.B, bench.J}, 0.5), -1);
+  EXPECT_EQ(
+      never.wrong(bench.state, {bench.g, bench.Cv, bench.M, bench.B, bench.J, bench.walls}, 0.5),
+      -1);
 }
 
 TEST(LoadWatch, WhatDoesNotLastIsNotFound) {

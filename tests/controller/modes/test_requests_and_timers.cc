@@ -39,6 +39,8 @@ TEST_F(RequestsAndTimers, AHundredGoodStatesInARow) {
   EXPECT_EQ(supervisor_.mode(), Mode::kIdle);
   states(100, State::DRIVE_OFF);
   ++session_;
+  states(1, State::DRIVE_OFF);
+  EXPECT_EQ(supervisor_.mode(), Mode::kIdle) << "one alone is passed over";
   states(99, State::DRIVE_OFF);
   EXPECT_EQ(supervisor_.mode(), Mode::kInit) << "counted afresh in a new session";
   states(1, State::DRIVE_OFF);
@@ -222,7 +224,7 @@ TEST_F(RequestsAndTimers, WhatEndsHold) {
             invalid);
   EXPECT_EQ(mode_after([](Bench& b) {
               ++b.session_;
-              b.states(1, State::DRIVE_ON);
+              b.states(2, State::DRIVE_ON);
             }),
             changed);
 }

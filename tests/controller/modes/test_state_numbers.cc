@@ -96,7 +96,8 @@ TEST_F(StateNumbers, ATrueOneEndsTheDoubt) {
   EXPECT_TRUE(judge(5002).usable);
   expect_doubted(9000);
   ++session_;
-  EXPECT_TRUE(judge(0).new_session);
+  expect_doubted(0);
+  EXPECT_TRUE(judge(1).new_session);
   expect_doubted(9001);
 }
 
@@ -104,11 +105,69 @@ TEST_F(StateNumbers, AnotherSessionMayBeginAnywhere) {
   judge(10);
   for (const std::int64_t seq : {std::int64_t{3}, std::int64_t{90'000}, kHighest}) {
     ++session_;
-    const StateJudgement judgement = judge(seq);
+    expect_doubted(seq);
+    const StateJudgement judgement = judge(seq);  // as lock step repeats it
     EXPECT_TRUE(judgement.new_session && judgement.fresh && !judgement.silent) << seq;
     EXPECT_FALSE(judgement.first);
     EXPECT_EQ(judgement.missed, 0);
   }
+}
+
+TEST_F(StateNumbers, ASingleOneOfAnotherSessionIsPassedOver) {
+  judge(10);
+  for (const std::int64_t other : {6, 7, 6}) {
+    session_ = other;
+    expect_doubted(3);
+    session_ = 5;
+    const StateJudgement after = judge(judge_.received() + 10);
+    EXPECT_TRUE(after.usable && !after.new_session) << other;
+    EXPECT_EQ(after.missed, 0) << other;
+  }
+  EXPECT_EQ(judge_.doubted(), 3);
+  session_ = 6;
+  expect_doubted(40);
+  session_ = 7;
+  expect_doubted(41);
+  EXPECT_TRUE(judge(42).new_session) << "two of one session";
+  EXPECT_EQ(judge_.doubted(), 4) << "41 was no stray";
+}
+
+TEST_F(StateNumbers, AnotherSessionIsBelievedIfItGoesOn) {
+  const auto after_one_at = [&](std::int64_t seq, std::int64_t next) {
+    judge_ = StateJudge(1, 2);
+    session_ = 5;
+    judge(10);
+    session_ = 6;
+    EXPECT_TRUE(judge(seq).doubted);
+    return judge(next).new_session;
+  };
+  EXPECT_TRUE(after_one_at(0, 1));
+  EXPECT_TRUE(after_one_at(50, 50));
+  EXPECT_FALSE(after_one_at(50, 49));
+  EXPECT_TRUE(after_one_at(50, 1050));
+  EXPECT_FALSE(after_one_at(50, 1051));
+}
+
+TEST_F(StateNumbers, ATrueOneInBetweenEndsTheOtherSession) {
+  judge(10);
+  session_ = 6;
+  expect_doubted(40);
+  session_ = 5;
+  EXPECT_TRUE(judge(11).usable);
+  session_ = 6;
+  expect_doubted(41);
+}
+
+TEST_F(StateNumbers, WhatIsIgnored) {
+  EXPECT_FALSE(judge(10).ignored());
+  StateJudgement judgement = judge(10);
+  EXPECT_TRUE(judgement.repeated && !judgement.doubted && judgement.ignored());
+  session_ = 6;
+  judgement = judge(11);
+  EXPECT_TRUE(judgement.doubted && !judgement.repeated && judgement.ignored());
+  session_ = 0;
+  judgement = judge(12);
+  EXPECT_FALSE(judgement.doubted || judgement.usable || judgement.ignored());
 }
 
 TEST_F(StateNumbers, AfterALongSilenceTheSessionGoesOnAnywhere) {

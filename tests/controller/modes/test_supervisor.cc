@@ -96,6 +96,8 @@ TEST(StateJudge, KnowsRepetitionsGapsAndSessions) {
   EXPECT_EQ(judge.received(), 3);
   joint_state_t other = good_state(0);
   other.session = 6;
+  EXPECT_TRUE(judge.judge(other).doubted);
+  ++other.seq;
   const StateJudgement judgement = judge.judge(other);
   EXPECT_TRUE(judgement.new_session && judgement.usable && !judgement.repeated);
   EXPECT_EQ(judgement.missed, 0);

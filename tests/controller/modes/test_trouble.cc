@@ -87,6 +87,11 @@ TEST(Trouble, TroubleInMotionIsLatched) {
     state.seq += 1;
     state.time_ns += 1'000'000;
     trouble.cause(&state);
+    if (trouble.reason == Status::REASON_SESSION_CHANGED) {
+      rig.controller.step(state);
+      EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE) << "one alone is passed over";
+      state.seq += 1;
+    }
     const joint_command_t answer = rig.controller.step(state);
     EXPECT_EQ(rig.mode(), +Status::MODE_FAULT);
     EXPECT_EQ(rig.controller.status().reason, trouble.reason);
@@ -236,10 +241,10 @@ TEST(Trouble, NewSessionAtRestStartsOver) {
   rig.run(0.12);
   rig.state.session = 12;
   rig.state.seq = -1;
-  rig.step();
+  for (int i = 0; i < 2; ++i) rig.step();
   EXPECT_EQ(rig.mode(), +Status::MODE_INIT);
   EXPECT_EQ(rig.answer.session, 12);
-  EXPECT_EQ(rig.answer.state_seq, 0);
+  EXPECT_EQ(rig.answer.state_seq, 1);
   rig.run(0.12);
   EXPECT_EQ(rig.mode(), +Status::MODE_IDLE);
 }

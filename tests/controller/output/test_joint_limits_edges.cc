@@ -43,8 +43,10 @@ class JointLimitsEdges : public ::testing::Test {
   }
   /// The torque that is left of `tau`; the bits that acted are in acted_.
   double shaped(double tau) {
-    VectorJ shaped = one(tau);
-    acted_ = JointLimits(robot_).shape(state_, terms_, &shaped);
+    const JointLimits limits(robot_);
+    const VectorJ walls = limits.walls(state_, terms_.M_total);
+    VectorJ shaped = one(tau) + walls;
+    acted_ = limits.shape(state_, terms_, walls, &shaped);
     return shaped[0];
   }
 
@@ -56,7 +58,7 @@ class JointLimitsEdges : public ::testing::Test {
 
 TEST_F(JointLimitsEdges, PowerThatFitsIsLeftAlone) {
   robot_.power_limit_W = 32.0;
-  state_.v << 4.0;
+  state_.v_reported << 4.0;
   EXPECT_EQ(shaped(8.0), 8.0) << "32 W";
   EXPECT_EQ(acted_, 0);
   EXPECT_NEAR(shaped(8.1), 8.0, 1e-12);
@@ -65,24 +67,12 @@ TEST_F(JointLimitsEdges, PowerThatFitsIsLeftAlone) {
 
 TEST_F(JointLimitsEdges, WhatCarriesTheWeightIsNotScaled) {
   robot_.power_limit_W = 5.0;
-  state_.v << 4.0;  // the weight alone takes 12 W
+  state_.v_reported << 4.0;  // the weight alone takes 12 W
   EXPECT_EQ(shaped(6.0), 3.0);
   EXPECT_EQ(shaped(3.1), 3.0);
   EXPECT_EQ(shaped(3.0), 3.0);
   EXPECT_EQ(acted_, 0) << "nothing moves it";
   EXPECT_EQ(shaped(2.9), 2.9) << "it brakes";
-}
-
-TEST_F(JointLimitsEdges, AtTheVelocityLimitTheWeightIsStillCarried) {
-  state_.v << 9.0;
-  EXPECT_EQ(shaped(3.0), 3.0);
-  EXPECT_EQ(acted_, 0) << "nothing to scale";
-  EXPECT_NEAR(shaped(5.0), 4.0, 1e-12);
-  EXPECT_NEAR(shaped(3.05), 3.025, 1e-12);
-  EXPECT_EQ(acted_, +Status::LIMIT_VELOCITY);
-  state_.v << 0.0;
-  EXPECT_EQ(shaped(5.0), 5.0);
-  EXPECT_EQ(acted_, 0);
 }
 
 TEST_F(JointLimitsEdges, OfAShortRangeATenthIsWall) {
@@ -102,7 +92,7 @@ TEST_F(JointLimitsEdges, TheDamperComesInWithTheDepth) {
   const double D = 1.4 * std::sqrt(50.0);
   const auto wall = [&](double q, double v) {
     state_.q << q;
-    state_.v << v;
+    state_.v_reported << v;
     return shaped(0.0);
   };
   EXPECT_NEAR(wall(1.925, 0.2), -2.5 - 0.25 * D * 0.2, 1e-9);
@@ -114,11 +104,34 @@ TEST_F(JointLimitsEdges, TheDamperComesInWithTheDepth) {
 TEST_F(JointLimitsEdges, BehindASpringTheMotorIsDamped) {
   const double D = 1.4 * std::sqrt(50.0);
   state_.q << 2.0;
-  state_.v << 0.5;
-  state_.theta_dot << 0.2;
+  state_.v_reported << 0.5;
+  state_.theta_dot_reported << 0.2;
   EXPECT_NEAR(shaped(0.0), -10.0 - D * 0.5, 1e-9);
   joint().transmission.kind = TransmissionKind::kElastic;
   EXPECT_NEAR(shaped(0.0), -10.0 - D * 0.2, 1e-9);
+}
+
+// 100 N m/rad from 0.1 rad inside the ends on; 0.1 rad/s.
+TEST_F(JointLimitsEdges, AJointThatRestsInItsWallIsLedOut) {
+  JointLimits limits(robot_);
+  const auto wall_at = [&](double q) {
+    state_.q << q;
+    return limits.walls(state_, terms_.M_total)[0];
+  };
+  limits.rest(one(1.97));
+  EXPECT_EQ(wall_at(1.97), 0.0);
+  EXPECT_NEAR(wall_at(1.98), -1.0, 1e-12) << "outwards it begins there";
+  limits.lead_out(0.2);
+  EXPECT_NEAR(wall_at(1.97), -2.0, 1e-12);
+  for (int i = 0; i < 3; ++i) limits.lead_out(1.0);
+  EXPECT_NEAR(wall_at(1.97), -7.0, 1e-12) << "at its place";
+  limits.rest(one(-0.96));
+  EXPECT_NEAR(wall_at(1.97), -7.0, 1e-12) << "the other end's does not move";
+  EXPECT_EQ(wall_at(-0.96), 0.0);
+  limits.lead_out(0.1);
+  EXPECT_NEAR(wall_at(-0.96), 1.0, 1e-12);
+  limits.rest(one(0.5));
+  EXPECT_NEAR(wall_at(-0.96), 6.0, 1e-12);
 }
 
 TEST_F(JointLimitsEdges, FarIsMoreThanAStepOfTheGate) {

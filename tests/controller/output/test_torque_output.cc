@@ -71,12 +71,13 @@ TEST_F(TorqueOutputTest, ATorqueThatFitsIsSent) {
 TEST_F(TorqueOutputTest, AllLimitsAreTold) {
   state_.preload[0] = 0.3;
   sent(19.9);
-  state_.v << 9.0;
-  EXPECT_TRUE(shape(41.0));  // 20.5 N m are left by the speed limit
-  EXPECT_EQ(torque(), 20.0);
-  EXPECT_EQ(limits_, +Status::LIMIT_VELOCITY | +Status::LIMIT_TORQUE);
+  state_.v_reported << 9.0;
+  EXPECT_TRUE(shape(41.0));
+  EXPECT_NEAR(torque(), 19.5, 1e-12) << "a step down: at 9 rad/s it cannot stop before its end";
+  EXPECT_EQ(limits_, +Status::LIMIT_POSITION | +Status::LIMIT_TORQUE);
+  state_.v_reported << 0.0;
   EXPECT_TRUE(shape(0.0));
-  EXPECT_NEAR(torque(), 19.6, 1e-12);
+  EXPECT_NEAR(torque(), 19.1, 1e-12);
   EXPECT_EQ(limits_, +Status::LIMIT_RATE);
 }
 
@@ -114,7 +115,7 @@ TEST_F(TorqueOutputTest, ABlendDoesNotPushAJointThatYields) {
   sent(8.0);
   output_.blend_next();
   shape(2.0);
-  state_.v << 1.0;
+  state_.v_reported << 1.0;
   for (int i = 0; i < 30; ++i) shape(2.0);
   EXPECT_LT(torque(), 2.0 + 6.0 * std::exp(-0.9)) << "30 ms are its time constant";
 }

@@ -173,6 +173,14 @@ TEST_F(SharedBus, AWakeMayComeWithoutAFrame) {
   EXPECT_EQ(frame.id, 3U);
 }
 
+// Of one who can write a record, but no frame.
+std::uint64_t check_of(const FrameRing::Slot& slot) {
+  RingCheck check(slot.number, slot.bytes);
+  for (std::size_t i = 0; i < slot.words.size() && 8 * i < slot.bytes; ++i)
+    check.add(slot.words[i]);
+  return check.value();
+}
+
 TEST_F(SharedBus, GarbageIsNoFrameAndPasses) {
   const auto bus = join();
   SharedBusMemory* memory = map();
@@ -183,6 +191,7 @@ TEST_F(SharedBus, GarbageIsNoFrameAndPasses) {
       slot.number = random() % 4 == 0 ? random() : ring.newest + random() % FrameRing::kSlots;
       slot.bytes = random() % 2 == 0 ? random() : random() % FrameRing::kLongest;
       for (auto& word : slot.words) word = random();
+      slot.check = random() % 2 == 0 ? random() : check_of(slot);
     }
     ring.newest = random() % 2 == 0 ? random() : ring.newest + random() % FrameRing::kSlots;
     memory->ends[0].asleep = random();

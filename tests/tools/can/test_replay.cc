@@ -83,9 +83,30 @@ TEST_F(Replay, FilesOfOtherInterfacesAndDamagedOnesAreRefusedBeforeAnythingIsSen
 }
 
 TEST_F(Replay, AFilesInterfaceIsTheBusOrItsAddress) {
-  EXPECT_EQ(bus_tools::bus_of_interface(robot, "arm", "x"), 0);
-  EXPECT_EQ(bus_tools::bus_of_interface(robot, "one", "x"), 0);
-  EXPECT_THROW(bus_tools::bus_of_interface(robot, "two", "x"), ConfigError);
+  EXPECT_EQ(bus_tools::bus_of_interface(robot, "arm"), 0);
+  EXPECT_EQ(bus_tools::bus_of_interface(robot, "one"), 0);
+  EXPECT_EQ(bus_tools::bus_of_interface(robot, "two"), std::nullopt);
+}
+
+// `candump -l any`: a gripper on can1, the arm on "one".
+TEST_F(Replay, OtherInterfacesOfAFileAreLeftOutAndCounted) {
+  const std::string mixed = std::string(kLog) + "(5.004) can1 1A0#00\n(5.005) can1 1A0#01\n";
+  file = folder.write("any.log", mixed);
+  std::vector<std::uint32_t> read;
+  const auto losses = bus_tools::each_frame(robot, {.file = file},
+                                            [&](std::int64_t, int bus, const CanFrame& frame) {
+                                              EXPECT_EQ(bus, 0);
+                                              read.push_back(frame.id);
+                                              return true;
+                                            });
+  EXPECT_EQ(read.size(), 4U);
+  ASSERT_EQ(losses.elsewhere.size(), 1U);
+  EXPECT_EQ(losses.elsewhere.at("can1"), 2);
+  const std::string told = bus_tools::elsewhere_text(robot, losses);
+  EXPECT_NE(told.find("can1 (2 frames): none of one's buses, which are arm (one)"),
+            std::string::npos)
+      << told;
+  EXPECT_EQ(replay(robot, {file, false, ""}, kGoOn).left_out, 3);  // an error frame, and can1's
 }
 
 }  // namespace

@@ -36,6 +36,15 @@ def test_lanes_run_beside_one_another_and_each_in_order(parts, tmp_path):
     assert selftest.run(["first", "second", "other", "then"], Console(width=100))
 
 
+def test_the_last_lane_waits_for_all_others(parts, tmp_path):
+    done = tmp_path / "done"
+    parts(
+        last=part(f"import pathlib; assert pathlib.Path({str(done)!r}).exists()", Lane.LAST),
+        slow=part(f"import time; time.sleep(0.3); open({str(done)!r}, 'x')", Lane.SIMULATED),
+    )
+    assert selftest.run(["last", "slow"], Console(width=100))
+
+
 def test_only_real_time_has_the_usual_priority(parts, tmp_path):
     note = "import os; open({!r}, 'w').write(str(os.nice(0)))"
     files = {lane: tmp_path / lane.name for lane in Lane}

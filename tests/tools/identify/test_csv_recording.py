@@ -142,6 +142,64 @@ def test_what_is_wrong_is_said(change, reason, tmp_path):
         read(tmp_path, arm, *change(GOOD, OF_TWO))
 
 
+def lines_of(change) -> str:
+    """GOOD with its lines changed."""
+    lines = GOOD.splitlines()
+    change(lines)
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (
+            lambda c: c.__setitem__(301, "3.00,0,0,,0"),
+            "line 302, column 4: .* the cell of tau1 is empty",
+        ),
+        (
+            lambda c: c.insert(1, "s,rad,rad,Nm,Nm"),
+            "line 2, column 1: .*'s' of t; take the line of units",
+        ),
+        (lambda c: c.__setitem__(7, "0.06,0,0,0"), "line 8: 4 columns, 5 before"),
+        (
+            lambda c: c.__setitem__(9, "0.08,0,0,0,-"),
+            "line 10, column 5: not a finite number: '-' of tau2",
+        ),
+        (lambda c: c.insert(5, ""), None),
+    ],
+    ids=["blank", "units", "short", "dash", "empty line"],
+)
+def test_places_are_those_of_the_file(change, said, tmp_path):
+    arm = load_arm("planar2r")
+    if said is None:
+        assert read(tmp_path, arm, lines_of(change), OF_TWO)
+        return
+    with pytest.raises(InputError, match=said):
+        read(tmp_path, arm, lines_of(change), OF_TWO)
+
+
+def test_decimal_commas_are_named(tmp_path):
+    text = GOOD.replace(",", ";").replace("1.00;", "1,00;")
+    with pytest.raises(
+        InputError, match=r"line 102, column 1: .*'1,00' of t; write a decimal point"
+    ):
+        read(tmp_path, load_arm("planar2r"), text, OF_TWO)
+
+
+@pytest.mark.parametrize(
+    ("unit", "per_s"), [("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9)]
+)
+def test_times_in_other_units_are_told_and_scaled(unit, per_s, tmp_path):
+    """The clock counts from 1970."""
+    arm, start = load_arm("planar2r"), 1766147454 * int(per_s)
+    rows = [f"{start + round(0.004 * k * per_s)},0,0,0,0" for k in range(800)]
+    text = "t,q1,q2,tau1,tau2\n" + "\n".join(rows) + "\n"
+    with pytest.raises(InputError, match=f"are the times {unit}?"):
+        read(tmp_path, arm, text, OF_TWO)
+    found = read(tmp_path, arm, text, OF_TWO + f"scale: {{time_s: {1 / per_s:.1e}}}\n")
+    assert found[0].rate_hz == pytest.approx(250.0, rel=1e-3)
+
+
 def test_command(arm, recording, limber, tmp_path):
     (tmp_path / "a.csv").write_text(csv_text(recording))
     (tmp_path / "columns.yaml").write_text(TABLE)

@@ -149,4 +149,42 @@ def test_fault_names_the_joint():
     receiver.hear("JOINT_STATE", state)
     text = text_of(receiver)
     assert text.count("driver.REPLY_LOST") == 2 and "(elbow)" in text
-    assert "To do: check power, cable" in text
+    assert "To do: if limber-driver" in text
+
+
+def test_all_words_are_whole_in_eighty_columns():
+    """The longest law, cause and numbers there are."""
+    receiver = listening()
+    kinds = messages.message_class("controller_status_t")
+    state = records("joint_state_t", 1, num_joints=2, drive_state=6, fault=3, fault_joint=1)[0]
+    state["q"][:2], state["v"][:2], state["tau"][:2] = -1.234, -12.345, -123.45
+    status = records("controller_status_t", 1, mode=kinds.MODE_FAULT, law=2, num_joints=2)[0]
+    status["reason"] = kinds.REASON_SESSION_CHANGED
+    status["limits"] = kinds.LIMIT_STATIC_UNSOLVED | kinds.LIMIT_STIFFNESS
+    status["p_BT"], status["quat_BT"][0], status["quat_BD"][0] = -0.2745, 1, 1
+    status["K_x"][:] = np.diag([20000.0] * 3 + [1000.5] * 3)
+    status["contact"], status["F_ext"] = 1, -123.4
+    receiver.hear("JOINT_STATE", state)
+    receiver.hear("CONTROLLER_STATUS", status)
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(View(receiver, LAWS).render(80))
+    text = console.export_text()
+    assert "…" not in text
+    for word in ("position", "stiffness", "SESSION_CHANGED", "cartesian_impedance"):
+        assert word in text
+    assert "-0.2745 -0.2745 -0.2745 m" in text and "STATIC_UNSOLVED" in text
+
+
+def test_long_names_take_the_room_of_the_bars(monkeypatch):
+    joints = [JointInfo(f"left_shoulder_pan_joint_{i}", -1.0, 1.0, 0.0) for i in range(2)]
+    monkeypatch.setattr(watch, "load_robot", lambda _folder: SimpleNamespace(joints=joints))
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(View(listening(), LAWS).render(80))
+    text = console.export_text()
+    assert "left_shoulder_pan_joint_1" in text and "●" not in text and "…" not in text
+
+
+def test_names_are_no_markup(monkeypatch):
+    joints = [JointInfo("[red]a[/]", -1.0, 1.0, 0.0)] * 2
+    monkeypatch.setattr(watch, "load_robot", lambda _folder: SimpleNamespace(joints=joints))
+    assert "[red]a[/]" in text_of(listening())

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from rich.console import Console
 
-from conftest import event_bytes, records
+from conftest import event_bytes, records, write_log
 from limber import messages
 from limber.errors import InputError, RunError
 from limber.log import event_file
@@ -315,3 +315,26 @@ def test_events_of_a_file_are_whole(path):
     damage = event_file.Damage()
     found = list(event_file.events(event_file.contents(path, damage), damage))
     assert len(found) == len(log_bytes()) and not str(damage)
+
+
+CLOSE = ("rot_y", "rotY", "_2", "__2", "a b", "a_b", "a_b_2", "x.y")
+
+
+def test_names_that_differ_by_little_stay_distinct_in_every_format(tmp_path):
+    """protobuf makes one JSON name of rot_y and rotY; other tools want letters, digits and _."""
+    n = len(CLOSE)
+    state = records("joint_state_t", 50, time_ns=np.arange(50) * 10**6, num_joints=n)
+    state["q"][:, :n] = np.arange(50)[:, None] + 100.0 * np.arange(n)
+    path = write_log(tmp_path / "run.lcmlog", {"JOINT_STATE": state})
+    console = Console(width=1000, record=True, file=io.StringIO())
+    for kind in ("mcap", "csv"):
+        conversion.convert(path, kind, None, (), Names(list(CLOSE), []), console)
+    rows = mcap_messages(path.with_suffix(".mcap"))["/JOINT_STATE"]
+    assert len(rows) == 50
+    joints = rows[7][1].joints
+    named = {name: getattr(joints, name).q_rad for name in joints.DESCRIPTOR.fields_by_name}
+    assert sorted(named.values()) == [7 + 100.0 * i for i in range(n)]
+    header = (tmp_path / "run_csv" / "JOINT_STATE.csv").read_text().splitlines()[0].split(",")
+    positions = [name for name in header if name.startswith("joints.") and name.endswith(".q_rad")]
+    assert len(set(positions)) == n
+    assert {"joints.rot_y.q_rad", "joints.rotY.q_rad"} < set(positions)

@@ -89,6 +89,23 @@ def test_a_fault_has_time_joint_number_limit_and_consequence(tmp_path, run):
     assert np.isinf(fault.until_s)
 
 
+def test_motion_counts_from_the_first_reading_on(tmp_path, run):
+    """A joint that has not been read yet is at 0 in the messages, and has not moved from there."""
+    state, status = state_of(), status_of()
+    status["mode"][:] = Status.MODE_INIT
+    never = np.iinfo(np.int32).max
+    state["fault"][:], state["fault_joint"][:] = State.FAULT_CONFIGURATION, 1
+    state["drive_state"][:] = State.DRIVE_FAULT
+    state["age_cycles"][:] = never
+    state["q"][:] = -12.5
+    state["age_cycles"][1000:, 0] = 0
+    state["q"][1000:, 0] = 0.5
+    state["q"][3000:, 0] = 0.52
+    log = log_of(tmp_path / "log", JOINT_STATE=state, CONTROLLER_STATUS=status)
+    (fault, *_) = find_faults(log, run.robot, end_s=SECONDS)
+    assert "no joint moved by more than 0.02 rad or m" in fault.then
+
+
 def test_a_hot_drive_is_told_with_its_limit(tmp_path, run):
     state = state_of()
     state["temperature_degC"][:, 1] = 66

@@ -107,3 +107,47 @@ def test_the_tail_counts_every_cycle_since_the_beginning():
     assert np.allclose(own[x < 4.9], 1.0)
     assert np.allclose(own[(x > 5.1) & (x < 79)], 1 / 20)
     assert np.isnan(own[x > 81]).all()
+
+
+def moving(keeper: Keeper, seconds: int = 2) -> None:
+    for batch in batches(1000 * seconds, 100):
+        batch.arrays["JOINT_STATE"]["tau"][:, 0] = batch.arrays["JOINT_STATE"]["q"][:, 0]
+        keeper.add(batch)
+
+
+def test_rest_is_drawn_as_rest(served):
+    """uPlot draws zeros up to 100; an axis reaches at least so far about zero."""
+    keeper = Keeper(["a", "b"], WINDOWS)
+    panel = ChartPanel(served.gui, keeper, WINDOWS)
+    moving(keeper)
+    panel.draw()
+    torque = panel.handles["torque the drives report"].scales["y"]["range"]
+    assert (torque["min"]["soft"], torque["max"]["soft"]) == (-0.5, 0.5)
+    assert torque["min"]["mode"] == torque["max"]["mode"] == 1
+    position = panel.handles["joint position"].scales["y"]["range"]
+    assert position["max"]["mode"] == 3, "only where all of it is zero"
+
+
+def test_zero_is_a_line_where_a_chart_is_about_zero(served):
+    keeper = Keeper(["a", "b"], WINDOWS)
+    panel = ChartPanel(served.gui, keeper, WINDOWS)
+    moving(keeper)
+    panel.draw()
+    torque = panel.handles["torque the drives report"]
+    assert torque.series[-1]["label"] == "zero" and not torque.data[-1].any()
+    assert len(torque.data) == len(torque.series) == 4
+    assert len(panel.handles["joint position"].data) == 3
+
+
+def test_charts_in_which_nothing_changes_are_words(served):
+    keeper = Keeper(["a", "b"], WINDOWS)
+    panel = ChartPanel(served.gui, keeper, WINDOWS)
+    moving(keeper)
+    panel.draw()
+    assert set(panel.handles) == {"joint position", "torque the drives report"}
+    assert "joint velocity 0 rad/s" in panel._nothing.content and panel._nothing.visible
+    for batch in batches(1000, 100, start=2000):
+        batch.arrays["JOINT_STATE"]["v"][:, 1] = 0.3
+        keeper.add(batch)
+    panel.draw()
+    assert "joint velocity" in panel.handles, "it comes when it moves"

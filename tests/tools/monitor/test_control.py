@@ -12,6 +12,8 @@ from limber import messages
 from limber.model.robot import load_robot
 from limber.monitor.control import ControlPanel
 from limber.monitor.laws import list_laws, parse
+from limber.monitor.pending import Pending
+from limber.monitor.typed import TypedFields
 from limber.monitor.widgets import accepted, make, slider_end
 from limber.paths import program, robots_root
 
@@ -21,6 +23,16 @@ JOINTS = [f"joint{i + 1}" for i in range(7)]
 @pytest.fixture(scope="module")
 def laws():
     return list_laws(robots_root() / "openarm")
+
+
+@pytest.fixture
+def told():
+    return []
+
+
+@pytest.fixture
+def typed(served, told):
+    return TypedFields(served.link, lambda *words: told.append(words))
 
 
 class Asked:
@@ -77,29 +89,29 @@ def test_labels_have_the_unit_behind_the_name(laws):
     assert labels["velocity_acceleration_rad_per_s2"] == "velocity acceleration rad/s²"
 
 
-def test_every_listed_gain_has_a_widget_that_shows_its_value(served, laws):
+def test_every_listed_gain_has_a_widget_that_shows_its_value(served, laws, typed):
     everything = [*laws.gains, *(gain for law in laws.laws for gain in law.parameters)]
     for gain in everything:
         start = 5.0 if gain.standard == "robot.yaml" else gain.standard
-        make(served.gui, gain, start, JOINTS, lambda key, value: None)
+        make(served.gui, gain, start, JOINTS, lambda key, value: None, typed)
 
 
-def test_a_slider_reaches_some_times_as_far_as_its_value_and_moves_on(served, laws):
+def test_a_slider_reaches_some_times_as_far_as_its_value_and_moves_on(served, laws, typed):
     gain = next(gain for gain in laws.gains if gain.key == "K_x_translation_N_per_m")
     assert slider_end(gain, 500.0) == 2000.0
     assert slider_end(gain, 50_000.0) == gain.high
     sent = []
-    widget = make(served.gui, gain, 500.0, JOINTS, lambda *change: sent.append(change))
+    widget = make(served.gui, gain, 500.0, JOINTS, lambda *change: sent.append(change), typed)
     widget.show([600.0, 5000.0, 700.0])
     assert sent == [], "what is shown is not sent"
     assert widget.values.tolist() == [600.0, 5000.0, 700.0]
     assert widget._each[1].slider.max >= 5000.0
 
 
-def test_what_a_browser_sends_is_checked(served, laws):
+def test_what_a_browser_sends_is_checked(served, laws, typed):
     gain = next(gain for gain in laws.gains if gain.key == "damping_ratio")
     sent = []
-    widget = make(served.gui, gain, 0.7, JOINTS, lambda *change: sent.append(change))
+    widget = make(served.gui, gain, 0.7, JOINTS, lambda *change: sent.append(change), typed)
     for value in (np.nan, np.inf, -1.0, 2.1):
         assert not accepted(gain, value)
         by_browser(widget.slider, value)
@@ -108,10 +120,10 @@ def test_what_a_browser_sends_is_checked(served, laws):
     assert sent == [("damping_ratio", 1.0)]
 
 
-def test_all_and_one_by_one(served, laws):
+def test_all_and_one_by_one(served, laws, typed):
     gain = next(gain for gain in laws.gains if gain.key == "K_q_Nm_per_rad")
     sent = []
-    widget = make(served.gui, gain, [60.0] * 7, JOINTS, lambda *change: sent.append(change))
+    widget = make(served.gui, gain, [60.0] * 7, JOINTS, lambda *change: sent.append(change), typed)
     by_browser(widget._all.slider, 90.0)
     by_browser(widget._each[2].slider, 30.0)
     assert sent == [
@@ -120,11 +132,11 @@ def test_all_and_one_by_one(served, laws):
     ]
 
 
-def test_the_panel_follows_the_controller_and_sends_what_changes(served, laws):
+def test_the_panel_follows_the_controller_and_sends_what_changes(served, laws, typed):
     asked = Asked()
     number = [law.name for law in laws.laws].index("cartesian_impedance")
     feed = Running(number)
-    panel = ControlPanel(served.gui, load_robot("openarm"), laws, asked, feed)
+    panel = ControlPanel(served.gui, load_robot("openarm"), laws, asked, feed, typed, Pending())
     panel.draw()
     assert panel.shown_law == "cartesian_impedance"
     shown = panel.widgets["K_x_translation_N_per_m"]

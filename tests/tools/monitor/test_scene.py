@@ -105,3 +105,15 @@ def test_springs_are_seen_where_they_are_bent(served):
     assert label.text == "spring 20.0 mrad, preload 300 mrad"
     springs.hide()
     assert not any(line.visible for line in lines)
+
+
+def test_names_of_links_are_no_paths(served):
+    """A link may be called anything that XML can hold."""
+    made = figure(load_robot("planar2r"))
+    evil = ["a/b", "<script>alert(1)</script>"]
+    for joint, name in zip(made.joints, evil, strict=False):
+        object.__setattr__(joint, "child", name)
+    made.shapes = []
+    view = ArmView(served.scene, "/evil", made)
+    names = [frame.name for frame in view.frames.values()]
+    assert names == ["/evil", "/evil/1", "/evil/1/2"]

@@ -5,8 +5,8 @@ import pytest
 
 from limber.messages import message_class
 from limber.monitor.feed import NEVER_S
-from limber.monitor.status_card import card
-from limber.monitor.words import BAD, GOOD, WARN, situation
+from limber.monitor.status_card import Shown, card
+from limber.monitor.words import BAD, GOOD, WARN, Note, situation
 
 STATE, STATUS = message_class("joint_state_t"), message_class("controller_status_t")
 
@@ -66,7 +66,7 @@ def test_a_fault_names_joint_and_remedy(feed):
     assert now.level == BAD
     (note,) = now.notes
     assert note.code == "driver.REPLY_LOST (elbow)"
-    assert note.do.startswith("Check power")
+    assert "check power, cable" in note.do
 
 
 def test_what_the_user_wanted_is_no_fault(feed):
@@ -94,6 +94,38 @@ def test_words_from_outside_are_escaped(feed):
         feed(mode=STATUS.MODE_FAULT, fault=STATE.FAULT_POSITION, fault_joint=0),
         ["<script>alert(1)</script>"],
     )
-    html = card(now, ["<b>law"], ["<i>hint"])
+    answer = Note(WARN, "", "<a>answer")
+    shown = Shown(now, ["<b>law"], ["<i>hint"], ["<u>key"], [answer], control=True)
+    html = "".join(card(shown))
+    assert "<a>answer" not in html and "<u>key" not in html
     assert "<script>" not in html and "<b>law" not in html and "<i>hint" not in html
     assert "&lt;script&gt;" in html
+
+
+def test_the_cause_comes_first(feed):
+    """A stop that somebody asked for is no cause, and what follows from a fault none either."""
+    asked = feed(mode=STATUS.MODE_FAULT, fault=STATE.FAULT_REQUESTED, reason=STATUS.REASON_STRAYED)
+    codes = [note.code.split(" ")[0] for note in situation(asked, ["a", "b"]).notes]
+    assert codes == ["controller.STRAYED", "driver.REQUESTED"]
+    fault = STATE.FAULT_REPLY_LOST
+    broken = feed(mode=STATUS.MODE_FAULT, fault=fault, reason=STATUS.REASON_DRIVER_FAULT)
+    notes = situation(broken, ["a", "b"], STATUS.LIMIT_TORQUE).notes
+    codes = [note.code.split(" ")[0] for note in notes]
+    assert codes == ["driver.REPLY_LOST", "controller.DRIVER_FAULT", "limit.TORQUE"]
+    pressed = feed(mode=STATUS.MODE_ESTOP, fault=fault, emergency_stop=STATE.STOP_PRESSED)
+    assert situation(pressed, ["a", "b"]).notes[0].code.startswith("stop.")
+
+
+def test_joints_with_the_same_trouble_share_a_note(feed):
+    flags = np.zeros(16, int)
+    flags[:2] = STATE.JOINT_DRIVE_ERROR
+    now = situation(feed(mode=STATUS.MODE_HOLD, joint_flags=flags, num_joints=2), ["a", "b"])
+    assert [note.code for note in now.notes] == ["joint.DRIVE_ERROR (a, b)"]
+
+
+@pytest.mark.parametrize("channel", ["JOINT_STATE", "CONTROLLER_STATUS"])
+def test_a_message_that_is_heard_and_not_taken_yet_is_no_error(feed, channel):
+    """Another thread receives."""
+    hearing = feed(mode=STATUS.MODE_ACTIVE)
+    del hearing.newest[channel]
+    assert situation(hearing, []).headline.startswith("NO ")

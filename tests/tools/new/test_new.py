@@ -46,6 +46,48 @@ def check_and_lab(limber, folder):
     return run.stdout
 
 
+LINK = """<link name="{0}"><inertial><origin xyz="{1}"/><mass value="{2}"/>
+  <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>"""
+JOINT = """<joint name="{0}" type="{1}"><parent link="{2}"/><child link="{3}"/>
+  <origin xyz="{4}"/><axis xyz="{5}"/><limit {6} effort="{7}" velocity="2"/></joint>"""
+SHORT_TRAVELS = {
+    "a SCARA's quill": [
+        ("a1", "revolute", "0 0 0.3", "0 0 1", 'lower="-2.2" upper="2.2"', 40, "0.15 0 0", 3),
+        ("a2", "revolute", "0.3 0 0", "0 0 1", 'lower="-2.5" upper="2.5"', 25, "0.12 0 0", 2),
+        ("z", "prismatic", "0.25 0 0", "0 0 1", 'lower="-0.18" upper="0"', 100, "0 0 -0.05", 0.8),
+    ],
+    "a short quill": [
+        ("a1", "revolute", "0 0 0.3", "0 0 1", 'lower="-2" upper="2"', 40, "0.15 0 0", 3),
+        ("z", "prismatic", "0.3 0 0", "0 0 1", 'lower="0" upper="0.05"', 100, "0 0 -0.05", 0.8),
+    ],
+    "a short elbow": [
+        ("s", "revolute", "0 0 0.3", "0 1 0", 'lower="-1" upper="1"', 60, "0 0 0.15", 2),
+        ("e", "revolute", "0 0 0.3", "0 1 0", 'lower="0" upper="0.6"', 30, "0.1 0 0.1", 1),
+    ],
+    "a torso": [
+        ("lift", "prismatic", "0 0 0.3", "0 0 1", 'lower="0" upper="0.4"', 900, "0 0 0.2", 12),
+        ("turn", "revolute", "0 0 0.2", "0 0 1", 'lower="-1" upper="0"', 60, "0.2 0 0", 3),
+    ],
+}
+
+
+def urdf_of(joints) -> str:
+    text, below = '<link name="base"/>', "base"
+    for name, kind, at, axis, ends, effort, com, mass in joints:
+        text += LINK.format(f"of_{name}", com, mass)
+        text += JOINT.format(name, kind, below, f"of_{name}", at, axis, ends, effort)
+        below = f"of_{name}"
+    return f'<robot name="r">{text}</robot>'
+
+
+@pytest.mark.parametrize("kind", SHORT_TRAVELS)
+def test_the_first_scenario_never_starts_in_a_soft_wall(limber, tmp_path, kind):
+    (tmp_path / "arm.urdf").write_text(urdf_of(SHORT_TRAVELS[kind]))
+    made(limber, tmp_path, tmp_path / "arm.urdf", "--drives", "damiao")
+    assert "soft wall" not in limber("check", "mine_first.yaml", cwd=tmp_path).stdout
+    check_and_lab(limber, tmp_path)
+
+
 @pytest.mark.parametrize("drives", ["damiao", "moteus", "cia402"])
 def test_a_published_arm_with_each_kind_of_drives(limber, tmp_path, drives):
     told = made(limber, tmp_path, OPENARM, *ENDS, "--drives", drives)

@@ -12,10 +12,12 @@ from conftest import records, write_log
 from limber import messages
 from limber.log.reader import Log
 from limber.messages import message_class
+from limber.model.gains_table import law_names
 from limber.plot import charts, page, png
 from limber.plot.chart import Chart
 from limber.plot.commands import plot
-from limber.plot.drawing import Drawing
+from limber.plot.compliance import compliance_charts
+from limber.plot.drawing import Drawing, leave_out_constant
 from limber.plot.marks import Mark, Span
 
 COUNT = 400
@@ -282,3 +284,142 @@ def test_a_goal_is_not_taken_from_the_time_before_a_state_was_known(tmp_path):
     built = charts.build(Log(path), "cartesian")
     behind = next(chart for chart in built if "behind the springs" in chart.title)
     np.testing.assert_allclose(drawn(behind, "x"), 1.0, atol=1e-9)
+
+
+def dithered(count: int = 30_000) -> tuple[np.ndarray, np.ndarray]:
+    """A torque that swings by 3 N m, 30 times a second, about a slow ramp, from 10 to 20 s on."""
+    t = np.arange(count) * 1e-3
+    on = (t > 10) & (t < 20)
+    return t, 1.0 + 0.1 * t + 3.0 * on * np.sin(2 * np.pi * 30 * t)
+
+
+def test_what_swings_is_a_light_band_with_its_mean_on_top():
+    t, torque = dithered()
+    chart = Chart("torque", "N m", t, {"a": torque, "still": 0.05 * t})
+    drawing = Drawing("run", {"torque": [chart]})
+    fig = png.figure("torque", drawing)
+    (ax,) = fig.axes
+    (band,) = ax.collections
+    assert band.get_alpha() < 0.4
+    edges = band.get_paths()[0].vertices
+    assert edges[:, 1].max() == pytest.approx(torque.max(), abs=0.05), "no spike is lost"
+    line = next(one for one in ax.lines if one.get_label() == "a")
+    middle = (line.get_xdata() > 10.5) & (line.get_xdata() < 19.5)
+    slow = 1.0 + 0.1 * line.get_xdata()
+    assert np.abs(line.get_ydata() - slow)[middle].max() < 0.5, "the line is the mean"
+    assert "light bands" in fig._suptitle.get_text()
+    assert len(line.get_xdata()) < 3000
+
+
+def test_what_is_steep_or_spikes_once_is_no_band():
+    t = np.arange(30_000) * 1e-3
+    step, spike = np.where(t > 15, 5.0, 0.0), np.zeros(len(t))
+    spike[12_345] = 7.0
+    slow = np.abs((t % 1.0) - 0.5)  # wide in each bin, but up or down in it
+    other = png.figure("x", Drawing("run", {"x": [Chart("x", "N", t, {"slow": slow})]}))
+    assert len(other.axes[0].collections) == 0
+    fig = png.figure("x", Drawing("run", {"x": [Chart("x", "N", t, {"s": step, "k": spike})]}))
+    (ax,) = fig.axes
+    assert len(ax.collections) == 0
+    assert next(one for one in ax.lines if one.get_label() == "k").get_ydata().max() == 7.0
+
+
+def test_rest_looks_like_rest_and_zero_is_a_line():
+    t = np.arange(100) * 0.01
+    noise = 1e-4 * np.sin(t)
+    fig = png.figure("x", Drawing("run", {"x": [Chart("v", "rad/s", t, {"a": noise}, least=0.05)]}))
+    (ax,) = fig.axes
+    low, high = ax.get_ylim()
+    assert low <= -0.05 and high >= 0.05
+    zero = [one for one in ax.lines if list(one.get_ydata()) == [0.0, 0.0]]
+    assert len(zero) == 1
+
+
+def test_charts_in_which_nothing_changes_are_words(log, tmp_path):
+    t = np.arange(3) * 1.0
+    still = Chart("temperature", "°C", t, {"a": np.full(3, 30.0), "b": np.full(3, 30.0)})
+    moving = Chart("position", "rad", t, {"a": t})
+    drawing = Drawing("run", {"joint": [moving, still], "bus": [still]})
+    leave_out_constant(drawing, None)
+    assert drawing.topics == {"joint": [moving], "bus": [still]}, "no topic is left empty"
+    assert drawing.constant == {"joint": ["temperature 30 °C"]}
+    assert "temperature 30 °C" in png.figure("joint", drawing)._suptitle.get_text()
+    assert data_of(page.page(drawing))["constant"] == {"joint": ["temperature 30 °C"]}
+    beside = Drawing("other", {"joint": [moving, Chart("temperature", "°C", t, {"a": t})]})
+    both = Drawing("run", {"joint": [moving, still]})
+    leave_out_constant(both, beside)
+    assert len(both.topics["joint"]) == 2, "it changes in the other run"
+
+
+def test_a_page_stays_small_however_much_there_is():
+    t = np.arange(30_000) * 1e-3
+    series = {f"s{i}": np.sin(t * i) for i in range(8)}
+    charts_ = [Chart(f"chart {i}", "N", t, series) for i in range(20)]
+    html = page.page(Drawing("run", {"torque": charts_}))
+    assert len(html) < 3_000_000
+    few = data_of(page.page(Drawing("run", {"torque": charts_[:1]})))["topics"]["torque"][0]
+    assert len(base64.b64decode(few["t"])) == 4 * 30_000, "where there is room, every sample"
+
+
+def test_no_name_becomes_markup_or_another_part_of_the_page():
+    evil = "</script><!--<script>alert(1)</script>@DATA@"
+    chart = Chart(evil, "N", np.arange(3.0), {evil: np.arange(3.0)})
+    drawing = Drawing(evil, {"x": [chart]}, [Mark(1, 0.5, evil, True)], constant={"x": [evil]})
+    html = page.page(drawing)
+    assert html.count("<script") == 2 and html.count("</script") == 2, "those of the page itself"
+    assert html.count("<!--") == 1, "the licence"
+    data = data_of(html)
+    assert data["topics"]["x"][0]["series"][0]["name"] == evil
+    assert data["title"] == evil
+    png.figure(
+        "x",
+        Drawing(
+            "$\\frac{$ run", {"x": [Chart("$a", "N", np.arange(3.0), {"$x$": np.arange(3.0)})]}
+        ),
+    )
+
+
+def test_the_tip_is_drawn_from_its_start(tmp_path):
+    """Before the first state there is no tip, and before the first goal no goal."""
+    status = records("controller_status_t", COUNT, time_ns=np.arange(COUNT) * 1_000_000)
+    status["quat_BT"][100:, 0], status["quat_BD"][200:, 0] = 1.0, 1.0
+    status["p_BT"][100:, 0], status["p_BD"][200:, 0] = 0.5, 0.51
+    built = charts.build(
+        Log(write_log(tmp_path / "log", {"CONTROLLER_STATUS": status})), "cartesian"
+    )
+    position = next(chart for chart in built if chart.title == "tip position")
+    assert position.t_s[0] == pytest.approx(0.1)
+    np.testing.assert_allclose(position.series["x"], 0.5)
+    desired = position.series["x desired"]
+    assert np.isnan(desired[:100]).all() and np.allclose(desired[100:], 0.51)
+    away = next(chart for chart in built if chart.title == "tip away from its goal")
+    np.testing.assert_allclose(away.series["x"][100:], -10.0)
+
+
+def test_force_over_displacement_is_the_laws_stiffness(tmp_path):
+    """A spring of 400 N/m under one law, and one that sticks under another."""
+    kinds, names = message_class("controller_status_t"), law_names()
+    count = 4000
+    time_ns = np.arange(count) * 1_000_000
+    force = 8 * np.clip(np.sin(np.pi * (np.arange(count) % 2000 - 500) / 1000), 0, None)
+    force[np.arange(count) % 2000 > 1500] = 0
+    laws = [names.index("cartesian_impedance"), names.index("admittance")]
+    law = np.where(np.arange(count) < 2000, *laws)
+    status = records("controller_status_t", count, time_ns=time_ns, mode=kinds.MODE_ACTIVE)
+    status["law"], status["quat_BT"][:, 0], status["quat_BD"][:, 0] = law, 1, 1
+    status["K_x"][:] = np.diag([400.0] * 3 + [10] * 3)
+    truth = records("sim_truth_t", count, time_ns=time_ns, num_joints=7)
+    truth["F_push"][:, 1] = force
+    truth["p_BT"][:, 1] = 0.2 + force / 400 * np.where(np.arange(count) < 2000, 1.0, 0.5)
+    path = write_log(tmp_path / "log", {"CONTROLLER_STATUS": status, "SIM_TRUTH": truth})
+    (chart,) = compliance_charts(Log(path))
+    assert list(chart.series) == ["cartesian_impedance, y", "admittance, y", "400 N/m"]
+    assert chart.x == "displacement of the tip (mm)" and chart.unit == "N"
+    for name, stiffness in (("cartesian_impedance, y", 400), ("admittance, y", 800)):
+        own = np.isfinite(chart.series[name])
+        x_m, F = chart.t_s[own] * 1e-3, chart.series[name][own]
+        assert F.max() == pytest.approx(8.0, rel=0.01)
+        np.testing.assert_allclose(F, stiffness * x_m, atol=0.05)
+    assert chart.dashed == {"400 N/m"}
+    (ax,) = png.figure("x", Drawing("run", {"x": [chart]})).axes
+    assert ax.get_xlabel() == "displacement of the tip (mm)"

@@ -112,6 +112,16 @@ def test_three_replies_above_the_speed_are_followed_by_damping(wire, tmp_path):
     assert wire.judged(tmp_path).passed
 
 
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize(("share", "passes"), [(1.0, True), (0.5, False), (0.0, False)])
+def test_a_torque_goes_over_to_damping_at_its_rate(wire, tmp_path, way, share, passes):
+    fast = reply(1, speed=way * 1.15 * SPEED_LIMIT)
+    wire.step(command(way * 6.5), fast, times=3)
+    for cycle in range(15):
+        wire.step(command(way * (6.5 - share * STEP_Nm * cycle), kd=0.2), fast)
+    assert (("shoulder", "speed") not in rules(wire.judged(tmp_path))) == passes
+
+
 def test_the_command_on_its_way_is_no_breach(wire, tmp_path):
     """The one that leaves while the third reply arrives late, or the first one from outside."""
     fast = reply(1, speed=1.15 * SPEED_LIMIT)

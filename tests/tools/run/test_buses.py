@@ -10,6 +10,7 @@ from limber.live import network
 from limber.model.robot import load_robot
 from limber.run import buses, commands, runner
 from limber.run.options import RunOptions
+from limber.run.pace import Pace
 
 
 @pytest.fixture
@@ -88,7 +89,7 @@ def test_rate_and_frames_reach_the_programs(real_arm, tmp_path):
 
     scenario = load_scenario(real_arm)
     options = RunOptions(rate_hz=400.0, record_can=True)
-    made = runner._commands(scenario, tmp_path, options, lockstep=True, recorded=True)
+    made = runner._commands(scenario, tmp_path, options, Pace.LOCKSTEP, recorded=True)
     for name in ("limber-sim", "limber-driver"):
         words = made[name]
         assert words[words.index("--rate") + 1] == "400"
@@ -96,5 +97,5 @@ def test_rate_and_frames_reach_the_programs(real_arm, tmp_path):
     assert driver[driver.index("--cycles") + 1] == "400"
     assert made["limber-can"][1] == "record"
     assert list(made).index("limber-can") < list(made).index("limber-driver")
-    plain = runner._commands(scenario, tmp_path, RunOptions(), lockstep=True, recorded=True)
+    plain = runner._commands(scenario, tmp_path, RunOptions(), Pace.LOCKSTEP, recorded=True)
     assert "limber-can" not in plain and "--rate" not in plain["limber-driver"]

@@ -46,6 +46,43 @@ def test_what_the_log_does_not_have_stays(tmp_path):
     assert with_words(list(faults), tmp_path) == faults, "which of the two?"
 
 
+LOST = groups()["driver"].problems["REPLY_LOST"]
+
+
+def test_a_process_that_stood_still_is_named_before_any_cable(tmp_path):
+    """The longest pause of each, whoever of them wrote it; a fault that pauses do not make is left
+    as it is.
+    """
+    (tmp_path / "limber-sim.log").write_text(
+        "12:00:00.1 limber-sim: warning: limber-sim stood still for 75 ms: this machine was busy\n"
+        "12:00:00.9 limber-sim: warning: limber-sim stood still for 480 ms: this machine was busy\n"
+    )
+    (tmp_path / "limber-driver.log").write_text(
+        f"limber-driver: warning: drives: fallback: {LOST.code}: {LOST.what}: "
+        "all drives, joint1 (id 0x1) to joint7 (id 0x7): no reply for 3 cycles; "
+        f"{LOST.remedy}; see docs\n"
+    )
+    lost, error = with_words([fault("", LOST), fault("elbow")], tmp_path)
+    assert lost.title == (
+        "driver.REPLY_LOST at 1.000 s: limber-sim stood still for 480 ms; all drives, "
+        "joint1 (id 0x1) to joint7 (id 0x7): no reply for 3 cycles"
+    )
+    assert error.measured == "the drive's code is 0x1"
+
+
+def test_an_unanswered_register_is_quoted(tmp_path):
+    configuration = groups()["driver"].problems["CONFIGURATION"]
+    assert "other settings" not in configuration.what
+    words = "joint7 (id 0x7): register 2 not answered"
+    (tmp_path / "limber-driver.log").write_text(
+        f"limber-driver: warning: drives: fault: {configuration.code}: {configuration.what} "
+        f"(joint7): {words}; {configuration.remedy}; see docs/troubleshooting.md\n"
+    )
+    (told,) = with_words([fault("joint7", configuration)], tmp_path)
+    assert told.measured == words
+    assert "load of this machine" in told.problem.remedy
+
+
 def test_the_summary_of_a_run_has_the_drives_words(tmp_path):
     scenario = tmp_path / "error.yaml"
     scenario.write_text(

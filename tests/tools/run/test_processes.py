@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from limber.errors import InputError, RunError
-from limber.run.options import FinishedRun
+from limber.run.options import FinishedRun, RunOptions
 from limber.run.processes import ProcessGroup, process_group
 from limber.run.runner import _follow
 
@@ -116,5 +116,6 @@ def test_news_of_the_driver_reach_the_terminal_while_it_runs(tmp_path):
         def display():
             yield lambda: seen.append((child.code, shown.getvalue()))
 
-        _follow(group, display(), FinishedRun(tmp_path, "realtime"), Console(file=shown))
+        run = FinishedRun(tmp_path, "realtime")
+        _follow(group, child.name, display(), run, RunOptions(), Console(file=shown))
     assert (None, "register 21 is 12.566\n") in seen

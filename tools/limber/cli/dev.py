@@ -137,6 +137,10 @@ def soak(
     realtime: Annotated[
         bool, typer.Option("--realtime", help="The real processes, in real time.")
     ] = False,
+    any_request: Annotated[
+        bool,
+        typer.Option("--any-request", help="Any law, gain and goal that is accepted; no pushes."),
+    ] = False,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the report.")] = None,
 ) -> None:
     """Use a simulated arm for hours, at random and with injected faults; nothing may happen without
@@ -147,7 +151,7 @@ def soak(
     folder = out or ROOT / "out" / "soak"
     if realtime:
         raise typer.Exit(realtime_soak.run(robot, hours, seed, folder, console))
-    raise typer.Exit(module.run(robot, hours, seconds, seed, folder, console))
+    raise typer.Exit(module.run(robot, hours, seconds, seed, any_request, folder, console))
 
 
 @app.command(epilog="Example: limber bench")

@@ -33,6 +33,10 @@ Robot = Annotated[
     str | None,
     typer.Option(help="The arm's name or folder; default: the copy beside the first log."),
 ]
+Run = Annotated[
+    int | None,
+    typer.Option("--run", min=1, help="Which, of logs that hold several runs; default: all."),
+]
 Out = Annotated[
     Path | None, typer.Option("--out", help="Folder for the results; default: beside the log.")
 ]
@@ -65,11 +69,12 @@ def _from_motion(kind: str, what: str, on_weights: bool, example: str) -> None:
         csv: Csv = None,
         columns: Columns = None,
         weights_known: WeightsKnown = None,
+        run: Run = None,
         out: Out = None,
     ) -> None:
         from limber.identify import commands
 
-        source = commands.Source(runs or [], robot, csv, columns)
+        source = commands.Source(runs or [], robot, csv, columns, run)
         commands.run(kind, source, weights_known, out, console)
 
     def of_itself(
@@ -77,9 +82,10 @@ def _from_motion(kind: str, what: str, on_weights: bool, example: str) -> None:
         robot: Robot = None,
         csv: Csv = None,
         columns: Columns = None,
+        run: Run = None,
         out: Out = None,
     ) -> None:
-        identify(runs, robot, csv, columns, None, out)
+        identify(runs, robot, csv, columns, None, run, out)
 
     epilog = f"Example: limber identify {kind} {example}"
     app.command(kind, help=what, epilog=epilog)(identify if on_weights else of_itself)

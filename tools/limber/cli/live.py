@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from limber.cli.options import become, console
+from limber.errors import InputError
 
 app = typer.Typer()
 
@@ -14,16 +15,38 @@ app = typer.Typer()
 def send(
     entries: Annotated[
         list[str] | None,
-        typer.Argument(help="Such as 'mode: active' or 'gains: {law: salisbury}'."),
+        typer.Argument(
+            help="Such as 'mode: active' or 'gains: {law: salisbury}'; recover: from a fault to "
+            "a running law (acknowledge, hold, active), waiting for each."
+        ),
     ] = None,
     robot: Annotated[
         str | None, typer.Option(help="Name or folder; default: the arm of the running stack.")
     ] = None,
+    release: Annotated[
+        bool,
+        typer.Option(
+            "--release",
+            help="With recover, on a real arm: release the drives where one is in error; the arm "
+            "sinks.",
+        ),
+    ] = False,
 ) -> None:
     """Send requests (mode, gains, goal, push, wall, ...) to a running stack."""
+    from limber.live.known_words import check_entries
     from limber.live.network import require_multicast
 
     require_multicast()
+    if release and entries != ["recover"]:
+        raise InputError("--release belongs to: limber send --release recover")
+    if "recover" in (entries or []):
+        if entries != ["recover"]:
+            raise InputError("limber send recover: stands alone, without other requests")
+        from limber.live.recover import recover
+
+        console.print(repr(recover(robot, release or None)), markup=False)
+        return
+    check_entries(entries or [])
     become("limber-send", *(["--robot", robot] if robot else []), *(entries or []))
 
 

@@ -14,6 +14,11 @@ End = Annotated[
     float | None, typer.Option("--to", min=0.0, help="Seconds since the first message.")
 ]
 
+Run = Annotated[
+    int | None,
+    typer.Option("--run", min=1, help="Which, if the log holds several runs; see limber log info."),
+]
+
 app = typer.Typer()
 log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
 app.add_typer(log_app, name="log")
@@ -28,22 +33,23 @@ def info(path: LogPath) -> None:
 
 
 @log_app.command(epilog="Example: limber log rate out/demo-1")
-def rate(path: LogPath) -> None:
-    """Show rate and jitter of each channel."""
+def rate(path: LogPath, run: Run = None) -> None:
+    """Show rate and jitter of each channel, run by run."""
     from limber.log import commands
 
-    commands.rate(path, console)
+    commands.rate(path, run, console)
 
 
 @log_app.command(epilog="Example: limber log events out/demo-1")
 def events(
     path: LogPath,
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
+    run: Run = None,
 ) -> None:
     """List what happened when: modes, requests, refusals, faults, limits, pushes, contacts."""
     from limber.log import commands
 
-    commands.show_events(path, names_of(_robot_of(path, robot)), console)
+    commands.show_events(path, run, names_of(_robot_of(path, robot)), console)
 
 
 @log_app.command(epilog="Example: limber log echo out/demo-1 JOINT_STATE --field q --at 2.5")
@@ -73,11 +79,13 @@ def convert(
     ] = None,
     channels: Annotated[str, typer.Option(help=ONLY)] = "",
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
+    run: Run = None,
 ) -> None:
     """Convert a log for other tools: Foxglove, PlotJuggler, Rerun, pandas, spreadsheets, LCM."""
     from limber.log.convert import conversion
 
-    conversion.convert(path, to, out, _names(channels), names_of(_robot_of(path, robot)), console)
+    names = names_of(_robot_of(path, robot))
+    conversion.convert(path, to, out, _names(channels), names, console, run)
 
 
 @log_app.command(epilog="Example: limber log cut out/demo-1 --from 3 --to 8 --out push.lcmlog.zst")
@@ -89,11 +97,12 @@ def cut(
     begin: Begin = 0.0,
     end: End = None,
     channels: Annotated[str, typer.Option(help=ONLY)] = "",
+    run: Run = None,
 ) -> None:
     """Copy a part of a log into a log of its own."""
     from limber.log import cut as module
 
-    part = module.Part(begin, _until(end), tuple(_names(channels)))
+    part = module.Part(begin, _until(end), tuple(_names(channels)), run)
     module.cut(path, out, part, console)
 
 
@@ -153,8 +162,9 @@ def plot(
     compare: Annotated[
         Path | None, typer.Option(help="Another log, or folder of a run, drawn dotted beside it.")
     ] = None,
+    run: Run = None,
 ) -> None:
     """Draw a log: one PNG a topic, and one interactive page that works offline."""
     from limber.plot import commands
 
-    commands.plot(path, what or [], out, console, compare)
+    commands.plot(path, what or [], out, console, compare, run)

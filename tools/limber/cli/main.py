@@ -25,11 +25,13 @@ from limber.cli import (
     run,
 )
 from limber.cli.options import console
+from limber.cli.panels import InPanels, put_in_panels
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
 
 INTERRUPTED = 130
 
 app = typer.Typer(
+    cls=InPanels,
     help="Compliance control for torque-controlled arms: run, measure, watch, plot.",
     no_args_is_help=True,
     add_completion=False,
@@ -43,6 +45,7 @@ app.add_typer(export.app, name="export")
 app.add_typer(faults.app, name="faults")
 app.add_typer(identify.app, name="identify")
 app.add_typer(incident.app, name="incident")
+put_in_panels(app)
 
 
 @app.callback(invoke_without_command=True)
@@ -90,4 +93,9 @@ def _with_hint(error: TyperException) -> str:
     context = getattr(error, "ctx", None)
     path = context.command_path if context else "limber"
     text = " ".join(error.format_message().split()) or "missing command"
+    if text.startswith("No such command") and "Did you mean" not in text:
+        from limber.live.meant import meant
+
+        if command := meant(next(iter(sys.argv[1:]), "")):
+            return f"{text.rstrip('.?')}. Try: {command}"
     return f"{text.rstrip('.?')}{'?' if text.endswith('?') else '.'} See {path} --help"

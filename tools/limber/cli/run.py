@@ -23,6 +23,23 @@ Page = Annotated[
     bool, typer.Option("--page", help="Serve the web page beside it: 3D, charts, STOP.")
 ]
 
+Lockstep = Annotated[
+    bool | None,
+    typer.Option(
+        "--lockstep/--realtime",
+        help="As fast as possible, or each process by this machine's clock. Default: a simulated "
+        "arm at the clock's pace, unless its scenario has another mode.",
+    ),
+]
+
+OneProcess = Annotated[
+    bool,
+    typer.Option(
+        "--one-process",
+        help="Driver, controller and simulator in one: keeps up on a busy machine.",
+    ),
+]
+
 Plain = Annotated[
     bool,
     typer.Option("--record-plain", help="Leave run.lcmlog, not the compressed run.lcmlog.zst."),
@@ -35,7 +52,8 @@ def demo(
     seconds: Annotated[
         float | None, typer.Option(min=1.0, max=600.0, help="Stop after this much arm time.")
     ] = None,
-    lockstep: Annotated[bool, typer.Option("--lockstep", help="No clock: repeatable.")] = False,
+    lockstep: Lockstep = None,
+    one_process: OneProcess = False,
     no_watch: Annotated[
         bool, typer.Option("--no-watch", help="Show the progress only, not the live view.")
     ] = False,
@@ -50,7 +68,15 @@ def demo(
     from limber.run import demo as module
     from limber.run.options import RunOptions
 
-    options = RunOptions(out, lockstep, live_view=not no_watch, private_network=private, page=page)
+    options = RunOptions(
+        out,
+        lockstep,
+        one_process,
+        live_view=not no_watch,
+        private_network=private,
+        page=page,
+        leave_when_behind=not one_process,
+    )
     raise typer.Exit(module.demo(seconds, sensors, options, console))
 
 
@@ -58,10 +84,8 @@ def demo(
 def run(
     scenario: ScenarioPath,
     out: Out = None,
-    lockstep: Annotated[
-        bool | None,
-        typer.Option("--lockstep/--realtime", help="Overrides the scenario's mode."),
-    ] = None,
+    lockstep: Lockstep = None,
+    one_process: OneProcess = False,
     bus: Bus = None,
     rate: Annotated[
         float | None,
@@ -88,6 +112,7 @@ def run(
     options = RunOptions(
         out,
         lockstep,
+        one_process,
         tuple(bus or ()),
         not no_sim,
         private,
@@ -134,26 +159,38 @@ def sim(
     no_friction: Annotated[
         bool, typer.Option("--no-friction", help="Joints without friction.")
     ] = False,
+    paced: Annotated[
+        bool,
+        typer.Option(
+            "--paced", help="In lock step with limber-driver --paced and limber-controller --paced."
+        ),
+    ] = False,
 ) -> None:
     """Simulate an arm behind its motor drives in real time, until Ctrl-C."""
     from limber.run.simulate import introduce
 
-    words = [*bus_words(bus), "--realtime"]
+    words = [*bus_words(bus), "--paced" if paced else "--realtime"]
     if scenario is not None:
         words += ["--scenario", str(scenario)]
     if rate is not None:
         words += ["--rate", f"{rate:.9g}"]
     words += ["--no-stand"] * no_stand + ["--no-friction"] * no_friction
-    folder = introduce(robot, bus_words(bus), no_stand, console)
+    folder = introduce(robot, bus_words(bus), no_stand, paced, console)
     become("limber-sim", "--robot", str(folder), *words)
 
 
 @app.command(epilog="Example: limber measure out/push")
-def measure(folder: Annotated[Path, typer.Argument(help="Folder of a run.")]) -> None:
+def measure(
+    folder: Annotated[Path, typer.Argument(help="Folder of a run.")],
+    run: Annotated[
+        int | None,
+        typer.Option("--run", min=1, help="Which, if its log holds several; default: the last."),
+    ] = None,
+) -> None:
     """Measure a recorded run again, from its log and scenario."""
     from limber.run import commands
 
-    raise typer.Exit(commands.measure_again(folder, console))
+    raise typer.Exit(commands.measure_again(folder, run, console))
 
 
 @app.command(epilog="Example: limber check scenarios/push.yaml")

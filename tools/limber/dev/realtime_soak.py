@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-import lcm
 import numpy as np
 from rich.console import Console
 
@@ -24,6 +23,7 @@ from limber.errors import OK, OUT_OF_TOLERANCE, RunError
 from limber.live import network
 from limber.live.arm import Arm
 from limber.live.arm_errors import FaultError, RefusedError, StackLostError, WaitTimeoutError
+from limber.live.line import Line
 from limber.model.robot import Robot, load_robot
 from limber.paths import output_folder, program
 from limber.problems import problem
@@ -90,9 +90,9 @@ def run(name: str, hours: float, seed: int, out: Path, console: Console) -> int:
     network.ensure_multicast(False)
     robot, folder = load_robot(name), output_folder(out)
     watch = Watch()
-    bus = lcm.LCM(messages.user_plane_url())
+    bus = Line(messages.user_plane_url())
     bus.subscribe("DRIVER_STATUS", watch.on_status)
-    bus.subscribe("JOINT_STATE", watch.on_state).set_queue_capacity(1)
+    bus.subscribe("JOINT_STATE", watch.on_state)
     with ExitStack() as stack:
         watchers = stack.enter_context(Watchers(folder))
         children = [stack.enter_context(started(name, robot, folder)) for name in PROGRAMS]
@@ -112,7 +112,7 @@ def started(name: str, robot: Robot, folder: Path) -> subprocess.Popen:
         return subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
 
 
-def _listen(bus: lcm.LCM, seconds: float) -> None:
+def _listen(bus: Line, seconds: float) -> None:
     end = time.monotonic() + seconds
     while (left_ms := round(1e3 * (end - time.monotonic()))) > 0:
         bus.handle_timeout(left_ms)
@@ -123,7 +123,7 @@ class _Use:
     """The arm in use: goals at random, and back to work after each stop."""
 
     arm: Arm
-    bus: lcm.LCM
+    bus: Line
     watch: Watch
     watchers: Watchers
     children: list[subprocess.Popen]

@@ -1,4 +1,4 @@
-"""`limber test`: everything that CI runs, in three lanes beside one another."""
+"""`limber test`: everything that CI runs, in three lanes beside one another, and one after them."""
 
 import os
 import subprocess
@@ -62,6 +62,10 @@ class Lane(Enum):
     REAL_TIME = "real time"  # the processors are theirs when they need them
     BUILDS = "builds"  # another build of the C++ code each
     SIMULATED = "simulated time"
+    LAST = "last"  # alone: drawing without a graphics card takes both processors
+
+
+AT_ONCE = (Lane.REAL_TIME, Lane.LAST)  # their output comes as they run
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ PARTS: dict[str, Part] = {
     "ctest": Part(
         lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)], Lane.REAL_TIME
     ),
-    "system": Part(lambda: _system("not lockstep"), Lane.REAL_TIME),
+    "system": Part(lambda: _system("not lockstep and not browser"), Lane.REAL_TIME),
     # SocketCAN in a guest kernel that has vcan; one guest at a time
     "vcan": Part(lambda: [*CTEST, "-L", "vcan", "--no-tests=error"], Lane.REAL_TIME),
     # The other C++ unit tests, built with sanitizers only
@@ -109,7 +113,12 @@ PARTS: dict[str, Part] = {
     "pytest": Part(lambda: [*PYTEST, "tests/tools"], Lane.SIMULATED),
     "eval": Part(lambda: [*PYTEST, "tests/eval"], Lane.SIMULATED),
     "soak": Part(lambda: _limber("soak", "--hours", "0.12"), Lane.SIMULATED),
+    "requests": Part(
+        lambda: _limber("soak", "--robot", "iiwa14", "--any-request", "--hours", "0.05"),
+        Lane.SIMULATED,
+    ),
     "tutorial": Part(lambda: [*PYTEST, "tests/tutorial"], Lane.SIMULATED),
+    "browser": Part(lambda: _system("browser"), Lane.LAST),
 }
 
 
@@ -135,7 +144,7 @@ class Verdict:
 
 def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
     """The output comes when the part has ended; of those in real time, at once."""
-    at_once = PARTS[name].lane is Lane.REAL_TIME
+    at_once = PARTS[name].lane in AT_ONCE
     command = [*([] if at_once else ["nice", "-n", "19"]), *command]
     start = time.monotonic()
     try:
@@ -163,7 +172,7 @@ def run(names: list[str], console: Console) -> bool:
         for name in names:
             if PARTS[name].lane is not lane:
                 continue
-            if lane is Lane.REAL_TIME:
+            if lane in AT_ONCE:
                 console.rule(name)
             verdict, output = _run_part(name, commands[name])
             if output:
@@ -171,9 +180,11 @@ def run(names: list[str], console: Console) -> bool:
                 print(output, end="", flush=True)
             verdicts.append(verdict)
 
-    with ThreadPoolExecutor(len(Lane)) as pool:
-        for lane in [pool.submit(run_lane, lane) for lane in Lane]:
+    beside = [lane for lane in Lane if lane is not Lane.LAST]
+    with ThreadPoolExecutor(len(beside)) as pool:
+        for lane in [pool.submit(run_lane, lane) for lane in beside]:
             lane.result()
+    run_lane(Lane.LAST)
     console.rule("summary")
     for verdict in sorted(verdicts, key=lambda verdict: names.index(verdict.name)):
         text = "[green]passed[/]" if verdict.passed else "[bold red]FAILED[/]"

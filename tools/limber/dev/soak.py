@@ -12,10 +12,19 @@ from limber.errors import OK, OUT_OF_TOLERANCE, RunError
 from limber.paths import output_folder, program
 
 
-def run(robot: str, hours: float, seconds: float, seed: int, out: Path, console: Console) -> int:
+def run(
+    robot: str,
+    hours: float,
+    seconds: float,
+    seed: int,
+    any_request: bool,
+    out: Path,
+    console: Console,
+) -> int:
     """limber-soak, its progress, and its report as soak.json."""
     command = [str(program("limber-soak")), "--robot", robot, "--arm-hours", str(hours)]
     command += ["--most-seconds", str(seconds), "--seed", str(seed), "--progress"]
+    command += ["--any-request"] if any_request else []
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if not done.stdout:
         raise RunError(f"limber-soak ended with exit code {done.returncode}: see above")

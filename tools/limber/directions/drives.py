@@ -21,7 +21,8 @@ from limber.run.commands import next_folder
 from limber.run.processes import ProcessGroup, process_group, sigterm_as_interrupt
 
 START_S = 10.0
-SILENT_S = 2.0
+SILENT_S = 5.0  # of a tool that itself waits for a busy machine
+SIMULATED_HZ = 50.0
 CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO")
 
 
@@ -148,7 +149,8 @@ def _start(
     group: ProcessGroup, robot: Robot, overrides: tuple[str, ...], with_simulator: bool
 ) -> None:
     words = ["--robot", str(robot.folder), *(w for bus in overrides for w in ("--bus", bus))]
-    if with_simulator:
+    if with_simulator:  # no controller, so no lock step: slow enough for a machine that is busy
+        words += ["--rate", f"{min(robot.rate_hz, SIMULATED_HZ):.9g}"]
         command = [str(program("limber-sim")), *words, "--realtime", "--no-stand"]
         group.wait_for_line(group.start("limber-sim", command), "\n", START_S)
     group.start("limber-driver", [str(program("limber-driver")), *words])

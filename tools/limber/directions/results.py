@@ -10,6 +10,7 @@ from rich.text import Text
 from limber import tables
 from limber.directions.wiring import Change, change_words
 from limber.directions.words import amount_words
+from limber.output import write_again
 
 OK, SKIPPED, NOT_CHECKED = "ok", "skipped", "not checked"
 STYLES = {OK: "green", SKIPPED: "yellow", NOT_CHECKED: "yellow"}
@@ -69,4 +70,4 @@ def write_json(rows: list[Row], robot: Path, path: Path) -> None:
         "passed": passed(rows),
         "joints": [{**asdict(row), "unit": "m" if row.slides else "rad"} for row in rows],
     }
-    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    write_again(path, json.dumps(content, indent=2) + "\n")

@@ -51,7 +51,8 @@ class Context:
             path = self.experiment.folder / scenario
         else:
             path = self.out / f"{name}.yaml"
-            head = {"format": "limber-scenario/1", "wire": False}  # formulas know no bus
+            # Formulas know no bus, and experiments show what unstable gains do.
+            head = {"format": "limber-scenario/1", "wire": False, "allow_unstable": True}
             content = evaluate.plain({**head, **scenario})
             path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
         self.progress(f"lab: {name}")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from limber.errors import RunError
-from limber.paths import program
+from limber.paths import captured, program
 
 TIMEOUT_S = 300.0
 
@@ -23,9 +23,7 @@ def evaluate(cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
     text = json.dumps(cases, allow_nan=False)
     command = [str(program("limber-eval"))]
     try:
-        done = subprocess.run(
-            command, input=text, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
-        )
+        done = captured(command, input=text, timeout=TIMEOUT_S)
     except subprocess.TimeoutExpired as error:
         raise RunError(f"limber-eval gave no answer in {TIMEOUT_S:g} s") from error
     if done.returncode != 0:

@@ -18,6 +18,7 @@ from limber.errors import InputError
 from limber.identify.arm import Arm, JointBelief
 from limber.model.bodies import Body
 from limber.model.urdf import MOVING
+from limber.output import write_again
 
 LEAST_MASS = 1e-6  # kg; MuJoCo wants every moving body to have one
 LEFT_OUT = {
@@ -54,10 +55,7 @@ def text(arm: Arm) -> str:
 
 
 def write(arm: Arm, out: Path) -> None:
-    try:
-        out.write_text(text(arm), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{out} cannot be written: {error.strerror}") from error
+    write_again(out, text(arm))
 
 
 def left_out(arm: Arm) -> list[str]:
@@ -134,18 +132,10 @@ def _inertial(body: Body, parent: ElementTree.Element) -> None:
 
 def torque_limit(arm: Arm, joint: JointBelief) -> float:
     """The tightest of URDF, motor and joint, N m or N."""
-    name = joint.key("torque_limit_Nm")
-    urdf = next(each for each in arm.robot.chain.joints if each.name == joint.name)
-    limit = urdf.element.find("limit")
-    found = [
-        joint.believed(name),
-        joint.motor_values.get(joint.key("peak_torque_Nm")),
-        limit.get("effort") if limit is not None else None,
-    ]
-    known = [float(value) for value in found if value is not None and float(value) > 0.0]
-    if not known:
+    limit = next(info.torque for info in arm.robot.joints if info.name == joint.name)
+    if not np.isfinite(limit):
         raise InputError(f"{joint.name}: neither robot.yaml nor the URDF limits its torque")
-    return min(known)
+    return limit
 
 
 def _pose(X: np.ndarray) -> dict[str, str]:

@@ -4,7 +4,6 @@ The driver tells what it did in JOINT_STATE; the referee tells what was on the b
 """
 
 import json
-import subprocess
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from typing import Any
 from limber.errors import RunError
 from limber.faults.matrix import LockStepRun, Row
 from limber.messages import constants
-from limber.paths import program
+from limber.paths import captured, program
 from limber.referee.arm import Arm, read_arm
 from limber.referee.candump import read_trace
 from limber.referee.judge import judge
@@ -139,7 +138,7 @@ def _judge(
 
 def _limber_faults(*words: str) -> str:
     command = [str(program("limber-faults")), *words]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = captured(command)
     if done.returncode != 0:
         raise RunError(f"limber-faults ended with {done.returncode}: {done.stderr.strip()}")
     return done.stdout

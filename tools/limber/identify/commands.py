@@ -12,6 +12,7 @@ from limber.identify import (
     excitation,
     friction,
     gravity,
+    plausible,
     proposal,
     stiffness,
     torque_constant,
@@ -22,8 +23,13 @@ from limber.identify.csv_recording import read_csv
 from limber.identify.findings import Findings
 from limber.identify.motion import Motion, motion_of
 from limber.identify.recording import Recording, read_logs
-from limber.log.reader import log_file
-from limber.model.validation import checker_arguments, load_checked, run_checker
+from limber.log.reader import Log, log_file
+from limber.model.validation import (
+    checker_arguments,
+    load_checked,
+    load_checked_robot,
+    run_checker,
+)
 from limber.paths import output_folder
 
 KINDS: dict[str, Callable[[Arm, Motion, float | None], Findings]] = {
@@ -42,14 +48,26 @@ class Source:
     robot: str | None = None
     csv: Path | None = None
     columns: Path | None = None
+    run: int | None = None  # of logs that hold several; None: all
 
-    def read(self) -> tuple[Arm, list[Recording], Path]:
-        """The arm, its recordings, and the folder that results go to unless another is named."""
+    def read(self, console: Console) -> tuple[Arm, list[Recording], Path]:
+        """The arm, its recordings, and the folder that results go to unless another is named.
+        Prints what is doubtful of them.
+        """
+        arm, recordings, beside = self._read(console)
+        for doubt in plausible.check(recordings, arm):
+            console.print(f"[yellow]{doubt}[/]", soft_wrap=True)
+        return arm, recordings, beside
+
+    def _read(self, console: Console) -> tuple[Arm, list[Recording], Path]:
         if self.csv is None:
             if not self.runs:
                 raise InputError("missing 'runs': logs or folders of runs; or a --csv recording")
             arm = checked(arm_of(self.runs, self.robot))
-            return arm, read_logs(self.runs, arm), folder_of(self.runs)
+            if self.run is None:
+                for line in several_runs(self.runs):
+                    console.print(line, soft_wrap=True)
+            return arm, read_logs(self.runs, arm, self.run), folder_of(self.runs)
         if self.runs or self.columns is None or self.robot is None:
             raise InputError("--csv FILE goes with --columns FILE and --robot, and without runs")
         arm = checked(load_arm(self.robot))
@@ -62,7 +80,7 @@ def run(
     """One of KINDS, or all of them: `arm`."""
     if kind == "arm":
         return _run_all(source, weights_known, out, console)
-    arm, recordings, beside = source.read()
+    arm, recordings, beside = source.read(console)
     found = KINDS[kind](arm, motion_of(recordings), weights_known)
     _print(found, console)
     folder = output_folder(out or beside)
@@ -77,7 +95,7 @@ def _run_all(
     scenario = next((path for path in source.runs if path.suffix in (".yaml", ".yml")), None)
     if scenario is not None:
         source, out = _recorded(source, scenario, out)
-    arm, recordings, beside = source.read()
+    arm, recordings, beside = source.read(console)
     folder = output_folder(out or beside)
     if (folder / "robot").exists():
         raise InputError(f"{folder / 'robot'} exists: give another --out, or remove it")
@@ -118,12 +136,21 @@ def _again(
 
 
 def plan(robot: str, spread: float, count: int, seed: int, out: Path, console: Console) -> None:
-    arm = load_arm(robot)
+    arm = Arm(load_checked_robot(robot))
     console.print(excitation.write(arm, robot, spread, count, seed, out))
     console.print(
         "The motion avoids no obstacles: give the arm room. Record it with limber lab, limber run, "
         "or on the real arm limber run --no-sim. One log serves all commands of limber identify.",
     )
+
+
+def several_runs(logs: list[Path]) -> list[str]:
+    counts = [(path, Log(path).runs) for path in logs]
+    return [
+        f"{path}: {count} runs, all of which are used; --run N chooses one"
+        for path, count in counts
+        if count > 1
+    ]
 
 
 def arm_of(runs: list[Path], robot: str | None) -> Arm:

@@ -7,7 +7,7 @@ The table is YAML:
     motor_torque: [i1, i2, i3]   # or motor_current; at least one of these or joint_torque
     joint_torque: tau{}          # torque sensors
     motor_position: m{}          # before the spring; without it, position
-    scale: {position: 0.01745, motor_torque: [1, -1, 1]}   # to rad, N m, A; m and N of sliders
+    scale: {position: 0.01745, motor_torque: [1, -1, 1]}   # to rad, N m, A, s; m and N of sliders
 Torques and positions are those of the joint, behind the gear, positive as the URDF turns it; a
 motor_current times gear ratio and torque constant of robot.yaml is a motor_torque.
 """
@@ -24,6 +24,8 @@ from limber.model.robot import read_yaml
 
 FORMAT = "limber-columns/1"
 SIGNALS = ("position", "motor_position", "motor_torque", "motor_current", "joint_torque")
+SCALED = ("time_s", *SIGNALS)
+TIME_UNITS = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
 KEYS = ("format", "time_s", "rate_hz", "scale", *SIGNALS)
 SLOWEST_HZ, FASTEST_HZ = 20.0, 20_000.0
 GAP = 5.0  # usual steps
@@ -45,6 +47,7 @@ def read_csv(path: Path, table: Path, arm: Arm) -> list[Recording]:
     if not SLOWEST_HZ <= rate_hz <= FASTEST_HZ:
         raise InputError(
             f"{path}: {rate_hz:.3g} samples a second; {SLOWEST_HZ:g} to {FASTEST_HZ:g} are allowed"
+            + _time_unit(rate_hz)
         )
     parts = np.split(np.arange(len(time_s)), np.flatnonzero(np.diff(time_s) > GAP / rate_hz) + 1)
     parts = [rows for rows in parts if np.ptp(time_s[rows]) >= LEAST_S]
@@ -68,8 +71,8 @@ def _check(content: dict[str, Any], table: Path) -> None:
     if ("time_s" in content) == ("rate_hz" in content):
         raise InputError(f"{table}: either time_s or rate_hz is needed")
     scale = content.get("scale", {})
-    if not isinstance(scale, dict) or any(key not in SIGNALS for key in scale):
-        raise InputError(f"{table}: scale: of {', '.join(SIGNALS)} only, as a mapping")
+    if not isinstance(scale, dict) or any(key not in SCALED for key in scale):
+        raise InputError(f"{table}: scale: of {', '.join(SCALED)} only, as a mapping")
 
 
 def _numbers(path: Path) -> tuple[np.ndarray, list[str]]:
@@ -86,23 +89,58 @@ def _numbers(path: Path) -> tuple[np.ndarray, list[str]]:
         numbers = np.loadtxt(
             path, delimiter=delimiter, skiprows=int(header), ndmin=2, encoding="utf-8-sig"
         )
-    except ValueError as error:
-        raise InputError(f"{path}, below {int(header)} lines of header: {error}") from error
-    bad = np.argwhere(~np.isfinite(numbers))
-    if len(bad):
-        line, column = bad[0] + 1
-        raise InputError(f"{path}, line {line + header}, column {column}: not a finite number")
+        good = bool(np.isfinite(numbers).all())
+    except ValueError:
+        good = False
+    if not good:
+        raise InputError(_first_wrong(path, delimiter, names if header else []))
     if len(numbers) < 2:
         raise InputError(f"{path} holds no samples")
     return numbers, names if header else []
 
 
+def _first_wrong(path: Path, delimiter: str | None, names: list[str]) -> str:
+    """Place of the first cell that is no finite number, or of the first line of other length."""
+    width = len(names)
+    with open(path, encoding="utf-8-sig") as file:
+        for line, text in enumerate(file, 1):
+            cells = [cell.strip() for cell in text.split("#")[0].rstrip("\r\n").split(delimiter)]
+            if (line == 1 and names) or not any(cells):
+                continue
+            width = width or len(cells)
+            for column, cell in enumerate(cells[:width], 1):
+                if not _is_number(cell):
+                    name = f" of {names[column - 1]}" if names else ""
+                    where = f"{path}, line {line}, column {column}"
+                    return f"{where}: {_why(cells, cell, line, name)}"
+            if len(cells) != width:
+                return f"{path}, line {line}: {len(cells)} columns, {width} before"
+    return f"{path} cannot be read as numbers"
+
+
+def _why(cells: list[str], cell: str, line: int, name: str) -> str:
+    if not cell:
+        return f"not a finite number: the cell{name} is empty; leave such lines out, or fill them"
+    hint = ""
+    if _is_number(cell.replace(",", ".", 1)):
+        hint = "; write a decimal point"
+    elif line == 2 and not any(_is_number(each) for each in cells):
+        hint = "; take the line of units out, `scale` of the table of columns turns them"
+    return f"not a finite number: '{cell}'{name}{hint}"
+
+
+def _time_unit(rate_hz: float) -> str:
+    for unit, scale in TIME_UNITS.items():
+        if SLOWEST_HZ <= rate_hz / scale <= FASTEST_HZ:
+            return f"; are the times {unit}? `scale: {{time_s: {scale:.1e}}}` in the table"
+    return ""
+
+
 def _is_number(text: str) -> bool:
     try:
-        float(text)
+        return bool(np.isfinite(float(text))) and "_" not in text
     except ValueError:
         return False
-    return True
 
 
 def _signal(
@@ -121,14 +159,19 @@ def _signal(
     if len(columns) != count:
         raise InputError(f"{table}: {key}: {len(columns)} columns, the arm has {count} joints")
     where = [_column(column, key, numbers, names, table) for column in columns]
+    return numbers[:, where] * _factors(content, key, count, table)
+
+
+def _factors(content: dict[str, Any], key: str, count: int, table: Path) -> np.ndarray:
     scale = content.get("scale", {}).get(key, 1.0)
     try:
         factors = np.broadcast_to(np.asarray(scale, float), count)
-    except ValueError as error:
-        raise InputError(f"{table}: scale: {key}: one number, or {count}") from error
+    except (TypeError, ValueError) as error:
+        numbers = "one number" + (f", or {count}" if count > 1 else "")
+        raise InputError(f"{table}: scale: {key}: {numbers}") from error
     if not np.all(np.isfinite(factors) & (factors != 0.0)):
         raise InputError(f"{table}: scale: {key}: {scale}; finite and not 0")
-    return numbers[:, where] * factors
+    return factors
 
 
 def _column(column: Any, key: str, numbers: np.ndarray, names: list[str], table: Path) -> int:
@@ -150,7 +193,8 @@ def _times(
         if not isinstance(rate, int | float) or not SLOWEST_HZ <= rate <= FASTEST_HZ:
             raise InputError(f"{table}: rate_hz: {rate}; {SLOWEST_HZ:g} to {FASTEST_HZ:g}")
         return np.arange(len(numbers)) / rate
-    time_s = numbers[:, _column(content["time_s"], "time_s", numbers, names, table)]
+    column = _column(content["time_s"], "time_s", numbers, names, table)
+    time_s = numbers[:, column] * float(_factors(content, "time_s", 1, table)[0])
     back = np.flatnonzero(np.diff(time_s) <= 0.0)
     if len(back):
         raise InputError(

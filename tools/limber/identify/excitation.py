@@ -13,6 +13,7 @@ import yaml
 
 from limber.identify.arm import Arm
 from limber.model.scenario import active_with
+from limber.output import write_again
 
 START_S = 1.5
 SLOW_S, FAST_S, CREEP_S, REST_S = 3.0, 1.2, 5.0, 0.8
@@ -90,7 +91,7 @@ def scenario_text(arm: Arm, robot: str, spread: float, count: int, seed: int) ->
 
 def write(arm: Arm, robot: str, spread: float, count: int, seed: int, out: Path) -> str:
     """Returns a summary for the user."""
-    out.write_text(scenario_text(arm, robot, spread, count, seed), encoding="utf-8")
+    write_again(out, scenario_text(arm, robot, spread, count, seed))
     low, high = reach(arm, poses(arm, spread, count, seed))
     sides = zip("xyz", low, high, strict=True)
     box = ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in sides)

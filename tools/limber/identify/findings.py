@@ -6,6 +6,7 @@ import numpy as np
 
 from limber.errors import InputError
 
+LEAST_STD = 2.0  # standard errors from nothing that a proposal has to be
 AGAINST_URDF = (
     "Joints without a torque sensor are measured against the weights in the URDF: check those "
     "first (identify gravity)."
@@ -24,6 +25,11 @@ class Value:
     believed: float | None = None
     path: tuple[str, ...] | None = None
     proposed: float | None = None
+
+    @property
+    def certain(self) -> bool:
+        """It stands out from nothing: what does not is never proposed."""
+        return abs(self.value) >= LEAST_STD * self.std
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,14 @@ class Findings:
     panels: list[Panel] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     inertials: dict[str, tuple[float, np.ndarray]] = field(default_factory=dict)
+
+    def proposals(self) -> list[Value]:
+        """What robot.yaml should hold."""
+        return [
+            value
+            for value in self.values
+            if value.path is not None and value.proposed is not None and value.certain
+        ]
 
     def require_something(self) -> None:
         if not self.values:

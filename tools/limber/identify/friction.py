@@ -24,13 +24,14 @@ from limber.identify.motor_side import (
     MotorSide,
     balance,
 )
-from limber.identify.regression import PoorLogError, Unknowns, fit, held_out, ratio
+from limber.identify.regression import Fit, PoorLogError, Unknowns, fit, held_out, ratio
 from limber.identify.torque_constant import certain
 
 KAPPA_OFF = 0.03  # beyond it a note is added
 SURE = 4.0  # standard errors
 SENSOR_SCALE = 0.02  # standard deviation of the scale of a torque sensor
 SLOW, LEAST_SLOW = 0.1, 50  # rad/s or m/s, and samples below it that show Coulomb friction
+EXTRAPOLATED = 1.0 / 6.0  # of Coulomb's: standard error without slow samples; a third is two
 LEAST_REVERSALS = 4
 SECTION, LINK_SECTION = "friction", "link_friction"
 COULOMB_KEY, VISCOUS_KEY = "coulomb_Nm", "viscous_Nms_per_rad"
@@ -72,7 +73,13 @@ def _add_motor_side(
         )
     found.notes += [f"{joint.name}: {warning}" for warning in _warnings(side)]
     values = _values(joint, side, sensor)
-    if not better:
+    unsure = [value.name for value in values if not value.certain]
+    if unsure:
+        found.notes.append(
+            f"{joint.name}: {', '.join(unsure)} less than two standard errors from nothing: not "
+            "proposed."
+        )
+    if not better or (unsure and not _still_better(joint, side, sensor, values)):
         found.notes.append(f"{joint.name}: robot.yaml's friction does as well; it stays.")
         values = [replace(value, path=None, proposed=None) for value in values]
     found.values += values
@@ -103,6 +110,20 @@ def _beats_robot_yaml(joint: JointBelief, side: MotorSide, sensor: bool) -> bool
     return found < _rms(none - believed / side.kappa)
 
 
+def _still_better(joint: JointBelief, side: MotorSide, sensor: bool, values: list[Value]) -> bool:
+    """Whether what is certain, beside what robot.yaml has of the rest, does better than that."""
+    certain = {value.path: value.proposed for value in values if value.certain}
+    section = dict(joint.values.get(SECTION) or {})
+    section |= {path[-1]: number for path, number in certain.items()}
+    mixed = replace(joint, values=joint.values | {SECTION: section})
+    none, sections = side.unseen(), (SECTION,) if sensor else (SECTION, LINK_SECTION)
+    left = [
+        _rms(none - sum(_sliding(each, name, side.speed) for name in sections) / side.kappa)
+        for each in (joint, mixed)
+    ]
+    return left[1] < left[0]
+
+
 def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
@@ -122,11 +143,12 @@ def _sliding(joint: JointBelief, section: str, speed: np.ndarray) -> np.ndarray:
 def _warnings(side: MotorSide) -> list[str]:
     """What the motion lacks."""
     found = []
-    slow = np.count_nonzero(np.abs(side.speed) < SLOW)
+    slow = _slow(side)
     if slow < LEAST_SLOW:
         found.append(
             f"only {slow} of {len(side.speed)} samples are slower than {SLOW:g} rad/s: Coulomb "
-            "friction is extrapolated from faster ones and may be a third too high; add a creep"
+            "friction is extrapolated from faster ones and may be a third too high, which its "
+            "standard error contains; add a creep"
         )
     reversals = sum(a != b for a, b in pairwise(np.sign(side.speed)))
     if reversals < LEAST_REVERSALS:
@@ -137,13 +159,27 @@ def _warnings(side: MotorSide) -> list[str]:
     return found
 
 
+def _slow(side: MotorSide) -> int:
+    return int(np.count_nonzero(np.abs(side.speed) < SLOW))
+
+
+def _widened(side: MotorSide) -> Fit:
+    """With the doubt of an extrapolation: Coulomb's friction may be too high by a third."""
+    if _slow(side) >= LEAST_SLOW:
+        return side.fit
+    doubt = np.zeros(len(side.fit.x))
+    doubt[COULOMB] = EXTRAPOLATED * side.fit.x[COULOMB]
+    return replace(side.fit, covariance=side.fit.covariance + np.outer(doubt, doubt))
+
+
 def _values(joint: JointBelief, side: MotorSide, sensor: bool) -> list[Value]:
     """Without a torque sensor both sides are measured together: what the link's is believed to be
     is taken off the proposal for the motor's.
     """
+    widened = _widened(side)
     found = [
-        (COULOMB_KEY, "N m", *ratio(side.fit, (COULOMB,), LOAD)),
-        (VISCOUS_KEY, "N m s/rad", *ratio(side.fit, (VISCOUS,), LOAD)),
+        (COULOMB_KEY, "N m", *ratio(widened, (COULOMB,), LOAD)),
+        (VISCOUS_KEY, "N m s/rad", *ratio(widened, (VISCOUS,), LOAD)),
     ]
     if side.stribeck_speed is not None:
         found.append((STATIC_KEY, "N m", *ratio(side.fit, (COULOMB, STRIBECK), LOAD)))

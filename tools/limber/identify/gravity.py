@@ -11,7 +11,15 @@ from limber.identify.doubt import Loads, prior_std
 from limber.identify.findings import Findings, Panel, Value
 from limber.identify.motion import Motion
 from limber.identify.regression import PoorLogError
-from limber.identify.weights import Weights, estimate, held_out, own_terms, problems
+from limber.identify.weights import (
+    Problem,
+    Weights,
+    doubts,
+    estimate,
+    held_out,
+    own_terms,
+    problems,
+)
 from limber.model.dynamics import PARAMETERS, UPPER
 
 LEAST_NM = 0.1  # by which gravity's torque has to be able to change
@@ -30,12 +38,12 @@ def identify(arm: Arm, motion: Motion) -> Findings:
         return found
     excess = _excess(loads)
     try:
-        weights, before, after = _best(loads, excess, used)
+        weights, before, after, kept = _best(loads, excess, used)
     except PoorLogError as reason:
         found.refused |= {arm.joints[i].name: str(reason) for i in used}
         return found
     found.values = _values(arm, weights) + _offsets(arm, weights, used)
-    found.notes = _notes(arm, weights, used, before, after)
+    found.notes = _notes(arm, weights, used, before, after) + kept
     reason = _no_better(arm, used, before, after)
     if reason:
         found.notes.append(reason)
@@ -53,25 +61,74 @@ def identify(arm: Arm, motion: Motion) -> Findings:
 
 def _best(
     loads: Loads, excess: np.ndarray, used: list[int]
-) -> tuple[Weights, np.ndarray, np.ndarray]:
+) -> tuple[Weights, np.ndarray, np.ndarray, list[str]]:
     """An estimate, and what URDF and proposal leave of held-out torques; if offsets of the torques
-    would take what weights have to explain, without offsets.
+    would take what weights have to explain, without offsets. Links whose change makes a joint worse
+    stay as the URDF has them, if that helps: notes name them.
     """
     arm = loads.arm
     for share in OFFSET_SHARES:
         parts = problems(loads, excess, used, share)
-        weights = estimate(loads, parts, used)
-        before, after = held_out(loads, parts, used, lambda change: _of_urdf(arm, change))
-        if not _no_better(arm, used, before, after):
-            break
+        found = _judged(loads, parts, used, [])
+        if not _no_better(arm, used, *found[1:]):
+            return *found, []
+    kept, fewer = _fewer(loads, parts, used, found)
+    if _no_better(arm, used, *fewer[1:]):
+        return *found, []
+    bodies = arm.robot.dynamics.bodies
+    links = ", ".join(bodies[i].heaviest for i in kept)
+    worse = ", ".join(_worse(arm, used, *found[1:]))
+    return *fewer, [
+        f"Left as in the URDF: {links}. With them changed, too, held-out torques of "
+        f"{worse} would be explained worse."
+    ]
+
+
+Judged = tuple[Weights, np.ndarray, np.ndarray]
+
+
+def _judged(loads: Loads, parts: list[Problem], used: list[int], kept: list[int]) -> Judged:
+    prior = doubts(loads, kept)
+    weights = estimate(loads, parts, used, prior)
+    before, after = held_out(loads, parts, used, prior, lambda change: _of_urdf(loads.arm, change))
     return weights, before, after
+
+
+def _fewer(
+    loads: Loads, parts: list[Problem], used: list[int], found: Judged
+) -> tuple[list[int], Judged]:
+    """Bodies left as they are, one after the other, whichever leaves least of the joints that the
+    others make worse, until none is.
+    """
+    arm, kept = loads.arm, []
+
+    def harm(judged: Judged) -> tuple[int, float]:
+        share = judged[2] / judged[1]
+        return len(_worse(arm, used, *judged[1:])), float(np.sum(share**2))
+
+    open_bodies = [i for i, body in enumerate(arm.robot.dynamics.bodies) if body.mass > 0]
+    while harm(found)[0] and len(open_bodies) > 1:
+        tries = {i: _judged(loads, parts, used, [*kept, i]) for i in open_bodies}
+        best = min(tries, key=lambda i: harm(tries[i]))
+        kept, found = [*kept, best], tries[best]
+        open_bodies.remove(best)
+    return sorted(kept), found
+
+
+def _worse(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> list[str]:
+    """Joints, with what was and would be unexplained."""
+    return [
+        f"{arm.joints[i].name} ({after[k]:.3g} N m rms instead of {before[k]:.3g})"
+        for k, i in enumerate(used)
+        if after[k] > WORSE * before[k]
+    ]
 
 
 def _no_better(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> str:
     """Why other weights than the URDF's are not proposed; empty if they are."""
     if not np.sum((after / before) ** 2) < ENOUGH * len(used):
         return "The URDF explains held-out torques as well: no other is proposed."
-    worse = [arm.joints[i].name for k, i in enumerate(used) if after[k] > WORSE * before[k]]
+    worse = _worse(arm, used, before, after)
     if worse:
         return (
             f"No other URDF is proposed: held-out torques of {', '.join(worse)} would be explained "

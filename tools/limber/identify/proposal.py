@@ -18,6 +18,7 @@ from limber.identify.arm import Arm
 from limber.identify.findings import Findings
 from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import fragment, set_number
+from limber.output import write_again
 
 DIGITS = 5
 
@@ -25,15 +26,15 @@ DIGITS = 5
 def write(found: Findings, arm: Arm, name: str, folder: Path) -> list[Path]:
     files = _urdf(found, arm, name) if found.inertials else _yaml(found, arm, name)
     for file, content in files.items():
-        (folder / file).write_text(content, encoding="utf-8")
+        write_again(folder / file, content)
     return [folder / file for file in files]
 
 
 def _yaml(found: Findings, arm: Arm, name: str) -> dict[str, str]:
     text = arm.yaml.read_text(encoding="utf-8")
     changes, merged = {}, text
-    for value in found.values:
-        if value.path is None or value.proposed is None or value.path in changes:
+    for value in found.proposals():
+        if value.path in changes:
             continue
         number = f"{value.proposed:.{DIGITS}g}"
         changes[value.path] = yaml.safe_load(number)

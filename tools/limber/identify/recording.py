@@ -36,9 +36,12 @@ class Recording:
     motor_known: bool = True  # else `motor` is zero
 
 
-def read_logs(paths: list[Path], arm: Arm) -> list[Recording]:
-    """Only stretches in which the drives were on. Throws InputError if there is none."""
-    found = [_recording(state, arm) for path in paths for state in _stretches(Log(path))]
+def read_logs(paths: list[Path], arm: Arm, run: int | None = None) -> list[Recording]:
+    """Only stretches in which the drives were on, of one run of each log or of all. Throws
+    InputError if there is none.
+    """
+    parts = [part for path in paths for part in Log(path).each_run(run)]
+    found = [_recording(state, arm) for part in parts for state in _stretches(part)]
     if not found:
         raise InputError(
             f"the drives are never on for {LEAST_S:g} s without a gap: is this the log of a run?"
@@ -66,7 +69,7 @@ def _recording(state: np.ndarray, arm: Arm) -> Recording:
     if int(state["num_joints"][0]) != n:
         raise InputError(
             f"the log has {state['num_joints'][0]} joints, {arm.robot.name} has {n}: "
-            "give the arm of the run with --robot"
+            "give the arm of the run with --robot, or one of several runs with --run"
         )
     flags = messages.message_class("joint_state_t")
     bits = np.bitwise_and.reduce(state["joint_flags"][:, :n], axis=0)

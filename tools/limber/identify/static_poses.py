@@ -49,7 +49,10 @@ def _windows(path: Path, n: int) -> list[tuple[np.ndarray, np.ndarray, float]]:
     """(q, tau, off_m) of every window in which the arm is held and still, and was for a while: at
     first it may lie in a stand.
     """
-    log = Log(path)
+    return [window for part in Log(path).each_run() for window in _of_run(part, n)]
+
+
+def _of_run(log: Log, n: int) -> list[tuple[np.ndarray, np.ndarray, float]]:
     status, state = log.read("CONTROLLER_STATUS"), log.read("JOINT_STATE")
     _, of_status, of_state = np.intersect1d(status["state_seq"], state["seq"], return_indices=True)
     status, state = status[of_status], state[of_state]

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from limber.model.xml_file import read_xml
+
 DIGITS = 5
 
 
@@ -12,8 +14,7 @@ def with_inertials(urdf: Path, changes: dict[str, tuple[float, np.ndarray]]) -> 
     """`changes`: link -> mass, kg, and centre of mass in its own frame, m. Without any it is the
     file that a changed one is to be compared with.
     """
-    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-    root = ElementTree.parse(urdf, parser).getroot()
+    root = read_xml(urdf, comments=True)
     for link in root.findall("link"):
         if link.get("name") not in changes:
             continue

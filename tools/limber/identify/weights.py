@@ -8,13 +8,14 @@ the torques do not show stays as it was. Friction, offset and scale of the torqu
 errors of inertias, are estimated along with it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from limber.identify.doubt import ROTOR_SHARE, Loads, prior_std
 from limber.identify.regression import FLOOR, FOLDS, Fit, Unknowns, fit, solve
+from limber.model.dynamics import PARAMETERS
 
 SCALE = 0.02  # standard deviation of torque constants and of the scale of torque sensors
 MEASURED = 0.3  # of its prior deviation: combinations known better than this count as measured
@@ -66,8 +67,16 @@ def problems(
     return found
 
 
-def estimate(loads: Loads, parts: list[Problem], used: list[int]) -> Weights:
+def doubts(loads: Loads, kept: Collection[int]) -> np.ndarray:
+    """Standard deviations of the parameters; bodies in `kept` stay as the URDF has them."""
     prior = prior_std(loads.arm, loads.weights_share)
+    for i in kept:
+        prior[PARAMETERS * i : PARAMETERS * (i + 1)] = 0.0
+    return prior
+
+
+def estimate(loads: Loads, parts: list[Problem], used: list[int], prior: np.ndarray) -> Weights:
+    """`prior`: of doubts()."""
     unknowns = _unknowns(loads, parts, used, prior)
     size = len(prior)
     before = [_unexplained(part, size) for part in parts]
@@ -91,13 +100,13 @@ def held_out(
     loads: Loads,
     parts: list[Problem],
     used: list[int],
+    prior: np.ndarray,
     changed: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
     """Per joint, rms of what URDF and friction leave of torques at places that the fit has not
     seen, before and after; 2 x joints. `changed`: from a change of all parameters to the one that a
     URDF with other masses and centres makes. Offsets count as unexplained.
     """
-    prior = prior_std(loads.arm, loads.weights_share)
     unknowns, size = _unknowns(loads, parts, used, prior), len(prior)
     left = [[np.zeros(len(part.r)) for part in parts] for _ in range(2)]
     for out in places(loads):

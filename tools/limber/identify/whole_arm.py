@@ -5,8 +5,6 @@ first, and once more with the proposal, while the simulated arm stays what it wa
 and after is measured. From logs of a real arm, the sag after is what the weights let expect.
 """
 
-import shutil
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,7 +22,8 @@ from limber.identify.static_poses import StaticPoses, static_poses
 from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import set_number
 from limber.model.robot import copy_description, read_yaml
-from limber.paths import program
+from limber.output import copy_new, write_again
+from limber.paths import captured, program
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ def propose(arm: Arm, motion: Motion, weights_known: float | None, folder: Path)
     copy_description(arm.robot, folder)
     if weights.inertials:
         text = with_inertials(arm.robot.urdf, weights.inertials)
-        (folder / arm.robot.urdf.name).write_text(text, encoding="utf-8")
+        write_again(folder / arm.robot.urdf.name, text)
     changed_arm = load_arm(str(folder.resolve()))
     found = [
         weights,
@@ -53,11 +52,11 @@ def propose(arm: Arm, motion: Motion, weights_known: float | None, folder: Path)
     ]
     changed: dict[tuple[str, ...], Value] = {}
     text = (folder / "robot.yaml").read_text(encoding="utf-8")
-    for value in (value for findings in found for value in findings.values):
-        if value.path and value.proposed is not None and value.path not in changed:
+    for value in (value for findings in found for value in findings.proposals()):
+        if value.path not in changed:
             changed[value.path] = value
             text = set_number(text, value.path, f"{value.proposed:.{DIGITS}g}")
-    (folder / "robot.yaml").write_text(text, encoding="utf-8")
+    write_again(folder / "robot.yaml", text)
     return Proposal(folder, found, list(changed.values()))
 
 
@@ -104,7 +103,7 @@ def _sags(arm: Arm, proposal: Proposal, logs: list[Path], again: Path | None) ->
 def record(scenario: Path, log: Path) -> Path:
     """The log of the scenario in the lab."""
     command = [str(program("limber-lab")), str(scenario), "--log", str(log)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = captured(command)
     if done.returncode != 0:
         lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
         raise InputError(f"the lab could not run {scenario}: {lines[-1] if lines else 'no reason'}")
@@ -116,7 +115,7 @@ def scenario_with(scenario: Path, arm: Arm, proposal: Proposal, path: Path) -> P
     content = read_yaml(scenario)
     reality = content.get("reality") or {}
     beside = arm.robot.folder / reality.get("urdf", arm.robot.urdf.name)
-    shutil.copyfile(beside, proposal.folder / "as_it_was.urdf")
+    copy_new(beside, proposal.folder / "as_it_was.urdf")
     truth: dict[str, Any] = {}
     for value in proposal.changed:
         _put(truth, value.path, _as_it_was(arm, value))
@@ -125,7 +124,7 @@ def scenario_with(scenario: Path, arm: Arm, proposal: Proposal, path: Path) -> P
         "robot": str(proposal.folder.resolve()),
         "reality": truth | {"urdf": "as_it_was.urdf"},
     }
-    path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    write_again(path, yaml.safe_dump(content, sort_keys=False))
     return path
 
 

@@ -20,7 +20,10 @@ HEADER_BYTES = 4096
 ALIGNMENT = 8
 MAX_CHANNEL_BYTES = 63
 MAX_MESSAGE_BYTES = 1400  # common/decode_message.h
-NAME = re.compile(r"(?P<when>\d{8}T\d{6})-(?P<program>[a-z]+)-(?P<robot>.+?)-(?P<code>[^-]+)\.box")
+# `copy`: ~2 of the second run of a robot at the same time, and so on
+NAME = re.compile(
+    r"(?P<when>\d{8}T\d{6})-(?P<program>[a-z]+)-(?P<robot>.+?)(?P<copy>~\d+)?-(?P<code>[^-]+)\.box"
+)
 TOGETHER_s = 5.0  # boxes of one incident
 
 
@@ -41,6 +44,7 @@ class Incident:
     program: str
     robot: str
     code: str  # such as driver.VELOCITY; `killed`: its process did not end by itself
+    copy: str = ""  # of several runs of the robot at the same time
 
 
 def folder() -> Path:
@@ -60,16 +64,17 @@ def incidents() -> list[Incident]:
         name = NAME.fullmatch(path.name)
         if name is not None:
             when = datetime.strptime(name["when"], "%Y%m%dT%H%M%S").replace(tzinfo=UTC)
-            found.append(Incident(path, when, name["program"], name["robot"], name["code"]))
+            words = name["program"], name["robot"], name["code"], name["copy"] or ""
+            found.append(Incident(path, when, *words))
     return found
 
 
 def together(with_it: Incident, boxes: list[Incident]) -> list[Incident]:
-    """Those of the same robot and about the same time."""
+    """Those of the same run, about the same time."""
     return [
         box
         for box in boxes
-        if box.robot == with_it.robot
+        if (box.robot, box.copy) == (with_it.robot, with_it.copy)
         and abs((box.when - with_it.when).total_seconds()) <= TOGETHER_s
     ]
 

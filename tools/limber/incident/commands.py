@@ -18,6 +18,7 @@ from limber.log.events import Names
 from limber.log.reader import Log, log_file
 from limber.model.gains_table import law_names
 from limber.model.robot import Robot, copy_description, load_robot
+from limber.output import write_again
 from limber.paths import ROOT, existing_file, run_folder
 from limber.plot.commands import plot
 
@@ -62,7 +63,7 @@ def show(path: Path | None, out: Path | None, console: Console) -> None:
         console.print(f"{box.program}: {box.code}  [dim]{box.path}[/]", soft_wrap=True)
     robot = _robot_of(chosen.robot, target, console)
     names = Names(robot.joint_names if robot else [], law_names())
-    show_events(log_file(log), names, console)
+    show_events(log_file(log), None, names, console)
     for file in plot(log, [], None, Console(quiet=True)):
         if file.suffix == ".html" or file.stem == "overview":
             console.print(f"drawn: {file}", soft_wrap=True)
@@ -90,7 +91,7 @@ def _reproduce(log: Log, robot: Robot, file: Path, console: Console) -> None:
     if made is None:
         console.print("no scenario: the log holds no state in which all drives had answered")
         return
-    file.write_text(made.text(), encoding="utf-8")
+    write_again(file, made.text())
     console.print(f"the same in simulation: ./limber lab {file} --out DIR", soft_wrap=True)
     for note in made.notes:
         console.print(f"  {note}")

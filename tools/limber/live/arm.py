@@ -72,5 +72,10 @@ class Arm(Modes, Motions, World, AbstractContextManager):
                 end()
             self._link.close()
 
+    def detach(self) -> None:
+        """Ends this connection alone: the arm stays in its mode, and the lease with `client`."""
+        self._requested = False
+        self.close()
+
     def __exit__(self, *_error: object) -> None:
         self.close()

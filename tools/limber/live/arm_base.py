@@ -56,12 +56,16 @@ class ArmBase(Quantities):
 
     def states(self, hz: float = 50.0) -> Iterator[State]:
         """The newest state, `hz` times a second, without end; what the loop is too slow for is left
-        out.
+        out. In lock step it is a second of arm time.
         """
         period_s = 1.0 / number("hz", hz, 1e-3, 1000.0)
         due_s = time.monotonic()
         while True:
-            yield self.state
+            state = self.state
+            yield state
+            if self._link.in_lockstep():
+                self._link.pass_time(state.time_s + period_s)
+                continue
             due_s = max(due_s + period_s, time.monotonic())
             time.sleep(max(0.0, due_s - time.monotonic()))
 

@@ -32,6 +32,17 @@ class FaultError(RunError):
         self.faults = faults
 
 
+class RecoveryError(RunError):
+    """arm.recover() did not get the arm back to a running law.
+
+    `step`: wait, acknowledge, hold or active, whichever failed; `mode`: where the arm is now.
+    """
+
+    def __init__(self, step: str, mode: str, why: Exception) -> None:
+        super().__init__(f"recovery stopped at {step!r}, the arm is in {mode.upper()}: {why}")
+        self.step, self.mode = step, mode
+
+
 class NotReachedError(RunError):
     """A motion has ended away from its goal.
 

@@ -3,8 +3,21 @@
 from typing import Any
 
 from limber.live.arm_base import POWER_S, ArmBase, check_fault
-from limber.live.arm_errors import RefusedError, StackLostError
+from limber.live.arm_errors import (
+    FaultError,
+    RecoveryError,
+    RefusedError,
+    StackLostError,
+    WaitTimeoutError,
+)
+from limber.live.way import TAKES, way_from
 from limber.messages import message_class
+
+RELEASE = (
+    "A drive that was in error is enabled again only after idle, which releases all drives: "
+    "support the arm, then recover(release=True), or limber send --release recover."
+)
+STEADY_S = 2.0  # after the cause has gone the controller waits for steady states of the arm
 
 
 class Modes(ArmBase):
@@ -67,6 +80,52 @@ class Modes(ArmBase):
         """Ends FAULT or ESTOP, once the cause is gone; then the arm is in idle."""
         self._mode("ACKNOWLEDGE")
         self.wait(mode="idle", timeout_s=POWER_S)
+
+    def recover(self, timeout_s: float = POWER_S, release: bool | None = None) -> None:
+        """Back to a running law, from FAULT and ESTOP too: acknowledge(), hold(), activate(), as
+        far as they are needed; each is waited for, `timeout_s` at most. First cure the cause.
+
+        A drive that was in error is enabled again only after idle(), which releases all drives: an
+        arm without brakes sinks. `release`: whether it may; None: simulated arms only. Raises
+        RecoveryError with the step that failed and why.
+        """
+        release = self.simulated if release is None else release
+        steps = {"acknowledge": self._acknowledge_steady, "active": self.activate}
+        steps["hold"] = lambda limit_s: self._hold_again(limit_s, release)
+        step = "wait"
+        try:
+            self.wait(until=lambda state: bool(TAKES[state.mode.upper()]), timeout_s=timeout_s)
+            for step in way_from(self.mode.upper(), "active"):
+                steps[step](timeout_s)
+        except (FaultError, RefusedError, WaitTimeoutError) as error:
+            raise RecoveryError(step, self.mode, error) from error
+
+    def _hold_again(self, timeout_s: float, release: bool) -> None:
+        try:
+            self.hold(timeout_s)
+        except FaultError as fault:
+            if "DRIVE_NOT_ON" not in str(fault):
+                raise
+            if not release:
+                raise FaultError(self.mode, [*fault.faults, RELEASE]) from fault
+            self._acknowledge_steady(timeout_s)
+            self.idle(timeout_s)
+            self.wait(until=lambda state: state.drives == "off", timeout_s=timeout_s)
+            self.hold(timeout_s)
+
+    def _acknowledge_steady(self, timeout_s: float) -> None:
+        asked_s, first_s = float("-inf"), None
+        for state in self._link.statuses(timeout_s, "steady states of the arm"):
+            if state.time_s <= asked_s + 0.1:
+                continue
+            asked_s = state.time_s
+            first_s = asked_s if first_s is None else first_s
+            try:
+                self.acknowledge()
+                return
+            except RefusedError as refused:
+                if refused.code != "request.CAUSE_REMAINS" or asked_s - first_s > STEADY_S:
+                    raise
 
     def release(self) -> None:
         """Gives the lease back; the arm stays as it is."""

@@ -1,8 +1,8 @@
 """Messages of the user plane as they arrive: the newest of each channel, and all of a channel.
 
-One thread receives. LCM's own thread empties the socket without Python's lock into queues without
-a bound, so a busy script loses nothing; the callback only checks, counts and keeps the bytes.
-Decoding waits until somebody reads, and then numpy views all that has come as one array.
+A thread without Python's lock empties the socket (tools/receiver), so that a busy script loses
+nothing; one of Python's takes what has come and only checks, counts and keeps the bytes. Decoding
+waits until somebody reads, and then numpy views all that has come as one array.
 """
 
 import struct
@@ -14,15 +14,11 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
 
-import lcm
 import numpy as np
 
 from limber import messages
-from limber.errors import RunError
-from limber.live.network import CURE
+from limber.live.line import Line
 from limber.messages import SENDERS
-
-BURST = 1000  # messages handled before whoever waits is told
 
 
 class Stream:
@@ -138,33 +134,26 @@ class Receiver:
     """
 
     def __init__(self, *channels: str, interval_s: float = 1 / 60) -> None:
-        try:
-            self._lcm = lcm.LCM(messages.user_plane_url())
-        except RuntimeError as error:
-            raise RunError(f"LCM finds no multicast route: {CURE}") from error
+        self._line = Line(messages.user_plane_url())
         table = messages.channels()
         self.channels = {
             name: ChannelState(table[name].type_name, table[name].numbered) for name in channels
         }
         self._interval_s = interval_s
         self._news = threading.Condition()
-        self._subscriptions = [self._lcm.subscribe(name, self._take) for name in channels]
-        for subscription in self._subscriptions:
-            subscription.set_queue_capacity(0)
+        for name in channels:
+            self._line.subscribe(name, self._take)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._receive, name="limber receiver", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Frees the LCM instance too: while a callback refers to it, its own thread queues on."""
+        """Nothing more is received."""
         if self._stop.is_set():
             return
         self._stop.set()
         self._thread.join()
-        for subscription in self._subscriptions:
-            self._lcm.unsubscribe(subscription)
-        self._subscriptions.clear()
-        del self._lcm
+        self._line.close()
 
     def newest(self, channel: str) -> np.void | None:
         """The newest message as a numpy record, or None if there is none."""
@@ -182,18 +171,15 @@ class Receiver:
 
     def publish(self, channel: str, message: Any) -> None:
         """Sends a message; from any thread."""
-        self._lcm.publish(channel, message.encode())
+        self._line.publish(channel, message.encode())
 
     def _take(self, channel: str, data: bytes) -> None:
         self.channels[channel].take(data)
 
     def _receive(self) -> None:
-        handle = self._lcm.handle_timeout
         noted_s = 0.0
         while not self._stop.is_set():
-            handled = 0
-            while handled < BURST and handle(0 if handled else 100):
-                handled += 1
+            self._line.handle_timeout(100)
             now_s = time.monotonic()
             if now_s - noted_s > 0.1:
                 noted_s = now_s
@@ -201,8 +187,7 @@ class Receiver:
                     state.window.append((now_s, state.count))
             with self._news:
                 self._news.notify_all()
-            if handled < BURST:
-                self._stop.wait(self._interval_s)
+            self._stop.wait(self._interval_s)
 
 
 def driver_is_running(wait_s: float = 0.3) -> bool:

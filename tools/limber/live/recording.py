@@ -35,7 +35,8 @@ class Recording:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=self._notes,
-            text=True,
+            encoding="utf-8",
+            errors="replace",
             start_new_session=True,  # Ctrl-C ends the script, and the script the recording
         )
         end_s = time.monotonic() + STARTS_S

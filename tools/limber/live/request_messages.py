@@ -2,9 +2,11 @@
 
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from limber.errors import InputError
+from limber.live.meant import LENGTHS, check_lengths
 from limber.live.values import number, numbers, unit
 from limber.messages import message_class
 
@@ -29,6 +31,7 @@ def goal(joints: int, **given: Any) -> Any:
     known = [key for keys in _WAYS.values() for key in keys] + list(_MORE)
     if unknown := [key for key in given if key not in known]:
         raise InputError(f"a goal has no {unknown[0]}; expected: {', '.join(known)}")
+    check_lengths({key: np.ravel(given[key]).tolist() for key in LENGTHS if key in given})
     ways = [kind for kind, keys in _WAYS.items() if any(key in given for key in keys)]
     if len(ways) > 1 or not (ways or {"force_N", "torque_Nm"} & given.keys()):
         raise InputError(

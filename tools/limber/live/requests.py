@@ -11,7 +11,7 @@ from limber.live.arm_errors import RefusedError, StackLostError
 from limber.live.stack_link import StackLink
 from limber.problems import problem
 
-ANSWER_S = 1.0
+ANSWER_S = 5.0  # for a machine that is busy
 CHANNELS = {
     "mode_request_t": "MODE_REQUEST",
     "compliance_goal_t": "COMPLIANCE_GOAL",

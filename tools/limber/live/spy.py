@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import subprocess
 import sys
 from hashlib import sha256
 from pathlib import Path
@@ -13,7 +12,7 @@ import lcm
 from limber import messages
 from limber.errors import RunError
 from limber.live.network import require_multicast
-from limber.paths import ROOT
+from limber.paths import ROOT, captured
 
 TYPES = ROOT / "lcmtypes"
 FOLDER = ROOT / "build" / "spy"
@@ -89,7 +88,7 @@ def _require_windows(java: str) -> None:
 
 
 def _run(command: list[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = captured(command)
     if done.returncode != 0:
         last = (done.stderr or done.stdout).strip().splitlines()[-1:]
         raise RunError(f"{Path(command[0]).name} failed: {''.join(last)}")

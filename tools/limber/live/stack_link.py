@@ -16,8 +16,12 @@ SENDERS = {
     "CONTROLLER_STATUS": "limber-controller",
     "ROBOT_INFO": "limber-controller",
 }
-FOUND_S = 1.0  # within this time the stack is heard, or there is none
+FOUND_S = 1.0  # within this time something of the stack is heard, or there is none
+COMPLETE_S = 30.0  # and all of it: in lock step on a busy machine its time passes slowly
 SILENT_S = 1.0  # after this time it is lost; a busy machine stands still for tenths of a second
+WAITING_S = 20.0  # the same in lock step, where simulated time waits for the machine
+LOCKSTEP_SESSION = 1  # of every run in lock step (common/run_id.h)
+PATIENCE = 20  # no wait for so much arm time takes longer than so many times it by the clock
 INTERVAL_S = 0.002  # age of the newest values, at most, beside the channel's own period
 
 
@@ -39,7 +43,9 @@ class StackLink:
 
     def _find(self, robot: str | None) -> None:
         heard = [self.receiver.channels[name] for name in SENDERS]
-        if not self.receiver.wait_for(lambda: all(state.count for state in heard), FOUND_S):
+        self.receiver.wait_for(lambda: any(state.count for state in heard), FOUND_S)
+        patience_s = COMPLETE_S if any(state.count for state in heard) else 0.0
+        if not self.receiver.wait_for(lambda: all(state.count for state in heard), patience_s):
             silent = next(who for name, who in SENDERS.items() if not self._count(name))
             raise NoStackError(
                 f"{silent} is not heard at {messages.user_plane_url().split('?')[0]}: start a "
@@ -69,13 +75,31 @@ class StackLink:
         """Raises StackLostError if driver or controller are silent, or this end is closed."""
         if self._closed:
             raise StackLostError("this Arm is closed: make another")
+        longest_s = WAITING_S if self.in_lockstep() else SILENT_S
         for channel in ("JOINT_STATE", "CONTROLLER_STATUS"):
             age_s = self.receiver.channels[channel].age_s()
-            if age_s > SILENT_S:
+            if age_s > longest_s:
                 raise StackLostError(
                     f"{SENDERS[channel]} has been silent for {age_s:.1f} s: see whether it still "
                     "runs, and its log"
                 )
+
+    def in_lockstep(self) -> bool:
+        """Arm time is simulated: it waits for the machine, or outruns the clock."""
+        state = self.receiver.newest("JOINT_STATE")
+        return state is not None and int(state["session"]) == LOCKSTEP_SESSION
+
+    def pass_time(self, until_s: float) -> None:
+        """Returns when arm time is `until_s`, or that of a new session."""
+        start_s = self._time_s()
+        while start_s <= self._time_s() < until_s:
+            self.check()
+            self.receiver.wait_for(lambda: self._time_s() >= until_s, 0.1)
+
+    def _time_s(self) -> float:
+        """Arm time of the newest state."""
+        state = self.receiver.newest("JOINT_STATE")
+        return 0.0 if state is None else 1e-9 * float(state["time_ns"])
 
     def state(self) -> State:
         return State(*self.records(), self.joints)
@@ -83,10 +107,11 @@ class StackLink:
     def statuses(self, timeout_s: float, what: str) -> Iterator[State]:
         """A state for every CONTROLLER_STATUS from now on, none left out.
 
-        Raises StackLostError, or WaitTimeoutError with `what` after `timeout_s`.
+        Raises StackLostError, or WaitTimeoutError with `what` after `timeout_s` of arm time.
         """
         stream = self.receiver.stream("CONTROLLER_STATUS")
-        end_s = time.monotonic() + timeout_s
+        wall_end_s = time.monotonic() + PATIENCE * timeout_s
+        end_s = self._time_s() + timeout_s
         try:
             while True:
                 stream.wait(min(0.1, timeout_s))
@@ -95,7 +120,7 @@ class StackLink:
                     joint_state = self.receiver.newest("JOINT_STATE")
                     assert joint_state is not None
                     yield State(joint_state, status, self.joints)
-                if time.monotonic() > end_s:
+                if self._time_s() > end_s or time.monotonic() > wall_end_s:
                     raise WaitTimeoutError(f"{what}: not within {timeout_s:g} s")
         finally:
             stream.close()

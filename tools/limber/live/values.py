@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from limber.errors import InputError
+from limber.live.meant import meant
 
 
 def numbers(key: str, value: ArrayLike, shape: tuple[int, ...], one_for_all: bool = False):
@@ -43,10 +44,15 @@ def unit(key: str, value: ArrayLike, size: int) -> np.ndarray:
 
 
 def one_of(what: str, word: str, known: Iterable[str]) -> str:
-    """`word`, if it is known; else an error with the nearest, or all."""
+    """`word`, if it is known; else an error with what it may mean, or all."""
     known = list(known)
     if word in known:
         return word
-    near = get_close_matches(str(word), known, 1)
-    hint = f"did you mean {near[0]!r}?" if near else f"expected one of: {', '.join(known)}"
+    near = [one for one in known if str(word) in one.split("_")]  # of a part, all that have it
+    near = near or get_close_matches(str(word), known, 1)
+    hint = f"did you mean {' or '.join(map(repr, near))}?"
+    if not near:
+        hint = f"expected one of: {', '.join(known)}"
+        if meant(str(word)):
+            hint = f"as a request it is {meant(str(word))}"
     raise InputError(f"{what} {word!r} is not known; {hint}")

@@ -27,6 +27,8 @@ PERIODIC = (
     "ROBOT_INFO",
 )
 BAR_WIDTH = 16
+STATE_WIDTH, TIP_WIDTH = 36, 43  # beside each other in 80 columns, with all words whole
+JOINTS_WIDTH = 66  # of the joints' table, without their names
 CAUSED = ("FAULT", "ESTOP", "SOFT_STOP")  # modes in which what caused them still holds
 GOOD, WARN, BAD = "green", "yellow", "bold red"
 
@@ -82,16 +84,20 @@ class View:
         except LimberError:  # on another machine: names alone
             self.joints = [JointInfo(name, -np.inf, np.inf, 0.0) for name in info.joints]
 
-    def render(self) -> Group:
+    def render(self, width: int = 120) -> Group:
+        """`width`: columns there are."""
         self._find_robot()
         state = self.receiver.newest("JOINT_STATE")
         status = self.receiver.newest("CONTROLLER_STATUS")
-        panels = [Panel(self._state(state, status), title=self.robot or "arm", width=39)]
-        panels.append(Panel(self._tip(status), title="tip", width=39))
+        title = Text(self.robot or "arm")
+        panels = [Panel(self._state(state, status), title=title, padding=0, width=STATE_WIDTH)]
+        panels.append(Panel(self._tip(status), title="tip", padding=0, width=TIP_WIDTH))
         return Group(
             Columns(panels),
             *self._problems(state, status),
-            self._joints(state) if state is not None else Text("no JOINT_STATE yet", style=WARN),
+            self._joints(state, width)
+            if state is not None
+            else Text("no JOINT_STATE yet", style=WARN),
             self._buses(self.receiver.newest("DRIVER_STATUS")),
             self._channels(),
         )
@@ -104,6 +110,7 @@ class View:
         if state is not None:
             found += [(problems.problem("sensor", state["sensor_state"]), "")]
             found += [(problems.problem("stop", state["emergency_stop"]), "")]
+            found += self._joint_problems(state)
         driver = self.receiver.newest("DRIVER_STATUS")
         if driver is not None:
             states = driver["bus_state"][: int(driver["num_buses"])]
@@ -112,6 +119,14 @@ class View:
             reason = problems.problem("controller", status["reason"])
             found.append(self._at(reason, status["reason_joint"]))
         return [_sentences(problem, where) for problem, where in found if problem is not None]
+
+    def _joint_problems(self, state: np.void) -> list[tuple[Problem | None, str]]:
+        """One of each kind, with the joints that have it."""
+        found: dict[str, tuple[Problem, list[str]]] = {}
+        for i in range(int(state["num_joints"])):
+            for problem in problems.problems_of_bits("joint", state["joint_flags"][i]):
+                found.setdefault(problem.code, (problem, []))[1].append(self._joint_name(i))
+        return [(problem, ", ".join(names)) for problem, names in found.values()]
 
     def _at(self, problem: Problem | None, joint: int) -> tuple[Problem | None, str]:
         return problem, self._joint_name(int(joint)) if joint >= 0 else ""
@@ -128,18 +143,21 @@ class View:
         return last.count == 0 or time.monotonic() - last.last_s > max(timeout_s, 0.2)
 
     def _state(self, state: np.void | None, status: np.void | None) -> Table:
-        table = Table.grid(padding=(0, 2))
+        table = Table.grid(padding=(0, 1))
         if status is None or self._stale("CONTROLLER_STATUS"):
             table.add_row("mode", Text("STALE: no controller", style=BAD))
         if status is not None:
             mode = _mode(status)
             law = int(status["law"])
-            limits = [p.code for p in problems.problems_of_bits("limit", status["limits"])]
+            limits = [
+                p.code.removeprefix("limit.")
+                for p in problems.problems_of_bits("limit", status["limits"])
+            ]
             reason = problems.problem("controller", status["reason"])
             table.add_row("mode", Text(mode, style=GOOD if mode in ("HOLD", "ACTIVE") else WARN))
             table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
             if reason is not None and mode in CAUSED:
-                table.add_row("because", Text(reason.code, style=BAD))
+                table.add_row("because", Text(reason.code.removeprefix("controller."), style=BAD))
             table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
             for name, setting in _settings(status).items():
                 table.add_row(name, setting)
@@ -180,23 +198,25 @@ class View:
     def _joint_name(self, index: int) -> str:
         return self.joints[index].name if index < len(self.joints) else f"joint {index + 1}"
 
-    def _joints(self, state: np.void) -> Table:
+    def _joints(self, state: np.void, width: int) -> Table:
+        """Without the bars where names are too long for them."""
         numbers = (">speed", ">torque", ">applied", ">°C", ">age")
-        table = tables.table("<joint", ">position", "<", *numbers, "<", padding=(0, 1))
-        for i in range(int(state["num_joints"])):
+        names = [self._joint_name(i) for i in range(int(state["num_joints"]))]
+        bars = JOINTS_WIDTH + max(map(len, names), default=0) <= width
+        place = ("<",) if bars else ()
+        table = tables.table("~joint", ">position", *place, *numbers, padding=(0, 1))
+        for i, name in enumerate(names):
             q = float(state["q"][i])
-            wrong = problems.problems_of_bits("joint", state["joint_flags"][i])
             age = int(state["age_cycles"][i])
             table.add_row(
-                self._joint_name(i),
+                Text(name),
                 f"{q:+.3f}",
-                self._bar(i, q),
+                *((self._bar(i, q),) if bars else ()),
                 f"{float(state['v'][i]):+.3f}",
                 f"{float(state['tau'][i]):+.2f}",
                 f"{float(state['tau_applied'][i]):+.2f}",
                 f"{float(state['temperature_degC'][i]):.0f}",
                 Text(f"{age}", style=BAD if age > 1 else ""),
-                Text(" ".join(problem.code for problem in wrong), style=BAD),
             )
         return table
 
@@ -248,9 +268,11 @@ def watch(laws: list[str], once: bool, console: Console, rate_hz: float = 10.0) 
         view = View(receiver, laws)
         if once:
             time.sleep(1.0)
-            console.print(view.render())
+            console.print(view.render(console.width))
             return
-        with Live(view.render(), console=console, auto_refresh=False, screen=True) as live:
+        with Live(
+            view.render(console.width), console=console, auto_refresh=False, screen=True
+        ) as live:
             while True:
                 time.sleep(1.0 / rate_hz)
-                live.update(view.render(), refresh=True)
+                live.update(view.render(console.width), refresh=True)

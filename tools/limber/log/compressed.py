@@ -14,7 +14,7 @@ import zstandard
 from limber.errors import RunError
 
 FRAME = zstandard.FRAME_HEADER
-PIECE = 1 << 17
+PIECE = 1 << 11  # compressed bytes at a time: a block of four may be 128 KiB unpacked
 
 
 def unpack(data: mmap.mmap, path: Path) -> tuple[IO[bytes], int, int]:

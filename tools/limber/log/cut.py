@@ -14,17 +14,19 @@ from limber.log.results import complete_or_nothing
 
 @dataclass(frozen=True)
 class Part:
-    """`begin_s`, `end_s`: since the first message. No channels: all."""
+    """`begin_s`, `end_s`: since the first message, of a run if one is named. No channels: all."""
 
     begin_s: float = 0.0
     end_s: float = float("inf")
     channels: tuple[str, ...] = ()
+    run: int | None = None
 
 
 def cut(path: Path, out: Path, part: Part, console: Console) -> None:
     if not out.name.endswith((".lcmlog", ".lcmlog.zst")):
         raise InputError(f"--out {out}: end it in .lcmlog, or .lcmlog.zst to compress it")
     log = Log(path)
+    log = log if part.run is None else log.of_run(part.run)
     channels = log.chosen(part.channels)
     if part.begin_s >= min(part.end_s, log.length_s):
         raise InputError(f"--from {part.begin_s:g}: the log ends after {log.length_s:g} s")

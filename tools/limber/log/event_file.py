@@ -4,13 +4,17 @@ LCM's own reader stops at the first damaged byte. This one continues at the next
 counts what it skipped.
 """
 
+import fcntl
 import mmap
+import signal
 import struct
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO, NoReturn
 
-from limber.errors import InputError
+from limber.errors import InputError, RunError
 from limber.log import compressed
 
 SYNC = b"\xed\xa1\xda\x01"
@@ -53,6 +57,7 @@ def contents(path: Path, damage: Damage) -> mmap.mmap:
     if path.stat().st_size == 0:
         raise InputError(f"{path} is empty: nothing was recorded")
     with open(path, "rb") as file:
+        _watch(file, path)
         data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     if data[:4] != compressed.FRAME and path.suffix != ".zst":
         return data
@@ -64,6 +69,22 @@ def contents(path: Path, damage: Damage) -> mmap.mmap:
             raise InputError(f"{path} is no compressed log: it holds no whole block")
         plain.flush()
         return mmap.mmap(plain.fileno(), 0, access=mmap.ACCESS_READ)
+
+
+def _watch(file: IO[bytes], path: Path) -> None:
+    """A file that somebody else is about to cut or to write to is given up: what is mapped here and
+    is no more would end the program without a word. A lease, fcntl(2), has the other one wait until
+    then; where there is none (another owner, a recorder that is still at it), there is no guard.
+    """
+
+    def give_up(*_: object) -> NoReturn:
+        raise RunError(
+            f"{path} is cut, or written to, while it is read: read it again, or a copy of it"
+        )
+
+    with suppress(OSError, ValueError):  # ValueError: not in the main thread
+        signal.signal(signal.SIGIO, give_up)
+        fcntl.fcntl(file, fcntl.F_SETLEASE, fcntl.F_RDLCK)
 
 
 def events(data: mmap.mmap, damage: Damage) -> Iterator[Event]:

@@ -36,6 +36,11 @@ class Events:
     def __len__(self) -> int:
         return len(self.offsets)
 
+    def between(self, begin: int, end: int) -> "Events":
+        """Those whose data begin in this part of the file."""
+        rows = slice(*np.searchsorted(self.offsets, [begin, end]))
+        return Events(self.offsets[rows], self.sizes[rows], self.stamps_us[rows])
+
 
 NO_EVENTS = Events(*np.empty((3, 0), np.int64))
 

@@ -1,6 +1,8 @@
 """Reads LCM event logs: whole channels at once, damaged files as far as they are good."""
 
+import copy
 from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -9,12 +11,15 @@ from numpy.lib import recfunctions
 
 from limber import messages
 from limber.errors import InputError
+from limber.log import runs
 from limber.log.event_file import Damage, contents, events
 from limber.log.event_index import NO_EVENTS, bytes_of, index
 from limber.paths import existing_file
 
 LOG_NAMES = ("run.lcmlog", "run.lcmlog.zst")  # what a run leaves, plain or compressed
 PIECE = 1 << 14  # messages read at a time where only some fields count
+OBJECTS = 1 << 10  # decoded at a time
+MOST_LOST = 10**7  # in a row: hours without a message; a greater gap is no loss
 
 
 class Log:
@@ -28,17 +33,72 @@ class Log:
         self.channels = index(self._data, self._damage)
         if not self.channels:
             raise InputError(f"{self.path} is no LCM event log: it holds no event")
+        self._span = (0, len(self._data))
+
+    @cached_property
+    def runs(self) -> int:
+        """How many runs it holds, one after the other; see runs.py."""
+        return len(self._borders) - 1
+
+    @cached_property
+    def _borders(self) -> list[int]:
+        """Where the runs begin in the file, and where the last one ends."""
+        begin, end = self._span
+        by = next((channel for channel in runs.BY if channel in self.channels), None)
+        if by is None:
+            return [begin, end]
+        wire = messages.dtype_of(self.type_of(by))
+        fields = [name for name in ("time_ns", "session") if name in wire.names]
+        records = self.fields(by, *fields)
+        fits = self._good(by)
+        offsets = self.channels[by].offsets[fits]
+        session = records["session"] if "session" in fields else None
+        inside = [
+            runs.border(self.channels, int(offsets[row - 1]), int(offsets[row]))
+            for row in runs.breaks(records["time_ns"], session)
+        ]
+        return [begin, *inside, end]
+
+    def of_run(self, number: int) -> "Log":
+        """The part that is one run, from 1 on. Raises InputError."""
+        if not 1 <= number <= self.runs:
+            raise InputError(f"--run {number}: {self.path} holds {self.runs} runs, from 1 on")
+        if self.runs == 1:
+            return self
+        begin, end = self._borders[number - 1 : number + 1]
+        part = copy.copy(self)
+        part.__dict__ = {
+            key: value for key, value in self.__dict__.items() if key not in ("runs", "_borders")
+        }
+        part._arrays, part._span = {}, (begin, end)
+        part.channels = {
+            name: chosen
+            for name, found in self.channels.items()
+            if len(chosen := found.between(begin, end))
+        }
+        return part
+
+    def each_run(self, chosen: int | None = None) -> list["Log"]:
+        """All runs, or the one that is chosen."""
+        numbers = range(1, self.runs + 1) if chosen is None else [chosen]
+        return [self.of_run(number) for number in numbers]
+
+    def one_run(self, chosen: int | None = None) -> tuple["Log", str]:
+        """The chosen run, else the last one; and, if there are several, which one it is."""
+        number = self.runs if chosen is None else chosen
+        several = f"run {number} of {self.runs}" if self.runs > 1 else ""
+        return self.of_run(number), several
 
     def whole_events(self, channels: Collection[str]) -> Iterator[tuple[int, bytes]]:
         """Time stamp in µs and bytes with header of the whole events, in the order of the file."""
-        for begin, _, _, stamp_us, channel, end in events(self._data, Damage()):
-            if channel in channels:
+        for begin, start, _, stamp_us, channel, end in events(self._data, Damage()):
+            if channel in channels and self._span[0] <= start < self._span[1]:
                 yield stamp_us, self._data[begin:end]
 
     def in_order(self, channels: Collection[str]) -> Iterator[tuple[int, str, bytes]]:
         """Time stamp in µs, channel and data of the whole events, in the order of the file."""
         for _, start, size, stamp_us, channel, _ in events(self._data, Damage()):
-            if channel in channels:
+            if channel in channels and self._span[0] <= start < self._span[1]:
                 yield stamp_us, channel, self._data[start : start + size]
 
     def type_of(self, channel: str) -> str | None:
@@ -105,7 +165,12 @@ class Log:
 
     def decode(self, channel: str) -> list[Any]:
         """Messages of any limber channel as objects, one by one (slow; for events with strings)."""
-        return [message for _, message in self.objects(channel, 0, None)]
+        return list(self.each(channel))
+
+    def each(self, channel: str) -> Iterator[Any]:
+        """The same, a few in memory at a time."""
+        for start in range(0, len(self.channels.get(channel, ())), OBJECTS):
+            yield from (message for _, message in self.objects(channel, start, start + OBJECTS))
 
     def objects(self, channel: str, first: int, last: int | None) -> list[tuple[int, Any]]:
         """Of the messages first to last (not included) of any limber channel those of this version:
@@ -128,30 +193,45 @@ class Log:
         return decoded
 
     def undecodable(self, channel: str) -> int:
-        type_name = self.type_of(channel)
+        """Messages that are not of the channel's type, of another version of it, or damaged."""
+        type_name, count = self.type_of(channel), len(self.channels[channel])
         if type_name is None:
-            return len(self.channels[channel])
-        fingerprint = messages.fingerprint_of(type_name).to_bytes(8, "big")
-        offsets = self.channels[channel].offsets.tolist()
-        starts = (self._data[offset : offset + 8] for offset in offsets)
-        return sum(start != fingerprint for start in starts)
+            return count
+        if messages.dtype_of(type_name) is not None:
+            return count - int(np.count_nonzero(self._good(channel)))
+        return count - sum(1 for _ in self.each(channel))
+
+    def _good(self, channel: str) -> np.ndarray:
+        """Which messages of a fixed-size channel are of this version."""
+        events, type_name = self.channels[channel], self.type_of(channel)
+        good = events.sizes == messages.dtype_of(type_name).itemsize
+        starts = bytes_of(self._data, events.offsets[good], 8).view(">u8")[:, 0]
+        good[good] = starts == messages.fingerprint_of(type_name)
+        return good
 
     def lost(self, channel: str) -> int:
         """Messages that never arrived, by gaps in the sequence number (the first field of each) of
         each sender. Requests and answers have no numbers that would tell: 0.
         """
+        return self._gaps(channel)[0]
+
+    def jumps(self, channel: str) -> int:
+        """Gaps that are no losses: a damaged number, or another sender's."""
+        return self._gaps(channel)[1]
+
+    def _gaps(self, channel: str) -> tuple[int, int]:
         row = messages.channels().get(channel)
         if row is None or not row.numbered:
-            return 0
+            return 0, 0
         try:
             number, sender = _number_and_sender(row.type_name)
             records = self.fields(channel, *filter(None, (number, sender)))
         except InputError:
-            return 0  # of another version: nothing in it is known
+            return 0, 0  # of another version: nothing in it is known
         numbers = records[number]
-        if sender is None:
-            return count_gaps(numbers)
-        return sum(count_gaps(numbers[records[sender] == s]) for s in np.unique(records[sender]))
+        senders = np.zeros(len(numbers)) if sender is None else records[sender]
+        parts = [numbers[senders == s] for s in np.unique(senders)]
+        return sum(map(count_gaps, parts)), sum(map(count_jumps, parts))
 
     def stamps_s(self, channel: str) -> np.ndarray:
         return self.channels[channel].stamps_us * 1e-6
@@ -204,10 +284,19 @@ def time_s(records: np.ndarray) -> np.ndarray:
     return records["time_ns"] * 1e-9
 
 
-def count_gaps(sequence: np.ndarray) -> int:
+def count_gaps(sequence: np.ndarray) -> tuple[int, int]:
     """Missing numbers. A number that goes back is a new run of the sender, not a loss."""
-    steps = np.diff(sequence)
+    steps = np.diff(sequence)[~_far(sequence)]
     return int((steps[steps > 1] - 1).sum())
+
+
+def count_jumps(sequence: np.ndarray) -> int:
+    """Steps, either way, by more than can be lost."""
+    return int(np.count_nonzero(_far(sequence)))
+
+
+def _far(sequence: np.ndarray) -> np.ndarray:
+    return np.abs(np.diff(np.asarray(sequence, float))) > MOST_LOST  # integers may wrap around
 
 
 def log_file(path: Path) -> Path:

@@ -14,6 +14,7 @@ from limber.model.robot import Robot
 from limber.model.validation import run_checker
 from limber.problems import MORE, Problem, groups, problem, sentence
 
+JOINTS = np.arange(16)
 AT_REST = 0.02  # rad/s or m/s
 
 
@@ -165,7 +166,7 @@ class Evidence:
         if not len(rows):
             return "; ".join(parts) or "the log ends"
         moving = np.flatnonzero((np.abs(rows["v"]) > AT_REST).any(axis=1))
-        moved = float(np.abs(rows["q"] - rows["q"][0]).max())
+        moved = _moved(rows)
         if not len(moving):
             rest = "the arm stood still"
         elif moving[-1] == len(rows) - 1:
@@ -173,6 +174,15 @@ class Evidence:
         else:
             rest = f"the arm at rest {_after(float(time_s(rows)[moving[-1]]) - start_s)}"
         return "; ".join([*parts, f"{rest}; no joint moved by more than {moved:.2g} rad or m"])
+
+
+NEVER = np.iinfo(np.int32).max  # age_cycles of a joint that has not been read yet
+
+
+def _moved(rows: np.ndarray) -> float:
+    """Of any joint, from its first reading on."""
+    away = np.abs(rows["q"] - rows["q"][np.argmax(rows["age_cycles"] != NEVER, axis=0), JOINTS])
+    return float(np.where(rows["age_cycles"] != NEVER, away, 0.0).max())
 
 
 def _before(records: np.ndarray, end_s: float) -> np.ndarray:

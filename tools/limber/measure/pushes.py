@@ -142,10 +142,11 @@ def _measure(
     if not rests.covered_by(truth):
         return None
     gains = scenario.gains_at(push.at_s)
+    K_x = gains.in_base(_goal_axes(truth, status, rests))
     n = len(scenario.robot.joints)
     q = {when: rests.mean(truth, "q", when)[:n] for when in ("before", "during")}
     J = scenario.robot.chain.jacobian(q["during"])
-    G = _response(scenario, push, q)
+    G = _response(scenario, push, q, K_x)
     direction = _direction(push.wrench)
     if G is None or not direction @ G @ J.T @ direction > 0:
         return None
@@ -169,23 +170,39 @@ def _measure(
         bound,
         took,
         _offset_after(truth, rests, scenario),
-        float(direction @ gains.K_x @ direction) if gains.law == statics.SPRINGS else None,
+        float(direction @ K_x @ direction) if gains.law == statics.SPRINGS else None,
         scenario.friction and gains.friction_observed,
         scenario.friction and gains.dithered,
     )
 
 
-def _response(scenario: Scenario, push: Push, q: dict[str, np.ndarray]) -> np.ndarray | None:
-    """G of the law at the push, 6xn. Springs are fitted where the arm was before it."""
+def _goal_axes(truth: np.ndarray, status: np.ndarray, rests: _Rests) -> np.ndarray:
+    """R_BD while the arm is pushed; without the controller's word the tip's before the push."""
+    told = len(status) and rests.covered_by(status)
+    records, field, when = (status, "quat_BD", "during") if told else (truth, "quat_BT", "before")
+    low, high = getattr(rests, when)
+    t = time_s(records)
+    quaternions = records[field][(t >= low) & (t < high)]
+    if not np.linalg.norm(quaternions, axis=1).all():
+        return np.eye(3)  # no pose is held
+    return Rotation.from_quat(quaternions, scalar_first=True).mean().as_matrix()
+
+
+def _response(
+    scenario: Scenario, push: Push, q: dict[str, np.ndarray], K_x: np.ndarray
+) -> np.ndarray | None:
+    """G of the law at the push, 6xn; K_x in base axes. Springs are fitted where the arm was before
+    it.
+    """
     robot, gains = scenario.robot, scenario.gains_at(push.at_s)
     J = robot.chain.jacobian(q["during"])
     if gains.law != statics.SPRINGS:
-        return statics.tip_response(gains.law, J, gains.K_x, gains.K_q)
+        return statics.tip_response(gains.law, J, K_x, gains.K_q)
     pairs = [joint.pair for joint in robot.joints if joint.pair is not None]
     if scenario.friction or len(pairs) < len(robot.joints):
         return None  # what friction in the motors holds back is not predicted here
     weight = robot.dynamics.gravity_torque(q["before"][None])[0]
-    sigma = statics.springs_fitted(robot.chain.jacobian(q["before"]), gains.K_x, weight, pairs)
+    sigma = statics.springs_fitted(robot.chain.jacobian(q["before"]), K_x, weight, pairs)
     return statics.springs_response(J, sigma, robot.dynamics.gravity_slope(q["during"]))
 
 

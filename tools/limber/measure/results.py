@@ -11,6 +11,7 @@ from rich.table import Table
 from limber import tables
 from limber.errors import InputError
 from limber.measure.faults import Fault
+from limber.output import write_again
 
 
 @dataclass
@@ -69,7 +70,7 @@ class Summary:
             "results": [_as_json(result) for result in self.results],
             "faults": [fault.as_json() for fault in self.faults],
         }
-        path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_again(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
 
     def table(self, title: str) -> Table:
         table = tables.table("<", ">measured", ">expected", "<", "~", title=title)

@@ -4,14 +4,14 @@ Links joined by fixed joints are one body; whatever branches off the chain belon
 hangs from, its own joints at zero. Links that do not move are not read.
 """
 
-import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from limber.model.urdf import MOVING, Chain, carrier, numbers_of, read_joints
+from limber.model.urdf import MOVING, Chain, carrier, numbers_of, pose_of, read_joints
+from limber.model.xml_file import read_xml
 
 
 @dataclass(frozen=True)
@@ -58,23 +58,23 @@ def read_inertials(urdf: Path) -> dict[str, Inertial]:
     return {link: inertial for link, inertial in read if inertial is not None}
 
 
-def _inertial_elements(urdf: Path) -> list[tuple[str, ElementTree.Element]]:
-    links = ElementTree.parse(urdf).getroot().findall("link")
+def _inertial_elements(urdf: Path) -> list[tuple[str, Element]]:
+    links = read_xml(urdf).findall("link")
     found = ((link.get("name"), link.find("inertial")) for link in links)
     return [(link, element) for link, element in found if element is not None]
 
 
-def _inertial(element: ElementTree.Element) -> Inertial | None:
+def _inertial(element: Element) -> Inertial | None:
     mass = numbers_of(element.find("mass"), "value", "0")[0]
-    origin, tensor = element.find("origin"), element.find("inertia")
+    X, tensor = pose_of(element.find("origin")), element.find("inertia")
     xx, xy, xz, yy, yz, zz = (
         numbers_of(tensor, key, "0")[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     )
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     if mass == 0 and not inertia.any():
         return None
-    R = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0")).as_matrix()
-    return Inertial(mass, numbers_of(origin, "xyz", "0 0 0"), R @ inertia @ R.T)
+    R = X[:3, :3]
+    return Inertial(mass, X[:3, 3], R @ inertia @ R.T)
 
 
 def _lump(child: str, parts: list[tuple[str, Inertial, np.ndarray]]) -> Body:

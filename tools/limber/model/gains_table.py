@@ -1,12 +1,11 @@
 """What the controller lists of its gains and laws: keys, kinds, units, ranges, words."""
 
 import json
-import subprocess
 from functools import cache
 from typing import Any
 
 from limber.errors import RunError
-from limber.paths import program
+from limber.paths import captured, program
 
 MAPPED = ("salisbury", "congruence_stiffness", "mapped_joint_impedance", "variable_stiffness")
 """Laws with a goal for joints whose stiffness is K_x."""
@@ -18,7 +17,7 @@ def listing(robot: str | None = None) -> dict[str, Any]:
     command = [str(program("limber-controller")), "--list-laws", "--json"]
     if robot is not None:
         command += ["--robot", robot]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = captured(command)
     if done.returncode != 0:
         raise RunError(f"limber-controller does not list its laws: {done.stderr.strip()}")
     return json.loads(done.stdout)

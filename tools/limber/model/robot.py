@@ -1,6 +1,5 @@
 """A robot folder as the tools need it; the C++ programs are the ones that check it."""
 
-import shutil
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,7 +10,9 @@ import yaml
 
 from limber.errors import InputError
 from limber.model.dynamics import ArmDynamics
-from limber.model.urdf import Chain
+from limber.model.names import require_name
+from limber.model.urdf import Chain, Joint
+from limber.output import copy_new
 from limber.paths import robot_folder
 
 EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
@@ -29,8 +30,9 @@ class SpringPair:
 
 @dataclass(frozen=True)
 class JointInfo:
-    """Position limits and the friction that holds it at rest: rad and N m, or m and N. `friction`:
-    of motor and gear; `link_friction`: of the bearing behind springs and torque sensors.
+    """Limits and the friction that holds it at rest: rad, rad/s and N m, or m, m/s and N; infinite
+    where there is none. `torque` is the tightest of URDF, motor and joint. `friction`: of motor and
+    gear; `link_friction`: of the bearing behind springs and torque sensors.
     """
 
     name: str
@@ -39,6 +41,8 @@ class JointInfo:
     friction: float
     link_friction: float = 0.0
     pair: SpringPair | None = None
+    velocity: float = np.inf
+    torque: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -100,18 +104,18 @@ def load_robot(name_or_path: str, beside: Path | None = None) -> Robot:
 
 def copy_description(robot: Robot, folder: Path) -> None:
     """robot.yaml and the URDF, as they are beside a log."""
-    shutil.copyfile(robot.folder / "robot.yaml", folder / "robot.yaml")
-    shutil.copyfile(robot.urdf, folder / robot.urdf.name)
+    copy_new(robot.folder / "robot.yaml", folder / "robot.yaml")
+    copy_new(robot.urdf, folder / robot.urdf.name)
 
 
 def _robot(content: dict[str, Any], folder: Path) -> Robot:
     urdf, gains = folder / content["urdf"], content["gains"]
     chain = Chain(urdf, content["base"], content["tip"])
     K_t, K_r = gains["K_x_translation_N_per_m"], gains["K_x_rotation_Nm_per_rad"]
-    names = chain.joint_names
+    names, motors = chain.joint_names, content.get("motors") or {}
     joints = [content["joints"][name] for name in names]
     return Robot(
-        name=content["name"],
+        name=require_name(content["name"], folder / "robot.yaml"),
         folder=folder,
         urdf=urdf,
         base=content["base"],
@@ -120,7 +124,7 @@ def _robot(content: dict[str, Any], folder: Path) -> Robot:
         gravity=chain.R_RB.T @ np.asarray(content.get("gravity_m_per_s2", EARTH), float),
         buses={bus["name"]: bus["can"] for bus in content["buses"]},
         joints=[
-            _joint(name, joint, chain.limits(name))
+            _joint(chain.joint(name), joint, motors.get(joint.get("motor")) or {})
             for name, joint in zip(names, joints, strict=True)
         ],
         home=np.array([_either(joint, "home_rad", "home_m", otherwise=0.0) for joint in joints]),
@@ -129,15 +133,21 @@ def _robot(content: dict[str, Any], folder: Path) -> Robot:
     )
 
 
-def _joint(name: str, content: dict[str, Any], limits: tuple[float, float]) -> JointInfo:
-    low, high = limits
+def _joint(urdf: Joint, content: dict[str, Any], motor: dict[str, Any]) -> JointInfo:
+    ignored = content.get("urdf_limits") == "ignore"
+    low, high = (-np.inf, np.inf) if ignored else urdf.limits
+    velocity, effort = (np.inf if ignored else urdf.most(key) for key in ("velocity", "effort"))
+    peak = _either(motor, "peak_torque_Nm", "peak_torque_N", otherwise=np.inf)
+    own = _either(content, "torque_limit_Nm", "torque_limit_N", otherwise=np.inf)
     return JointInfo(
-        name,
+        urdf.name,
         _either(content, "position_min_rad", "position_min_m", otherwise=low),
         _either(content, "position_max_rad", "position_max_m", otherwise=high),
         _at_rest(content.get("friction") or {}),
         _at_rest(content.get("link_friction") or {}),
         _pair(content.get("transmission") or {}),
+        _either(content, "velocity_limit_rad_per_s", "velocity_limit_m_per_s", otherwise=velocity),
+        min(own, peak, effort),
     )
 
 

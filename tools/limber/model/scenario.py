@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from limber.errors import InputError
+from limber.model.names import require_name
 from limber.model.robot import Robot, load_robot, read_yaml
 
 GAINS_S = 1.0  # when the gains of `active_with` arrive
@@ -28,7 +29,9 @@ class Push:
 
 @dataclass(frozen=True)
 class Gains:
-    """What holds from `at_s` on. `friction_compensation`: a word of `gains:`."""
+    """What holds from `at_s` on. `frame`: "base" or "goal", whose axes K_x is in.
+    `friction_compensation`: a word of `gains:`.
+    """
 
     at_s: float
     law: str
@@ -36,6 +39,14 @@ class Gains:
     K_q: np.ndarray
     friction_compensation: str = "none"
     friction_share: float = 0.0
+    frame: str = "base"
+
+    def in_base(self, R_BD: np.ndarray) -> np.ndarray:
+        """K_x in base axes, with the goal's orientation."""
+        if self.frame == "base":
+            return self.K_x
+        R = np.kron(np.eye(2), R_BD)
+        return R @ self.K_x @ R.T
 
     @property
     def friction_observed(self) -> bool:
@@ -94,7 +105,7 @@ def load_scenario(path: Path, robot: Path | None = None) -> Scenario:
     try:
         loaded = load_robot(str(robot or content["robot"]), beside=path.resolve().parent)
         scenario = Scenario(
-            name=str(content.get("name", path.stem)),
+            name=require_name(content["name"], path) if "name" in content else path.stem,
             path=path.resolve(),
             robot=loaded,
             lockstep=content.get("mode", "lockstep") == "lockstep",
@@ -191,4 +202,5 @@ def _changed(before: Gains, at_s: float, content: dict[str, Any]) -> Gains:
         K_q,
         str(content.get("friction_compensation", before.friction_compensation)),
         float(content.get("friction_share", before.friction_share)),
+        str(content.get("frame", before.frame)),
     )

@@ -4,16 +4,17 @@ Independent of the C++ chain on purpose: what `limber` measures shall not lean o
 measures.
 """
 
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
+from limber.model.xml_file import read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
 
@@ -26,18 +27,12 @@ class Joint:
     kind: str
     parent: str
     child: str
-    element: ElementTree.Element
+    element: Element
 
     @cached_property
     def X_PF(self) -> np.ndarray:
         """4x4, joint frame in the parent link at zero."""
-        origin = self.element.find("origin")
-        X = np.eye(4)
-        X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
-        # URDF's rpy: roll about x, pitch about y, yaw about z, all of the parent's axes
-        roll_pitch_yaw = numbers_of(origin, "rpy", "0 0 0")
-        X[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
-        return X
+        return pose_of(self.element.find("origin"))
 
     @cached_property
     def axis(self) -> np.ndarray:
@@ -52,6 +47,10 @@ class Joint:
         low, high = (numbers_of(limit, key, "0")[0] for key in ("lower", "upper"))
         return (low, high) if low or high else (-np.inf, np.inf)
 
+    def most(self, key: str) -> float:
+        """`velocity` or `effort` of its <limit>; infinite where it is absent or zero."""
+        return float(numbers_of(self.element.find("limit"), key, "0")[0]) or np.inf
+
 
 class Chain:
     """The joints from `base` to `tip`, in order; `joint_names` are those that move.
@@ -65,8 +64,11 @@ class Chain:
         self.R_RB = _rotation_of(joints, base)
         self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
 
+    def joint(self, name: str) -> Joint:
+        return next(joint for joint in self.joints if joint.name == name)
+
     def limits(self, name: str) -> tuple[float, float]:
-        return next(joint for joint in self.joints if joint.name == name).limits
+        return self.joint(name).limits
 
     def forward(self, q: np.ndarray) -> np.ndarray:
         """X_BT, 4x4."""
@@ -106,17 +108,27 @@ def _motion(joint: Joint, value: float) -> np.ndarray:
     return X
 
 
-def numbers_of(element: ElementTree.Element | None, key: str, default: str) -> np.ndarray:
+def numbers_of(element: Element | None, key: str, default: str) -> np.ndarray:
     text = element.get(key, default) if element is not None else default
     return np.array([float(part) for part in text.split()])
 
 
+def pose_of(origin: Element | None) -> np.ndarray:
+    """4x4, of an <origin>: rpy turns by roll about x, then pitch about y, then yaw about z, all of
+    the parent's axes; quat_xyzw, of URDF 1.1, stands in its place.
+    """
+    X = np.eye(4)
+    X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
+    if origin is not None and origin.get("quat_xyzw") is not None:
+        turn = Rotation.from_quat(numbers_of(origin, "quat_xyzw", ""))
+    else:
+        turn = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0"))
+    X[:3, :3] = turn.as_matrix()
+    return X
+
+
 def read_joints(urdf: Path) -> dict[str, Joint]:
     """Joints by the name of their child link."""
-    try:
-        root = ElementTree.parse(urdf).getroot()
-    except (OSError, ElementTree.ParseError) as error:
-        raise InputError(f"{urdf} cannot be read as URDF: {error}") from error
     return {
         child: Joint(
             element.get("name"),
@@ -125,7 +137,7 @@ def read_joints(urdf: Path) -> dict[str, Joint]:
             child,
             element,
         )
-        for element in root.findall("joint")
+        for element in read_xml(urdf).findall("joint")
         for child in [element.find("child").get("link")]
     }
 

@@ -5,8 +5,9 @@ import subprocess
 from pathlib import Path
 
 from limber.errors import InputError
+from limber.model.robot import Robot, load_robot
 from limber.model.scenario import Scenario, load_scenario
-from limber.paths import existing_file, program, robot_folder
+from limber.paths import captured, existing_file, program, robot_folder
 
 
 def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]:
@@ -27,7 +28,15 @@ def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]
 
 def run_checker(arguments: list[str]) -> subprocess.CompletedProcess[str]:
     command = [str(program("limber-check")), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return captured(command)
+
+
+def load_checked_robot(name_or_folder: str) -> Robot:
+    """Raises InputError with limber-check's complaints if the robot is wrong."""
+    done = run_checker(["robot", str(robot_folder(name_or_folder))])
+    if done.returncode != 0:
+        raise InputError(done.stderr.strip())
+    return load_robot(name_or_folder)
 
 
 def load_checked(path: Path) -> Scenario:

@@ -33,7 +33,7 @@ class ArmView:
         self.frames = {figure.base: scene.add_frame(root, show_axes=False)}
         path = root
         for joint in figure.joints:
-            path = f"{path}/{joint.child}"
+            path = f"{path}/{len(self.frames)}"  # a link's name may be anything
             X = figure.X_PF[len(self.frames) - 1]
             self.frames[joint.child] = scene.add_frame(
                 path, show_axes=False, position=X[:3, 3], wxyz=wxyz(X[:3, :3])

@@ -1,7 +1,8 @@
 """Charts of the last seconds: those of `limber plot`, fed as messages come."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from html import escape
 
 import numpy as np
 import viser
@@ -16,7 +17,7 @@ from limber.plot.charts import TOPICS as CHARTS
 BINS = 200
 HISTORY_S = 60.0
 PADDING, OTHER_PADDING = (10, 12, 0, 0), (10, 12, 0, 1)  # another one makes a chart again
-MADE_AGAIN_S = 1.0
+MADE_AGAIN_S = (1.0, 4.0, 10.0)  # a browser without a graphics card is slow
 TOPICS = {
     "joints": "joint",
     "tip": "cartesian",
@@ -29,6 +30,11 @@ TOPICS = {
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444", "#8B4513")
 
 
+BELOW = "font-size:0.8em;line-height:1.3;opacity:0.8;margin:2px 12px"
+REST = 0.05  # reach of an axis on which all is zero
+ZERO = uplot.Series(label="zero", stroke="#777777", width=1, points=uplot.Series_Points(show=False))
+
+
 @dataclass
 class Kept:
     """One chart's history: bins of the full history and of each shorter window."""
@@ -38,7 +44,15 @@ class Kept:
     newest_s: float = -np.inf
 
     def curves(self, window_s: float) -> tuple[np.ndarray, np.ndarray]:
-        return self.bins[window_s].curves()
+        """With a line along zero behind the series, where the chart is about zero."""
+        t, values = self.bins[window_s].curves()
+        return (t, np.vstack([values, np.zeros(len(t))])) if self.chart.least else (t, values)
+
+    def constant(self) -> str:
+        """The values in words if none has changed in the whole history, else empty."""
+        _, values = self.bins[max(self.bins)].curves()
+        series = dict(zip(self.chart.series, values, strict=True))
+        return replace(self.chart, series=series).constant()
 
 
 class Keeper:
@@ -82,7 +96,7 @@ class Keeper:
     def _add(self, kept: dict[str, Kept], chart: Chart) -> None:
         one = kept.get(chart.title)
         if one is None or list(one.chart.series) != list(chart.series):
-            head = Chart(chart.title, chart.unit, chart.t_s[:0], dict(chart.series), chart.dashed)
+            head = replace(chart, t_s=chart.t_s[:0], series=dict(chart.series))
             bins = {w: Bins(w / BINS, BINS, len(chart.series)) for w in self._windows}
             one = kept[chart.title] = Kept(head, bins)
         if chart.t_s[-1] < one.newest_s - 1.0:  # another session of the driver: time begins again
@@ -107,20 +121,24 @@ class ChartPanel:
         self._window = gui.add_dropdown("last", labels, initial_value=labels[0])
         self._windows = dict(zip(labels, windows_s, strict=True))
         self._place = gui.add_folder(None)
-        self._nothing = gui.add_markdown("no messages yet")
+        self._nothing, self._words = gui.add_html("no messages yet"), ""
         self.handles: dict[str, viser.GuiUplotHandle] = {}
         self._drawn: tuple = ()
-        self._made_again_s = 0.0
+        self._make_again_s: list[float] = []
 
     def make_again(self) -> None:
         """In a moment. uPlot draws no time axis into a chart that was made before its place on the
         page had a width, as in a browser that has just connected.
         """
-        self._made_again_s = time.monotonic() + MADE_AGAIN_S
+        self._make_again_s = [time.monotonic() + wait_s for wait_s in MADE_AGAIN_S]
 
     def draw(self) -> None:
         topic, window_s = self.topic.value, self._windows[self._window.value]
-        shown = self._chosen(self._keeper.of(topic), topic)
+        kept = self._keeper.of(topic)
+        still = {id(one): one.constant() for one in kept if isinstance(one, Kept)}
+        moving = [one for one in kept if not still.get(id(one))]
+        shown = self._chosen(moving or kept, topic)
+        self._tell([words for words in still.values() if words and moving], topic, bool(kept))
         key = (topic, window_s, *((one.chart.title, *one.chart.series) for one in shown))
         if key != self._drawn:
             self._rebuild(shown, window_s)
@@ -130,10 +148,19 @@ class ChartPanel:
             t, values = one.curves(window_s)
             if len(t):
                 self.handles[one.chart.title].data = (t, *values)
-        if 0 < self._made_again_s < time.monotonic():
-            self._made_again_s = 0.0
+        if self._make_again_s and self._make_again_s[0] < time.monotonic():
+            self._make_again_s.pop(0)
             for handle in self.handles.values():
                 handle.padding = OTHER_PADDING if handle.padding == PADDING else PADDING
+
+    def _tell(self, still: list[str], topic: str, any_kept: bool) -> None:
+        words = "" if any_kept else f"nothing to show of: {topic}"
+        if still:
+            words = f"Constant for {HISTORY_S:g} s, not drawn: {'; '.join(still)}"
+        if words != self._words:
+            self._words = words
+            self._nothing.content = f'<div style="{BELOW}">{escape(words)}</div>'
+            self._nothing.visible = bool(words)
 
     def _chosen(self, kept: list[Kept | Tail], topic: str) -> list[Kept | Tail]:
         """Of the torques, those of one joint and whatever belongs to none."""
@@ -153,8 +180,6 @@ class ChartPanel:
     def _rebuild(self, shown: list[Kept | Tail], window_s: float) -> None:
         for handle in self.handles.values():
             handle.remove()
-        self._nothing.visible = not shown
-        self._nothing.content = f"nothing to show of: {self.topic.value}"
         with self._place:
             self.handles = {one.chart.title: self._chart(one, window_s) for one in shown}
 
@@ -172,6 +197,8 @@ class ChartPanel:
                 line["dash"] = (6, 4)
             series.append(line)
         t, values = one.curves(window_s)
+        if len(values) > len(chart.series):
+            series.append(ZERO)
         return self._gui.add_uplot(
             (t, *values),
             tuple(series),
@@ -186,8 +213,18 @@ class ChartPanel:
 
 def _scales(chart: Chart, window_s: float) -> dict[str, uplot.Scale]:
     if chart.over_time:
-        return {"x": uplot.Scale(time=False, auto=False, range=(-window_s, 0.0))}
+        x = uplot.Scale(time=False, auto=False, range=(-window_s, 0.0))
+        return {"x": x, "y": uplot.Scale(range=_least(chart))}
     x = uplot.Scale(
         time=False, auto=False, distr=3, range=(float(EDGES_US[0]), float(EDGES_US[-1]))
     )
     return {"x": x, "y": uplot.Scale(distr=3, range=(1e-6, 1.0))}
+
+
+def _least(chart: Chart) -> dict[str, dict[str, float]]:
+    """uPlot's range of an axis: by the data, but never less than the least about zero (mode 1); of
+    others, only where all is zero (mode 3), which uPlot would draw up to 100.
+    """
+    soft, mode = (chart.least, 1) if chart.least else (REST, 3)
+    low = {"pad": 0.0, "hard": 0.0} if chart.zero else {"pad": 0.1, "soft": -soft, "mode": mode}
+    return {"min": low, "max": {"pad": 0.1, "soft": soft, "mode": mode}}

@@ -26,6 +26,7 @@ from limber.monitor.push_tool import PushTool
 from limber.monitor.requests import Requests
 from limber.monitor.running_arm import RunningArm, choose_robot
 from limber.monitor.stop import StopButtons
+from limber.monitor.typed import TypedFields
 from limber.monitor.view_options import add_view_options
 from limber.monitor.walls import wall_changes
 
@@ -61,15 +62,20 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
     """Until Ctrl-C: False, or, with `follow`, until another arm runs: True."""
     served, robot, laws, gui = page.server, page.robot, page.laws, page.server.gui
     requests = Requests(feed, MONITOR_CLIENT + served.get_port())
-    stop = StopButtons(gui, requests)
-    parts: list[Callable[[], None]] = [stop.draw]
+    StopButtons(gui, requests)
+    typed = TypedFields(served.link, page.tell_typed)
+    parts: list[Callable[[], None]] = []
     goal = None
+    page.control = control
     tabs = gui.add_tab_group()
     if control:
         with tabs.add_tab("control"):
-            parts.append(ControlPanel(gui, robot, laws, requests, feed).draw)
+            panel = ControlPanel(gui, robot, laws, requests, feed, typed, page.pending)
+            parts.append(panel.draw)
+            served.link.on("press", panel.pressed)
         with tabs.add_tab("push"):
-            parts.append(PushTool(gui, page.scene.arm, feed, requests).draw)
+            push = PushTool(gui, page.scene.arm, feed, requests, served.link, typed)
+            parts.append(push.draw)
         size_m = 0.35 * page.scene.figure.reach_m
         goal = GoalHandle(served.scene, size_m, feed, laws, requests)
     with tabs.add_tab("view"):
@@ -80,6 +86,7 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
         batch = page.draw()
         outcomes = requests.collect(batch)
         page.tell(outcomes)
+        page.tell_stop(requests.stops, requests.stop_state)
         for part in parts:
             page.guard(part)
         if goal is not None:
@@ -112,7 +119,8 @@ def play(path: Path, robot_name: str | None, port: int, console: Console) -> Non
     served = _serve(port, console)
     walls = wall_changes(scenario) if scenario.is_file() else []
     page = Page(served, robot, laws, feed, walls, Guard(console))
-    panel = PlaybackPanel(served, feed, Log(file), robot.joint_names, laws)
+    typed = TypedFields(served.link, page.tell_typed)
+    panel = PlaybackPanel(served, feed, Log(file), robot.joint_names, laws, typed)
     with served.gui.add_folder("view", expand_by_default=False):
         add_view_options(served.gui, page.scene)
     page.add_charts()

@@ -1,7 +1,10 @@
-"""The panel that controls the arm: mode, law and its numbers, built from the controller's list."""
+"""The panel that controls the arm: law and numbers, from the controller's list. The modes'
+buttons stand in the status card.
+"""
 
 import threading
 import time
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -10,7 +13,10 @@ import viser
 from limber.model.robot import Robot, read_yaml
 from limber.monitor.feed import Feed
 from limber.monitor.laws import Gain, Law, LawList
+from limber.monitor.pending import REPORTED, UNITS, Pending, in_effect, several
 from limber.monitor.requests import Requests
+from limber.monitor.status_card import BUTTONS
+from limber.monitor.typed import TypedFields
 from limber.monitor.widgets import Widget, make
 
 GAINS_S = 0.1  # at most so often while a slider moves
@@ -22,12 +28,28 @@ OF_JOINTS = ("K_q_Nm_per_rad", "joint_damping_ratio")
 LEFT_OUT = ("ramp_s", "K_x")  # sent with every request; the blocks say it
 
 
+WORDS = "font-size:0.85em;line-height:1.3;margin:0 12px 6px 12px"
+
+
+def refused_law(law: Law) -> str:
+    """HTML; the reason may name joints."""
+    return f'<div style="{WORDS}"><b>{escape(law.name)}</b>: {escape(law.refusal)}</div>'
+
+
 class ControlPanel:
     def __init__(
-        self, gui: viser.GuiApi, robot: Robot, laws: LawList, requests: Requests, feed: Feed
+        self,
+        gui: viser.GuiApi,
+        robot: Robot,
+        laws: LawList,
+        requests: Requests,
+        feed: Feed,
+        typed: TypedFields,
+        pending: Pending,
     ) -> None:
         self._gui, self._robot, self._laws = gui, robot, laws
         self._requests, self._feed = requests, feed
+        self._typed, self._pending = typed, pending
         self._standard = read_yaml(robot.folder / "robot.yaml").get("gains") or {}
         self._lock = threading.Lock()  # callbacks come from the server's thread
         self._waiting: dict[str, Any] = {}
@@ -39,16 +61,8 @@ class ControlPanel:
 
     def _build(self) -> None:
         gui = self._gui
-        self._modes = gui.add_button_group("mode", ("hold", "active", "idle"))
-        self._others = gui.add_button_group("", ("acknowledge", "release"))
-        for group in (self._modes, self._others):
-
-            @group.on_click
-            async def _(event: viser.GuiEvent) -> None:
-                self._requests.mode(event.target.value)
-
         self._law = gui.add_dropdown("law", tuple(self._laws.usable))
-        self._summary = gui.add_markdown("")
+        self._summary = gui.add_html("")
 
         @self._law.on_update
         async def _(event: viser.GuiEvent) -> None:
@@ -60,7 +74,12 @@ class ControlPanel:
         self._more = gui.add_folder("more", expand_by_default=False)
         if refused:
             with gui.add_folder("laws this arm cannot run", expand_by_default=False):
-                gui.add_markdown("\n".join(f"- **{law.name}**: {law.refusal}" for law in refused))
+                gui.add_html("".join(map(refused_law, refused)))
+
+    def pressed(self, _viewer: int, word: Any) -> None:
+        """A button of the status card."""
+        if word in BUTTONS:
+            self._requests.mode(word)
 
     def draw(self) -> None:
         """Sends what waits, and shows what the controller has."""
@@ -88,7 +107,7 @@ class ControlPanel:
         self.shown_law = law.name
         if law.name in self._laws.usable:
             self._law.value = law.name
-        self._summary.content = law.summary
+        self._summary.content = f'<div style="{WORDS}">{escape(law.summary)}</div>'
         for widget_folder in self._folders:
             widget_folder.remove()
         first = OF_POSE if law.goal == "pose" else OF_JOINTS if law.goal != "none" else ()
@@ -111,7 +130,7 @@ class ControlPanel:
         if start == "robot.yaml":
             start = self._standard.get(gain.key, gain.low)
         self.widgets[gain.key] = make(
-            self._gui, gain, start, self._robot.joint_names, self._request
+            self._gui, gain, start, self._robot.joint_names, self._request, self._typed
         )
 
     def _request(self, key: str, value: Any) -> None:
@@ -119,13 +138,14 @@ class ControlPanel:
             self._waiting[key] = value
 
     def _follow(self, status: np.void) -> None:
-        """What CONTROLLER_STATUS carries of the gains."""
-        K_x = np.diag(status["K_x"])
-        self._show("K_x_translation_N_per_m", K_x[:3])
-        self._show("K_x_rotation_Nm_per_rad", K_x[3:])
-        self._show("K_q_Nm_per_rad", status["K_q"][: int(status["num_joints"])])
-
-    def _show(self, key: str, value: np.ndarray) -> None:
-        widget = self.widgets.get(key)
-        if widget is not None and len(value) and np.isfinite(value).all():
-            widget.show(value)
+        """What CONTROLLER_STATUS carries of the gains; where another value waits for ACTIVE, that
+        one, with the one in effect beside it.
+        """
+        for key in REPORTED:
+            widget, now = self.widgets.get(key), in_effect(status, key)
+            if widget is None or now is None or not len(now) or not np.isfinite(now).all():
+                continue
+            value = self._pending.values.get(key)
+            waits = value is not None and not np.allclose(value, now, rtol=1e-3)
+            words = f"With active; now {several(now)} {UNITS[key]}." if waits else ""
+            widget.show(value if waits else now, words)

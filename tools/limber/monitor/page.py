@@ -7,16 +7,19 @@ import viser
 
 from limber.messages import constants
 from limber.model.robot import Robot
+from limber.monitor.answers import Answers
 from limber.monitor.charts import HISTORY_S, ChartPanel, Keeper
 from limber.monitor.feed import Batch, Feed
 from limber.monitor.guard import Guard
 from limber.monitor.laws import LawList
+from limber.monitor.pending import Pending
 from limber.monitor.requests import Outcome
 from limber.monitor.scene import Scene
 from limber.monitor.server import Server
-from limber.monitor.status_card import StatusCard
+from limber.monitor.status_card import Shown, StatusCard
+from limber.monitor.viewers import CHARTS_PX, CONTROL_PX, Viewers
 from limber.monitor.walls import WallChange
-from limber.monitor.words import Situation, situation
+from limber.monitor.words import Situation, mode_of, situation
 
 DRAW_S = 1 / 30
 CHARTS_S = 1 / 10
@@ -40,7 +43,10 @@ class Page:
         self.guard = guard
         self.server, self.robot, self.feed, self.laws = server, robot, feed, laws
         self.other_arm = ""  # name of an arm that runs and is not the one drawn
+        self.control = False  # the page may move the arm
+        self.answers, self.pending = Answers(), Pending()
         self._told: dict[str, float] = {}
+        self._stop = (0, "")
         server.gui.configure_theme(
             control_width="medium",
             show_logo=False,
@@ -52,7 +58,7 @@ class Page:
         self.card = StatusCard(server.gui)
         self.keeper = Keeper(robot.joint_names, WINDOWS_S)
         self._kept_s = self._charts_s = 0.0
-        self._pending = Batch()  # for the charts
+        self._for_charts = Batch()  # for the charts
         self._limits: list[tuple[float, int]] = []
 
     def add_charts(self) -> None:
@@ -65,20 +71,22 @@ class Page:
             self.charts.make_again()
 
         panel.dock_right()
-        panel.set_width(430)
-        self.server.gui.main_panel.set_width(350)
+        panel.set_width(CHARTS_PX)
+        self.server.gui.main_panel.set_width(CONTROL_PX)
         self.server.gui.main_panel.dock_left()
+        Viewers(self.server, panel)
 
     def draw(self) -> Batch:
         """One picture: takes what has arrived, shows it and gives it on."""
         now = time.monotonic()
         batch = self.feed.take()
         self._note_limits(batch, now)
-        self._pending.add(batch)
+        self._for_charts.add(batch)
+        self.pending.note(batch, self.feed.newest.get("CONTROLLER_STATUS"))
         if now - self._kept_s > CHARTS_S:
             self._kept_s = now
-            self.guard(self.keeper.add, self._pending)
-            self._pending = Batch()
+            self.guard(self.keeper.add, self._for_charts)
+            self._for_charts = Batch()
         limits = int(np.bitwise_or.reduce([bits for _, bits in self._limits] or [0]))
         words = situation(self.feed, self.robot.joint_names, limits)
         if self.server.get_clients():
@@ -89,22 +97,52 @@ class Page:
         old = words.headline.startswith("NO ")
         with self.server.atomic():
             self.guard(self.scene.draw, self.feed, batch, old)
-            hints = [*self.feed.troubles(), *self._hints()]
-            self.guard(self.card.show, words, self._facts(), hints)
+            self.guard(self.card.show, self._shown(words))
         if now - self._charts_s > CHARTS_S:
             self._charts_s = now
             self.guard(self.charts.draw)
 
+    def _shown(self, words: Situation) -> Shown:
+        status = self.feed.newest.get("CONTROLLER_STATUS")
+        pending = [] if status is None else self.pending.words(status, self._law_name(status))
+        return Shown(
+            words,
+            self._facts(),
+            [*self.feed.troubles(), *self._hints()],
+            pending,
+            self.answers.shown(words.mode),
+            self.control,
+        )
+
     def tell(self, outcomes: list[Outcome]) -> None:
-        """What was refused, on every viewer's screen; the same words once in a while."""
-        now = time.monotonic()
+        """What was refused: in the panel, and for a moment on every viewer's screen."""
         for outcome in outcomes:
-            if not outcome.text or now - self._told.get(outcome.text, -TELL_AGAIN_S) < TELL_AGAIN_S:
-                continue
-            self._told[outcome.text] = now
-            for client in self.server.get_clients().values():
-                title = f"{outcome.kind}: refused"
-                client.add_notification(title, outcome.text, color="red", auto_close_seconds=TOLD_S)
+            title = f"{outcome.kind} refused"
+            self.answers.note(outcome.kind, outcome.text, False, mode_of(self.feed))
+            if outcome.text:
+                self._announce(title, outcome.text)
+
+    def tell_stop(self, number: int, state: str) -> None:
+        """`state`: what became of the stop with this number, the last one."""
+        if (number, state) == self._stop:
+            return
+        self._stop = number, state
+        self.answers.note("STOP", state, "NOT" not in state, mode_of(self.feed))
+
+    def tell_typed(self, name: str, words: str, good: bool) -> None:
+        """What became of a number that was typed."""
+        self.answers.note(name, words, good, mode_of(self.feed))
+        self._announce(name, words)
+
+    def _announce(self, title: str, words: str) -> None:
+        """One line; the same words once in a while. The whole stands in the panel."""
+        now = time.monotonic()
+        if now - self._told.get(words, -TELL_AGAIN_S) < TELL_AGAIN_S:
+            return
+        self._told = {w: at for w, at in self._told.items() if now - at < TELL_AGAIN_S}
+        self._told[words] = now
+        for client in self.server.get_clients().values():
+            client.add_notification(title, words, color="red", auto_close_seconds=TOLD_S)
 
     def _note_limits(self, batch: Batch, now: float) -> None:
         bits = batch.read("CONTROLLER_STATUS")["limits"]
@@ -116,13 +154,16 @@ class Page:
         state, status = (self.feed.newest.get(c) for c in ("JOINT_STATE", "CONTROLLER_STATUS"))
         facts = []
         if status is not None:
-            law = self.laws.law(int(status["law"]))
-            facts.append(f"law number {int(status['law'])}" if law is None else law.name)
+            facts.append(self._law_name(status))
         if state is not None:
             drive = constants("joint_state_t", "DRIVE_").get(int(state["drive_state"]), "UNKNOWN")
             facts.append(f"drives {drive.replace('HOLD', 'FALLBACK')}")
             facts.append(f"{float(state['time_ns']) * 1e-9:.0f} s")
         return facts
+
+    def _law_name(self, status: np.void) -> str:
+        law = self.laws.law(int(status["law"]))
+        return f"law number {int(status['law'])}" if law is None else law.name
 
     def _hints(self) -> list[str]:
         hints = [f"Not drawn: {trouble}" for trouble in self.scene.figure.troubles]

@@ -9,6 +9,7 @@ from limber.log.reader import Log
 from limber.monitor.laws import LawList
 from limber.monitor.log_feed import SPEEDS, LogFeed
 from limber.monitor.server import Server
+from limber.monitor.typed import Field, TypedFields
 
 MOST_MARKS = 60
 AROUND = 6  # events listed before and after the place
@@ -16,7 +17,13 @@ AROUND = 6  # events listed before and after the place
 
 class PlaybackPanel:
     def __init__(
-        self, server: Server, feed: LogFeed, log: Log, joints: list[str], laws: LawList
+        self,
+        server: Server,
+        feed: LogFeed,
+        log: Log,
+        joints: list[str],
+        laws: LawList,
+        typed: TypedFields,
     ) -> None:
         gui, self._feed = server.gui, feed
         self._events = events(log, Names(joints, [law.name for law in laws.laws]))
@@ -32,6 +39,7 @@ class PlaybackPanel:
             feed.start_s,
             marks=tuple(_marks(self._events, feed)),
         )
+        typed.add(Field(self._slider, "time s", feed.start_s, feed.end_s, feed.jump))
         self._jumps = gui.add_button_group("event", ("previous", "next", "next fault"))
         self._list = gui.add_html("")
 

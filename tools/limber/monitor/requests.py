@@ -10,8 +10,10 @@ import numpy as np
 from limber import messages
 from limber.errors import InputError
 from limber.live import gains_message, request_messages
+from limber.live.way import in_words
 from limber.monitor.feed import Batch
 from limber.monitor.live_feed import LiveFeed
+from limber.monitor.words import mode_of
 from limber.problems import problem, sentence
 
 UNANSWERED_S = 0.5
@@ -19,7 +21,8 @@ STOP_AGAIN_S = 0.04
 STOP_TRIES = 8
 PUSH_ID = 9001
 MODE = messages.message_class("mode_request_t")
-KIND_MODE = messages.message_class("request_answer_t").KIND_MODE
+ANSWER = messages.message_class("request_answer_t")
+KIND_MODE = ANSWER.KIND_MODE
 
 
 @dataclass(frozen=True)
@@ -43,12 +46,12 @@ class Requests:
         self._wrong: list[Outcome] = []  # never sent
         self._leased = False
         self._stop_sent_s, self._stop_tries = 0.0, 0  # tries: 0 when none is under way
-        self.stop_state = ""
+        self.stops, self.stop_state = 0, ""
 
     def stop(self) -> None:
-        """Needs no lease; repeated until the controller answers."""
+        """Needs no lease; repeated until it is answered. `stop_state`: what became of it."""
         with self._lock:
-            self.stop_state, self._stop_tries = "sent", 1
+            self.stops, self.stop_state, self._stop_tries = self.stops + 1, "sent", 1
             self._stop_sent_s = time.monotonic()
         self._mode(MODE.REQUEST_STOP)
 
@@ -101,7 +104,15 @@ class Requests:
         elif answer.accepted:
             released = answer.kind == KIND_MODE and answer.what == MODE.REQUEST_RELEASE
             self._leased = not released
-        return Outcome(kind, "" if answer.accepted else _refusal(answer.code, answer.reason))
+        return Outcome(kind, "" if answer.accepted else self._refusal(answer, kind))
+
+    def _refusal(self, answer: Any, kind: str) -> str:
+        """A request that does not fit the mode is named, with the mode and the way there."""
+        if answer.code == ANSWER.REFUSED_MODE:
+            words = messages.constants("mode_request_t", "REQUEST_")
+            asked = words.get(int(answer.what), kind).lower() if kind == "mode" else kind
+            return f"request.MODE: {in_words(mode_of(self._feed) or 'this mode', asked)}."
+        return _refusal(answer.code, answer.reason)
 
     def _repeat_stop(self, now: float) -> None:
         with self._lock:

@@ -4,10 +4,12 @@ viser accepts a WebSocket from any web page that is open in the same browser, an
 server on the internet. Both would let strangers move the arm, so both are closed here.
 """
 
+import gzip
 import io
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -15,6 +17,8 @@ import websockets.asyncio.server
 from websockets.http11 import Response
 
 from limber.errors import RunError
+from limber.monitor.page_link import PROTOCOL, PageLink
+from limber.paths import ASSETS
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")
@@ -22,10 +26,14 @@ LAST_PORT = 65535
 
 
 class Server(viser.ViserServer):
-    """viser's server without its way to the internet, and without its own words on the console."""
+    """viser's server without its way to the internet, and without its own words on the console.
+
+    `link`: what limber's own part of the page tells.
+    """
 
     def __init__(self, port: int) -> None:
-        with _closed(), redirect_stdout(io.StringIO()):
+        self.link = PageLink()
+        with _closed(self.link), redirect_stdout(io.StringIO()):
             super().__init__(host=HOST, port=port, label="limber", verbose=False)
 
     def close(self) -> None:
@@ -64,14 +72,24 @@ def security_headers(port: int) -> dict[str, str]:
 
 
 @contextmanager
-def _closed() -> Iterator[None]:
+def _closed(link: PageLink) -> Iterator[None]:
     """viser calls `serve` while it is constructed, once for each port that it tries."""
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a refusal is no error
     serve = websockets.asyncio.server.serve
 
     def checked(handler: Any, host: str, port: int, **options: Any) -> Any:
-        options["process_request"] = _with_headers(options["process_request"], port)
-        return serve(handler, host, port, origins=allowed_origins(port), **options)
+        options["process_request"] = _own_page(options["process_request"], port)
+        select = options["select_subprotocol"]
+
+        def protocol(connection: Any, offered: Any) -> Any:
+            return PROTOCOL if PROTOCOL in offered else select(connection, offered)
+
+        async def serve_both(connection: Any) -> None:
+            own = connection.subprotocol == PROTOCOL
+            await (link.serve(connection) if own else handler(connection))
+
+        options["select_subprotocol"] = protocol
+        return serve(serve_both, host, port, origins=allowed_origins(port), **options)
 
     websockets.asyncio.server.serve = checked
     try:
@@ -80,11 +98,34 @@ def _closed() -> Iterator[None]:
         websockets.asyncio.server.serve = serve
 
 
-def _with_headers(answer: Callable, port: int) -> Callable:
+def _own_page(answer: Callable, port: int) -> Callable:
+    """viser's answers with our headers, and its page with our part in it."""
+    bodies = {"identity": own_html()}
+    bodies["gzip"] = gzip.compress(bodies["identity"])
+
     def process(connection: Any, request: Any) -> Response | None:
         response = answer(connection, request)
-        if response is not None:
-            response.headers.update(security_headers(port))
+        if response is None:
+            return None
+        response.headers.update(security_headers(port))
+        if response.headers.get("Content-Type", "").startswith("text/html"):
+            response.body = bodies[response.headers["Content-Encoding"]]
+            del response.headers["Content-Length"]
+            response.headers["Content-Length"] = str(len(response.body))
         return response
 
     return process
+
+
+def own_html() -> bytes:
+    """viser's page; before all of its programs ours (assets/page.js)."""
+    viser_page = Path(viser.__file__).parent / "client" / "build" / "index.html"
+    text = viser_page.read_text(encoding="utf-8").replace(
+        "<title>Viser</title>", "<title>limber</title>"
+    )
+    style, script = (
+        (ASSETS / name).read_text(encoding="utf-8") for name in ("page.css", "page.js")
+    )
+    return text.replace(
+        "<head>", f"<head><style>{style}</style><script>{script}</script>", 1
+    ).encode()

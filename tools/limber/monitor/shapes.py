@@ -2,16 +2,16 @@
 joint.
 """
 
-import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
 import trimesh
-from scipy.spatial.transform import Rotation
 
 from limber.model.robot import Robot
-from limber.model.urdf import MOVING, Joint, carrier, numbers_of, read_joints
+from limber.model.urdf import MOVING, Joint, carrier, numbers_of, pose_of, read_joints
+from limber.model.xml_file import read_xml
 
 LIMB, JOINT, TIP = (222, 226, 232), (62, 70, 84), (240, 140, 45)
 THICKNESS = (0.062, 0.034)  # radius of the limbs at shoulder and tip over the arm's reach
@@ -71,7 +71,7 @@ def _skeleton(robot: Robot) -> Figure:
 
 def _visuals(urdf: Path, made: Figure) -> list[Shape]:
     joints, shapes = read_joints(urdf), []
-    root = ElementTree.parse(urdf).getroot()
+    root = read_xml(urdf)
     materials = {m.get("name"): m for m in root.findall("material")}
     for link in root.findall("link"):
         owner, X = carrier(link.get("name"), made.links, joints)
@@ -83,25 +83,20 @@ def _visuals(urdf: Path, made: Figure) -> list[Shape]:
             except Exception as error:  # trimesh raises whatever its file readers raise
                 made.troubles.append(f"visual of {link.get('name')}: {error}")
                 continue
-            mesh.apply_transform(X @ _origin(visual))
+            mesh.apply_transform(X @ pose_of(visual.find("origin")))
             shapes.append(Shape(owner, mesh, _color(visual, materials)))
     return shapes
 
 
-def _origin(visual: ElementTree.Element) -> np.ndarray:
-    X = np.eye(4)
-    X[:3, 3] = numbers_of(visual.find("origin"), "xyz", "0 0 0")
-    roll_pitch_yaw = numbers_of(visual.find("origin"), "rpy", "0 0 0")
-    X[:3, :3] = Rotation.from_euler("xyz", roll_pitch_yaw).as_matrix()
-    return X
-
-
-def _mesh(geometry: ElementTree.Element, urdf: Path) -> trimesh.Trimesh:
+def _mesh(geometry: Element, urdf: Path) -> trimesh.Trimesh:
     if (box := geometry.find("box")) is not None:
         return trimesh.creation.box(numbers_of(box, "size", "0 0 0"))
     if (cylinder := geometry.find("cylinder")) is not None:
-        radius, height = (numbers_of(cylinder, key, "0")[0] for key in ("radius", "length"))
-        return trimesh.creation.cylinder(radius, height, sections=32)
+        return trimesh.creation.cylinder(*_round(cylinder), sections=32)
+    if (capsule := geometry.find("capsule")) is not None:
+        radius, length = _round(capsule)  # of the cylinder between its two half balls
+        ends = [[0.0, 0.0, -0.5 * length], [0.0, 0.0, 0.5 * length]]
+        return _hull(*ends, radius, radius, 2)
     if (sphere := geometry.find("sphere")) is not None:
         return trimesh.creation.icosphere(2, numbers_of(sphere, "radius", "0")[0])
     element = geometry.find("mesh")
@@ -111,6 +106,11 @@ def _mesh(geometry: ElementTree.Element, urdf: Path) -> trimesh.Trimesh:
         raise ValueError(f"{path.name} has {len(mesh.faces)} faces; up to {BUSY_FACES} are drawn")
     mesh.apply_scale(numbers_of(element, "scale", "1 1 1"))
     return mesh
+
+
+def _round(element: Element) -> tuple[float, float]:
+    radius, length = (float(numbers_of(element, key, "0")[0]) for key in ("radius", "length"))
+    return radius, length
 
 
 def _mesh_file(name: str, urdf: Path) -> Path:
@@ -124,9 +124,7 @@ def _mesh_file(name: str, urdf: Path) -> Path:
     raise FileNotFoundError(f"{name} is not beside {urdf.name} nor above it")
 
 
-def _color(
-    visual: ElementTree.Element, materials: dict[str | None, ElementTree.Element]
-) -> tuple[int, int, int]:
+def _color(visual: Element, materials: dict[str | None, Element]) -> tuple[int, int, int]:
     material = visual.find("material")
     for element in (
         material,
@@ -177,6 +175,13 @@ def _housing(joint: Joint, r: float) -> trimesh.Trimesh:
 
 
 def _limb(to: np.ndarray, r_from: float, r_to: float) -> trimesh.Trimesh:
-    """The hull of two balls, at the origin and at `to`."""
-    near, far = (trimesh.creation.icosphere(3, r) for r in (r_from, r_to))
-    return trimesh.convex.convex_hull(np.vstack([near.vertices, far.vertices + to]))
+    """From the origin to `to`."""
+    return _hull(np.zeros(3), to, r_from, r_to, 3)
+
+
+def _hull(
+    one: np.ndarray, other: np.ndarray, r_one: float, r_other: float, fineness: int
+) -> trimesh.Trimesh:
+    """The hull of two balls, by their centres."""
+    near, far = (trimesh.creation.icosphere(fineness, r) for r in (r_one, r_other))
+    return trimesh.convex.convex_hull(np.vstack([near.vertices + one, far.vertices + other]))

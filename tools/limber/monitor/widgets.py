@@ -1,37 +1,48 @@
 """One widget for each number or choice that the controller lists."""
 
 from collections.abc import Callable
+from html import escape
 from typing import Any, Protocol
 
 import numpy as np
 import viser
 
 from limber.monitor.laws import Gain
+from limber.monitor.pending import several
+from limber.monitor.typed import Field, TypedFields
 
 REACH = 4.0  # a slider goes so many times as far as the value it begins with
+BELOW = "font-size:0.75em;line-height:1.25;opacity:0.8;margin:-2px 12px 4px 12px"
 AXES = ("x", "y", "z")
 Changed = Callable[[str, Any], None]
 
 
 class Widget(Protocol):
-    """`show` displays a value without sending it."""
+    """`show` displays a value without sending it; `words` stand below it."""
 
-    def show(self, value: Any) -> None: ...
+    def show(self, value: Any, words: str = "") -> None: ...
 
 
-def make(gui: viser.GuiApi, gain: Gain, start: Any, joints: list[str], changed: Changed) -> Widget:
+def make(
+    gui: viser.GuiApi,
+    gain: Gain,
+    start: Any,
+    joints: list[str],
+    changed: Changed,
+    typed: TypedFields,
+) -> Widget:
     """`start`: the value that holds now; `changed` is called with key and new value."""
     if gain.kind in ("choice", "switch"):
         return _Choice(gui, gain, start, changed)
     if gain.kind == "number":
-        return _Number(gui, gain, gain.label, float(start), lambda v: changed(gain.key, v))
+        return _Number(gui, gain, gain.label, float(start), lambda v: changed(gain.key, v), typed)
     if gain.kind == "periods":
-        return _Several(gui, gain, list(gain.words), start, changed, as_mapping=True)
+        return _Several(gui, gain, list(gain.words), start, changed, typed, as_mapping=True)
     if gain.kind == "tip_matrix":
         axes = [*AXES, *(f"about {axis}" for axis in AXES)]
-        return _Several(gui, gain, axes, start, changed, as_matrix=True)
+        return _Several(gui, gain, axes, start, changed, typed, as_matrix=True)
     labels = list(AXES) if gain.kind == "blocks" else joints
-    return _Several(gui, gain, labels, start, changed)
+    return _Several(gui, gain, labels, start, changed, typed)
 
 
 def slider_end(gain: Gain, value: float) -> float:
@@ -41,6 +52,9 @@ def slider_end(gain: Gain, value: float) -> float:
     if value > 0:
         return float(min(gain.high, REACH * value))
     return float(min(gain.high, 100.0))
+
+
+DECIMALS = 3  # of a typed number, at least
 
 
 class _Number:
@@ -53,6 +67,7 @@ class _Number:
         label: str,
         start: float,
         changed: Callable[[float], None],
+        typed: TypedFields,
     ) -> None:
         self._gain = gain
         end = slider_end(gain, start)
@@ -61,18 +76,36 @@ class _Number:
         self.slider = gui.add_slider(
             label, float(gain.low), end, step, float(np.clip(start, gain.low, end)), hint=gain.hint
         )
+        if not whole:
+            self.slider.precision = max(self.slider.precision, DECIMALS)
+        field = Field(self.slider, label, gain.low, gain.high, lambda v: self._typed(v, changed))
+        typed.add(field)
 
         @self.slider.on_update
         async def _(event: viser.GuiEvent) -> None:
-            if event.client is not None and accepted(gain, self.slider.value):
-                changed(float(self.slider.value))
+            if event.client is None:
+                return
+            value = self.slider.value
+            if accepted(gain, value):
+                self._shown = float(value)
+                changed(float(value))
+            else:
+                self.slider.value = self._shown
+                typed.refused(field, value)
 
-    def show(self, value: float) -> None:
+        self._shown = float(self.slider.value)
+
+    def _typed(self, value: float, changed: Callable[[float], None]) -> None:
+        self.show(value)
+        changed(value)
+
+    def show(self, value: float, _words: str = "") -> None:
         if not np.isfinite(value):
             return
         if value > self.slider.max:
             self.slider.max = float(min(max(self._gain.high, value), REACH * value))
-        self.slider.value = float(value)
+        self._shown = round(float(value), self.slider.precision)
+        self.slider.value = self._shown
 
 
 class _Several:
@@ -85,6 +118,7 @@ class _Several:
         labels: list[str],
         start: Any,
         changed: Changed,
+        typed: TypedFields,
         as_mapping: bool = False,
         as_matrix: bool = False,
     ) -> None:
@@ -94,11 +128,13 @@ class _Several:
         mixed = as_mapping or as_matrix  # one number for all would mean nothing
         self._all = None
         if not mixed:
-            self._all = _Number(gui, gain, gain.label, float(self.values.max()), self._set_all)
+            largest = float(self.values.max())
+            self._all = _Number(gui, gain, gain.label, largest, self._set_all, typed)
+            self._below = gui.add_html("", visible=False)
         name = gain.label if mixed else "one by one"
         with gui.add_folder(name, expand_by_default=False):
             self._each = [
-                _Number(gui, gain, label, float(value), self._setter(i))
+                _Number(gui, gain, label, float(value), self._setter(i), typed)
                 for i, (label, value) in enumerate(zip(labels, self.values, strict=True))
             ]
 
@@ -130,12 +166,19 @@ class _Several:
             values = np.diag(self.values).tolist()
         self._changed(self._gain.key, values)
 
-    def show(self, value: Any) -> None:
+    def show(self, value: Any, words: str = "") -> None:
+        """One slider cannot show several numbers: then they stand below it."""
         self.values = self._components(value)
         for each, one in zip(self._each, self.values, strict=True):
             each.show(float(one))
-        if self._all is not None:
-            self._all.show(float(self.values.max()))
+        if self._all is None:
+            return
+        self._all.show(float(self.values.max()))
+        numbers = several(self.values)
+        if " / " in numbers:
+            words = f"{numbers} {self._gain.unit}; this slider sets all alike. {words}"
+        self._below.content = f'<div style="{BELOW}">{escape(words)}</div>'
+        self._below.visible = bool(words)
 
 
 class _Choice:
@@ -155,7 +198,7 @@ class _Choice:
             if event.client is not None:
                 changed(gain.key, self._handle.value)
 
-    def show(self, value: Any) -> None:
+    def show(self, value: Any, _words: str = "") -> None:
         if isinstance(value, bool) or value in self._words:
             self._handle.value = value
 

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,9 @@ from limber.errors import InputError
 from limber.model.dynamics import ArmDynamics
 from limber.model.urdf import Chain
 from limber.model.validation import checker_arguments, run_checker
+
+WALL, WALL_SHARE = 0.1, 0.1  # width of the soft wall, rad or m, and share of the travel at most
+ROOM_rad, ROOM_m = 0.1, 0.03  # before it, to give way in
 
 
 @dataclass(frozen=True)
@@ -93,10 +96,18 @@ def _number(value: float | None, otherwise: float) -> float:
     return otherwise if value is None else value
 
 
+def wall(low: float, high: float) -> float:
+    """How far from its ends the controller begins to hold a joint back that stands still."""
+    return min(WALL, WALL_SHARE * (high - low)) if isfinite(high - low) else 0.0
+
+
 def _home(found: dict[str, Any]) -> float:
-    """Zero, or as near to it as leaves a tenth of the travel to either end."""
+    """Zero, or as near to it as leaves a tenth of the travel, and room to give way before the soft
+    wall, to either end; the middle of a travel that is too short for that.
+    """
     low, high = _number(found["position_min"], -inf), _number(found["position_max"], inf)
-    if not np.isfinite(high - low):
+    if not isfinite(high - low):
         return 0.0
-    margin = 0.1 * (high - low)
+    room = ROOM_m if found["type"] == "prismatic" else ROOM_rad
+    margin = min(max(0.1 * (high - low), wall(low, high) + room), 0.5 * (high - low))
     return round(float(np.clip(0.0, low + margin, high - margin)), 3)

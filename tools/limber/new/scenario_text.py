@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from limber.new.facts import ArmFacts
+from limber.new.facts import ArmFacts, wall
 from limber.new.guesses import Guesses, number, three
 
 DEFLECTION_m = 0.02
 TORQUE_SHARE = 0.2  # of each joint's torque, for the push
+FREE_SHARE = 0.7  # of the way to the nearest soft wall
 MOST_N = 200.0  # of a push in a scenario
 
 TEXT = """\
@@ -44,6 +45,18 @@ def text(name: str, folder: str, file: str, arm: ArmFacts, guesses: Guesses) -> 
     )
 
 
+def _free(arm: ArmFacts, guesses: Guesses, torque: np.ndarray) -> float:
+    """The force that takes no joint into its soft wall. `torque`: of one newton, by joint."""
+    rooms = [
+        min(home - joint.low, joint.high - home) - wall(joint.low, joint.high)
+        for joint, home in zip(guesses.joints, arm.home, strict=True)
+    ]
+    return min(
+        FREE_SHARE * room * joint.K_q / max(abs(one), 1e-9)
+        for joint, room, one in zip(guesses.joints, rooms, torque, strict=True)
+    )
+
+
 def _push(arm: ArmFacts, guesses: Guesses) -> tuple[np.ndarray, float]:
     """Force in base axes, and how far the tip moves: C = J K_q⁻¹ Jᵀ."""
     J = arm.jacobian[:3]
@@ -55,5 +68,7 @@ def _push(arm: ArmFacts, guesses: Guesses) -> tuple[np.ndarray, float]:
         TORQUE_SHARE * joint.torque / max(abs(torque), 1e-9)
         for joint, torque in zip(guesses.joints, J.T @ direction, strict=True)
     )
-    force = min(DEFLECTION_m / compliance[-1], bearable, MOST_N)
+    force = min(
+        DEFLECTION_m / compliance[-1], bearable, _free(arm, guesses, J.T @ direction), MOST_N
+    )
     return force * direction, float(force * compliance[-1])

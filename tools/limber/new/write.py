@@ -11,6 +11,7 @@ from limber.errors import OK, InputError
 from limber.model.validation import run_checker
 from limber.new import facts, robot_text, scenario_text
 from limber.new.guesses import guess
+from limber.output import write_new
 from limber.paths import existing_file
 
 RATES_Hz = (1000, 500, 250, 100)
@@ -41,9 +42,7 @@ def write(
         raise InputError(f"{drives} drives count turns; {', '.join(sliding)} slides: use damiao")
     guesses = guess(arm, drives)
     rate = _write_robot(folder, name, arm, guesses, drives)
-    scenario.write_text(
-        scenario_text.text(name, folder.name, scenario.name, arm, guesses), encoding="utf-8"
-    )
+    write_new(scenario, scenario_text.text(name, folder.name, scenario.name, arm, guesses))
     _tell(folder, scenario, rate, console)
     return OK
 

@@ -24,7 +24,9 @@ class Chart:
 
     `stacked`: these are drawn as areas on top of each other, negative values below zero; the others
     as lines. `x`: what `t_s` is if it is not arm time. `log`: logarithmic axes.
-    `zero`: the y axis begins at zero.
+    `zero`: the y axis begins at zero. `least`: the y axis reaches at least so far on both sides of
+    zero, so that rest looks like rest; 0: no such quantity. `loop`: a way through the plane of x
+    and y, which may go back.
     """
 
     title: str
@@ -36,6 +38,8 @@ class Chart:
     x: str = ARM_TIME
     log: bool = False
     zero: bool = False
+    least: float = 0.0
+    loop: bool = False
 
     @property
     def over_time(self) -> bool:
@@ -48,6 +52,18 @@ class Chart:
         kept = (self.t_s >= begin_s) & ~went_back(self.t_s)
         series = {name: values[kept] for name, values in self.series.items()}
         return replace(self, t_s=self.t_s[kept], series=series)
+
+    def constant(self) -> str:
+        """The values in words if none of them changes, else empty."""
+        ends = []
+        for values in self.series.values():
+            finite = values[np.isfinite(values)]
+            if len(finite) and finite.min() != finite.max():
+                return ""
+            ends += [f"{finite[0]:.4g}"] if len(finite) else []
+        if not ends:
+            return ""
+        return f"{self.title} {' / '.join(ends if len(set(ends)) > 1 else ends[:1])} {self.unit}"
 
     def color_numbers(self) -> list[int]:
         """One for each series; "q desired" has the colour of the "q" before it."""

@@ -10,6 +10,7 @@ from limber.messages import message_class
 from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.rotations import rotation_error
 from limber.plot.chart import Chart
+from limber.plot.compliance import compliance_charts
 
 AXES = ("x", "y", "z")
 OVERVIEW = (
@@ -50,6 +51,11 @@ def begin_s(log: Log) -> float:
     return float(time_s(state)[np.argmax(answered)]) if answered.any() else -np.inf
 
 
+def is_pose(quat: np.ndarray) -> np.ndarray:
+    """Which of the quaternions, n x 4, are one: before there is a pose they are zeros."""
+    return np.linalg.norm(quat, axis=1) > 0.5
+
+
 def _joint_count(records: np.ndarray) -> int:
     return int(records["num_joints"].max(initial=0))
 
@@ -66,12 +72,15 @@ def _joint_charts(log: Log, names: list[str]) -> list[Chart]:
     state = log.read("JOINT_STATE")
     t, labels = time_s(state), _labels(_joint_count(state), names)
     fields = (
-        ("q", "joint position", "rad"),
-        ("v", "joint velocity", "rad/s"),
-        ("tau", "torque the drives report", "N m"),
-        ("temperature_degC", "temperature", "°C"),
+        ("q", "joint position", "rad", 0.0),
+        ("v", "joint velocity", "rad/s", 0.05),
+        ("tau", "torque the drives report", "N m", 0.5),
+        ("temperature_degC", "temperature", "°C", 0.0),
     )
-    return [Chart(title, unit, t, _columns(state[key], labels)) for key, title, unit in fields]
+    return [
+        Chart(title, unit, t, _columns(state[key], labels), least=least)
+        for key, title, unit, least in fields
+    ]
 
 
 def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
@@ -91,37 +100,41 @@ def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
         of_joints = _columns(K_q, _labels(n, names))
         stiffness.append(Chart("K_q in effect", "N m/rad", t, of_joints, zero=True))
     sent = _columns(status["tau_sent"], _labels(n, names))
-    return [*moved, *stiffness, Chart("torque sent to the joints", "N m", t, sent)]
+    torque = Chart("torque sent to the joints", "N m", t, sent, least=0.5)
+    return [*moved, *stiffness, torque, *compliance_charts(log)]
 
 
 def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
-    status, truth = log.read("CONTROLLER_STATUS"), log.read("SIM_TRUTH")
-    t = time_s(status)
+    all_status, truth = log.read("CONTROLLER_STATUS"), log.read("SIM_TRUTH")
+    status = all_status[is_pose(all_status["quat_BT"])]  # from the tip's start
+    t, wanted = time_s(status), is_pose(status["quat_BD"])
+    p_BD = np.where(wanted[:, None], status["p_BD"], np.nan)
     position = Chart("tip position", "m", t)
     for i, axis in enumerate(AXES):
         position.series[axis] = status["p_BT"][:, i]
-        position.series[f"{axis} desired"] = status["p_BD"][:, i]
+        position.series[f"{axis} desired"] = p_BD[:, i]
         position.dashed.add(f"{axis} desired")
-    away_mm = (status["p_BT"] - status["p_BD"]) * 1e3
-    turned = rotation_error(status["quat_BT"], status["quat_BD"])
+    away_mm = (status["p_BT"] - p_BD) * 1e3
+    turned = np.full((len(status), 3), np.nan)
+    turned[wanted] = rotation_error(status["quat_BT"][wanted], status["quat_BD"][wanted])
     charts = [
         position,
-        Chart("tip away from its goal", "mm", t, _columns(away_mm, list(AXES))),
-        Chart("tip turned from its goal", "rad", t, _columns(turned, list(AXES))),
+        Chart("tip away from its goal", "mm", t, _columns(away_mm, list(AXES)), least=1.0),
+        Chart("tip turned from its goal", "rad", t, _columns(turned, list(AXES)), least=0.01),
     ]
-    charts += _link_charts(status, truth)
+    charts += _link_charts(all_status, truth)
     if len(truth) and np.any(truth["F_push"][:, 3:]):
         torque = _columns(truth["F_push"][:, 3:], [f"{axis} push" for axis in AXES])
-        charts.append(Chart("torque of pushes on the arm", "N m", time_s(truth), torque))
+        charts.append(Chart("torque of pushes on the arm", "N m", time_s(truth), torque, least=0.1))
     if len(truth):
-        force = Chart("force of walls and pushes on the arm", "N", time_s(truth))
+        force = Chart("force of walls and pushes on the arm", "N", time_s(truth), least=1.0)
         for i, axis in enumerate(AXES):
             force.series[axis] = truth["F_contact"][:, i]
             force.series[f"{axis} push"] = truth["F_push"][:, i]
             force.dashed.add(f"{axis} push")
         charts.append(force)
     energy = {"kinetic, arm": status["kinetic_energy_J"], "spring": status["spring_energy_J"]}
-    return [*charts, Chart("energy", "J", t, energy)]
+    return [*charts, Chart("energy", "J", t, energy, least=0.01)]
 
 
 def _link_charts(status: np.ndarray, truth: np.ndarray) -> list[Chart]:
@@ -136,15 +149,29 @@ def _link_charts(status: np.ndarray, truth: np.ndarray) -> list[Chart]:
     goal = np.column_stack([np.interp(t, time_s(known), g) for g in known["p_BD"].T])
     away_mm = (truth["p_BT"] - goal) * 1e3
     return [
-        Chart("tip behind the springs away from its goal", "mm", t, _columns(away_mm, list(AXES)))
+        Chart(
+            "tip behind the springs away from its goal",
+            "mm",
+            t,
+            _columns(away_mm, list(AXES)),
+            least=1.0,
+        )
     ]
 
 
 def _contact_charts(status: np.ndarray) -> list[Chart]:
     t, F_ext, axes = time_s(status), status["F_ext"], list(AXES)
     return [
-        Chart("contact force at the tip (controller)", "N", t, _columns(F_ext[:, :3], axes)),
-        Chart("contact torque at the tip (controller)", "N m", t, _columns(F_ext[:, 3:], axes)),
+        Chart(
+            "contact force at the tip (controller)", "N", t, _columns(F_ext[:, :3], axes), least=1.0
+        ),
+        Chart(
+            "contact torque at the tip (controller)",
+            "N m",
+            t,
+            _columns(F_ext[:, 3:], axes),
+            least=0.1,
+        ),
     ]
 
 
@@ -161,7 +188,7 @@ def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
     for i, label in enumerate(_labels(_joint_count(status), names)):
         series = {name: status[f"tau_{term}"][:, i] for term, name in names_of.items()}
         title, stacked = f"torque of {label}", set(TERMS.values())
-        charts.append(Chart(title, "N m", time_s(status), series, stacked=stacked))
+        charts.append(Chart(title, "N m", time_s(status), series, stacked=stacked, least=0.5))
     return charts
 
 
@@ -174,21 +201,21 @@ def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
     def those_with(flag: int) -> list[int]:
         return [i for i in range(len(labels)) if (state["joint_flags"][:, i] & flag).any()]
 
-    def chart(title: str, unit: str, values: np.ndarray, flag: int) -> Chart:
+    def chart(title: str, unit: str, values: np.ndarray, flag: int, least: float) -> Chart:
         series = {labels[i]: values[:, i] for i in those_with(flag)}
-        return Chart(title, unit, t, series)
+        return Chart(title, unit, t, series, least=least)
 
     deflection_mrad = (state["theta"] - state["q"]) * 1e3
-    torque = Chart("torque on the link", "N m", t)
+    torque = Chart("torque on the link", "N m", t, least=0.5)
     for i in those_with(flags.JOINT_TORQUE_SENSOR):
         asked = f"{labels[i]} asked of the motor"
         torque.series[labels[i]] = state["tau"][:, i]
         torque.series[asked] = state["tau_applied"][:, i]
         torque.dashed.add(asked)
     return [
-        chart("motor ahead of the link", "mrad", deflection_mrad, flags.JOINT_LINK_ENCODER),
+        chart("motor ahead of the link", "mrad", deflection_mrad, flags.JOINT_LINK_ENCODER, 1.0),
         torque,
-        chart("preload of the two motors", "rad", state["preload"], flags.JOINT_TWO_MOTORS),
+        chart("preload of the two motors", "rad", state["preload"], flags.JOINT_TWO_MOTORS, 0.01),
     ]
 
 
@@ -208,10 +235,14 @@ def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
     counts = {"late cycles": driver["late_cycles"], "overruns": driver["overrun_cycles"]}
     return [
         Chart("time from state to state", "ms", time_s(state), {"step": step}),
-        Chart("lateness of the cycle, so far", "µs", t, quantiles("lateness", *QUANTILES)),
-        Chart("state to torque, so far", "µs", t, quantiles("answer", "p50", "p99", "max")),
-        Chart(OWN_TIME, "µs", time_s(status), loop),
-        Chart("late, counted so far", "cycles", t, counts),
+        Chart(
+            "lateness of the cycle, so far", "µs", t, quantiles("lateness", *QUANTILES), zero=True
+        ),
+        Chart(
+            "state to torque, so far", "µs", t, quantiles("answer", "p50", "p99", "max"), zero=True
+        ),
+        Chart(OWN_TIME, "µs", time_s(status), loop, zero=True),
+        Chart("late, counted so far", "cycles", t, counts, zero=True),
         *_tail(step[1:], status["cycle_ns"]),
     ]
 
@@ -244,9 +275,11 @@ def _bus_charts(log: Log, _names: list[str]) -> list[Chart]:
     }
     load = _columns(driver["bus_load_counted"] * 100, buses)
     return [
-        Chart("bus load", "%", t, load),
-        Chart("counted so far", "cycles", t, counts),
-        Chart("error frames so far", "frames", t, _columns(driver["error_frames"], buses)),
+        Chart("bus load", "%", t, load, zero=True),
+        Chart("counted so far", "cycles", t, counts, zero=True),
+        Chart(
+            "error frames so far", "frames", t, _columns(driver["error_frames"], buses), zero=True
+        ),
     ]
 
 

@@ -43,6 +43,8 @@ class Drawing:
     spans: list[Span] = field(default_factory=list)
     results: list[dict[str, Any]] = field(default_factory=list)
     figure: Figure | None = None
+    run: str = ""  # which, of a log that holds several
+    constant: dict[str, list[str]] = field(default_factory=dict)  # by topic: what is not drawn
 
     @property
     def verdict(self) -> str:
@@ -53,9 +55,9 @@ class Drawing:
         return f"all {len(judged)} checks passed" if judged else ""
 
 
-def drawing(path: Path, topics: list[str]) -> Drawing:
-    """`topics`: empty for all that the log has something of."""
-    log = Log(path)
+def drawing(path: Path, topics: list[str], run: int | None = None) -> Drawing:
+    """`topics`: empty for all that the log has something of. `run`: None for the last."""
+    log, several = Log(path).one_run(run)
     folder = log.path.parent
     robot = _robot(folder)
     names = Names(robot.joint_names if robot else [], law_names())
@@ -66,7 +68,25 @@ def drawing(path: Path, topics: list[str]) -> Drawing:
     begin_s = charts.begin_s(log)
     marked = marks(log, names, begin_s)
     figure = _figure(log, robot, begin_s) if robot else None
-    return Drawing(_title(log), built, marked, spans(log, marked), _results(folder), figure)
+    title = " · ".join(filter(None, [_title(log), several]))
+    results = [] if several else _results(folder)
+    return Drawing(title, built, marked, spans(log, marked), results, figure, several)
+
+
+def leave_out_constant(drawn: Drawing, other: Drawing | None) -> None:
+    """Charts in which nothing changes become words in `constant`, unless a topic has no other."""
+    for topic, shown in drawn.topics.items():
+        beside = {chart.title: chart for chart in (other.topics.get(topic, []) if other else [])}
+        still = [
+            chart
+            for chart in shown
+            if chart.constant() and (chart.title not in beside or beside[chart.title].constant())
+        ]
+        if len(still) < len(shown):
+            drawn.topics[topic] = [
+                chart for chart in shown if not any(chart is one for one in still)
+            ]
+            drawn.constant[topic] = [chart.constant() for chart in still]
 
 
 def _figure(log: Log, robot: Robot, begin_s: float) -> Figure | None:

@@ -1,6 +1,7 @@
 """Charts as one PNG, by matplotlib."""
 
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,11 +10,16 @@ from limber.plot.chart import Chart
 from limber.plot.drawing import Drawing
 from limber.plot.marks import Mark, Span
 from limber.plot.style import COLORS, STYLE
+from limber.plot.thinning import binned, span_of, swings
 
-EVENT, BAD = "0.55", "#C00000"
-ROW_INCH, EVENT_INCH = 2.1, 0.16
+EVENT, BAD, ZERO = "0.55", "#C00000", "0.45"
+WIDTH_INCH, ROW_INCH, LOOP_INCH, EVENT_INCH = 11.0, 2.1, 4.2, 0.16
+LEFT_INCH, BOTTOM_INCH, LINE_INCH, LETTER_INCH = 1.1, 0.5, 0.17, 0.064
 LEVELS = 4
+NUMBERS_INCH = 0.15 + 8 / 72 * LEVELS  # above the first axes
 LISTED = 30  # events below the overview
+BINS = 900  # across the picture
+BANDS = "light bands: smallest to greatest where a value swings within a pixel; line: mean"
 
 
 def figure(topic: str, drawing: Drawing, other: Drawing | None = None) -> plt.Figure:
@@ -21,15 +27,27 @@ def figure(topic: str, drawing: Drawing, other: Drawing | None = None) -> plt.Fi
     shown = drawing.topics[topic]
     listed = _listed(drawing) if topic == "overview" else []
     with plt.rc_context(STYLE):
-        height = 1.2 + ROW_INCH * len(shown) + EVENT_INCH * len(listed)
-        fig = plt.figure(figsize=(11, height), layout="constrained")
-        fig.suptitle(_title(topic, drawing, other), fontsize=10)
-        rows = [ROW_INCH] * len(shown) + ([EVENT_INCH * (len(listed) + 1)] if listed else [])
-        grid = fig.add_gridspec(len(rows), 1, height_ratios=rows)
-        first = None
+        rows = [LOOP_INCH if chart.loop else ROW_INCH for chart in shown]
+        rows += [EVENT_INCH * (len(listed) + 1)] if listed else []
+        title = _title(topic, drawing, other)
+        above = LINE_INCH * (title.count("\n") + 2)
+        above += NUMBERS_INCH if shown[0].over_time else 0.0
+        height = above + sum(rows) + BOTTOM_INCH
+        fig = plt.figure(figsize=(WIDTH_INCH, height))
+        grid = fig.add_gridspec(
+            len(rows),
+            1,
+            height_ratios=rows,
+            left=LEFT_INCH / WIDTH_INCH,
+            right=1 - _legend_inch(shown) / WIDTH_INCH,
+            top=1 - above / height,
+            bottom=BOTTOM_INCH / height,
+            hspace=0.2 if listed or not all(chart.over_time for chart in shown) else 0.12,
+        )
+        first, bands = None, False
         for row, chart in enumerate(shown):
             ax = fig.add_subplot(grid[row], sharex=first if chart.over_time else None)
-            _draw(ax, chart, _same(chart, topic, other))
+            bands |= _draw(ax, chart, _same(chart, topic, other))
             if chart.over_time:
                 _mark(ax, drawing.marks, drawing.spans, numbered=first is None)
                 first = first or ax
@@ -39,7 +57,14 @@ def figure(topic: str, drawing: Drawing, other: Drawing | None = None) -> plt.Fi
                 ax.set_xlabel(chart.x)
         if listed:
             _list(fig.add_subplot(grid[len(shown)]), listed)
+        title += f"\n{BANDS}" if bands else ""
+        fig.suptitle(title, fontsize=10, y=1 - 0.06 / height, va="top", parse_math=False)
     return fig
+
+
+def _legend_inch(shown: list[Chart]) -> float:
+    longest = max((len(name) for chart in shown for name in chart.series), default=0)
+    return 0.55 + LETTER_INCH * longest
 
 
 def _title(topic: str, drawing: Drawing, other: Drawing | None) -> str:
@@ -48,6 +73,8 @@ def _title(topic: str, drawing: Drawing, other: Drawing | None) -> str:
         lines.append(f"dotted: {other.title}")
     elif topic == "overview" and drawing.verdict:
         lines.append(drawing.verdict)
+    if still := drawing.constant.get(topic):
+        lines += textwrap.wrap(f"constant, not drawn: {'; '.join(still)}", 150)
     return "\n".join(lines)
 
 
@@ -56,29 +83,56 @@ def _same(chart: Chart, topic: str, other: Drawing | None) -> Chart | None:
     return next((one for one in charts if one.title == chart.title), None)
 
 
-def _draw(ax: plt.Axes, chart: Chart, other: Chart | None) -> None:
+def _draw(ax: plt.Axes, chart: Chart, other: Chart | None) -> bool:
+    """True if something is drawn as a band."""
     colors = [COLORS[number % len(COLORS)] for number in chart.color_numbers()]
     color_of = dict(zip(chart.series, colors, strict=True))
     stack = chart.stacked if other is None else set()
-    for name, low, high in chart.areas() if stack else ():
-        ax.fill_between(
-            chart.t_s, low, high, label=name, color=color_of[name], alpha=0.6, linewidth=0
-        )
-    for name, values in chart.series.items():
-        if name not in stack:
-            style = "--" if name in chart.dashed else "-"
-            ax.plot(chart.t_s, values, style, label=name, color=color_of[name])
+    lines = {name: binned(chart.t_s, values, BINS) for name, values in chart.series.items()}
+    span, bands = span_of(chart), False
+    if stack:
+        means = {name: line.steady(span) for name, line in lines.items()}
+        smooth = replace(chart, t_s=next(iter(lines.values())).t_s, series=means)
+        for name, low, high in smooth.areas():
+            color = color_of[name]
+            ax.fill_between(smooth.t_s, low, high, label=name, color=color, alpha=0.6, linewidth=0)
+    for name, line in lines.items():
+        if name in stack:
+            continue
+        style, color = "--" if name in chart.dashed else "-", color_of[name]
+        t, values = line.outline
+        if chart.over_time and swings(line, span):
+            ax.fill_between(line.t_s, line.low, line.high, color=color, alpha=0.22, linewidth=0)
+            t, values, bands = line.t_s, line.steady(span), True
+        ax.plot(t, values, style, label=name, color=color)
     for name, values in other.series.items() if other else ():
         if name not in chart.dashed and name in color_of:
-            ax.plot(other.t_s, values, ":", color=color_of[name], linewidth=1.6)
+            t, values = binned(other.t_s, values, BINS).outline
+            ax.plot(t, values, ":", color=color_of[name], linewidth=1.6)
+    _set_range(ax, chart)
+    ax.set_ylabel(_wrapped(chart), fontsize=8, parse_math=False)
+    legend = ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+    ax.margins(x=0.03 if chart.loop else 0)
+    return bands
+
+
+def _set_range(ax: plt.Axes, chart: Chart) -> None:
     if chart.log:
         ax.set_xscale("log")
         ax.set_yscale("log")
+        return
+    if chart.loop:
+        ax.axvline(0.0, color=ZERO, linewidth=0.8, zorder=1)
+    low, high = ax.get_ylim()
     if chart.zero:
-        ax.set_ylim(bottom=0.0)
-    ax.set_ylabel(_wrapped(chart), fontsize=8)
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
-    ax.margins(x=0)
+        ax.set_ylim(0.0, high if high > 0 else 1.0)
+    elif chart.least:
+        low, high = min(low, -chart.least), max(high, chart.least)
+        ax.set_ylim(low, high)
+    if low <= 0.0 <= high:
+        ax.axhline(0.0, color=ZERO, linewidth=0.8, zorder=1)
 
 
 def _mark(ax: plt.Axes, marks: list[Mark], spans: list[Span], numbered: bool) -> None:

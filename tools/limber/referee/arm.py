@@ -1,13 +1,13 @@
 """What robot.yaml and its URDF say of each motor: where it is on the bus, and its limits."""
 
 import math
-import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from limber.errors import InputError
 from limber.model.robot import load_robot, read_yaml
+from limber.model.xml_file import read_xml
 
 TURN_rad = 2.0 * math.pi
 PERMILLE_MOST = 32.767  # of the rated torque, in 16 bits
@@ -87,7 +87,7 @@ def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> di
 def _urdf_limits(urdf: Path, joints: dict[str, Any]) -> dict[str, tuple[float, float]]:
     """Velocity and effort of those joints of robot.yaml that do not ignore them."""
     found = {}
-    for joint in ElementTree.parse(urdf).getroot().findall("joint"):
+    for joint in read_xml(urdf).findall("joint"):
         limit = joint.find("limit")
         own = joints.get(joint.get("name"), {"urdf_limits": "ignore"})
         if limit is not None and own.get("urdf_limits") != "ignore":

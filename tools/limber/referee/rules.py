@@ -11,6 +11,7 @@ from limber.referee.events import Command, Kind, State
 
 SPEED_MARGIN = 1.1  # of the limit, for so many replies in a row:
 FAST_REPLIES = 3
+COMES_AT = 0.9  # of the torque rate, towards braking
 POSITION_MARGIN = 0.02  # rad or m, beyond the limit
 GRACE_REPLIES = 1  # the command on its way when the reply arrives
 FAR_OUTSIDE = 0.15  # rad or m: where a hold cannot be told from a command
@@ -160,8 +161,21 @@ def speed(track: Track) -> Iterator[Breach]:
             continue
         if command.kind is Kind.FOLLOW and command.torque * last[-1].velocity <= 0.0:
             continue  # against the motion
+        if command.kind is Kind.HOLD and _comes_to_brake(track, number, last[-1]):
+            continue
         text = "joint speed, and no command to brake"
         yield track.breach(command, "speed", last[-1].velocity, limit, "rad/s", text)
+
+
+def _comes_to_brake(track: Track, number: int, state: State) -> bool:
+    """Feed-forward and damping together brake, or go there at the torque's rate."""
+    command, before = track.commands[number], track.commands[number - 1]
+    if command.kp != 0.0:
+        return False
+    way = math.copysign(1.0, state.velocity)
+    now = way * (command.torque - command.kd * state.velocity)
+    step = way * (before.torque - before.kd * state.velocity) - now
+    return now <= 0.0 or step >= COMES_AT * track.motor.torque_step_Nm - track.resolution_Nm
 
 
 def position(track: Track) -> Iterator[Breach]:

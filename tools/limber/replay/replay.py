@@ -5,14 +5,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import lcm
 import numpy as np
 from rich.console import Console
 from rich.progress import Progress
 
 from limber import messages
 from limber.errors import InputError, RunError
-from limber.live.network import CURE
+from limber.live.line import Line
 from limber.log.reader import Log
 from limber.replay.address import address
 from limber.replay.choice import choose
@@ -59,10 +58,7 @@ def replay(path: Path, options: ReplayOptions, console: Console) -> None:
     first_us, length_s = log.first_us, log.length_s
     if options.begin_s >= min(options.end_s, length_s):
         raise InputError(f"--from {options.begin_s:g}: the log ends after {length_s:g} s")
-    try:
-        line = lcm.LCM(target.url)
-    except RuntimeError as error:
-        raise RunError(f"LCM finds no multicast route: {CURE}") from error
+    line = Line(target.url)
     require_silence(line, target.url)
     if log.damage():
         console.print(log.damage(), style="yellow", soft_wrap=True)
@@ -126,14 +122,13 @@ class _Watch:
     than those of the log.
     """
 
-    def __init__(self, line: lcm.LCM, log: Log, sent: dict[str, str]) -> None:
+    def __init__(self, line: Line, log: Log, sent: dict[str, str]) -> None:
         self._line = line
         self._foreign = False
         self._sessions = _sessions(log) if "JOINT_STATE" in sent else set()
 
     def __enter__(self) -> "_Watch":
         self._subscription = self._line.subscribe("JOINT_STATE", self._hear)
-        self._subscription.set_queue_capacity(10)  # the newest; check() reads them now and then
         return self
 
     def __exit__(self, *_error: object) -> None:

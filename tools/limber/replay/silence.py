@@ -1,14 +1,13 @@
 """Whether anything of a running stack is heard on an address."""
 
-import lcm
-
 from limber.errors import RunError
+from limber.live.line import Line
 
 LIVE = ("JOINT_STATE", "CONTROLLER_STATUS", "DRIVER_STATUS", "ROBOT_INFO", "SIM_TRUTH")
 WINDOWS, WINDOW_S = 10, 0.05  # ROBOT_INFO comes every 0.2 s, all else more often
 
 
-def require_silence(line: lcm.LCM, url: str) -> None:
+def require_silence(line: Line, url: str) -> None:
     """RunError if a stack is heard. Short windows instead of one span of time: a pause of this
     process, or of the machine and all senders with it, costs one window, not the whole search.
     """

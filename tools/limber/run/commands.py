@@ -59,8 +59,10 @@ def lab(path: Path, options: RunOptions, console: Console) -> int:
     return report(finished, scenario, console)
 
 
-def measure_again(folder: Path, console: Console) -> int:
-    """From the copies of robot and scenario beside the log."""
+def measure_again(folder: Path, run: int | None, console: Console) -> int:
+    """From the copies of robot and scenario beside the log; of several runs in it the last, unless
+    one is named.
+    """
     header = load_header(folder)
     scenario = load_scenario(existing_file(folder / "scenario.yaml", "scenario"), robot=folder)
     finished = FinishedRun(
@@ -71,16 +73,21 @@ def measure_again(folder: Path, console: Console) -> int:
         "lost": header.get("recorder_lost", {}),
         "dropped": header.get("recorder_dropped", 0),
     }
-    return report(finished, scenario, console)
+    return report(finished, scenario, console, run)
 
 
-def report(finished: FinishedRun, scenario: Scenario, console: Console) -> int:
+def report(
+    finished: FinishedRun, scenario: Scenario, console: Console, run: int | None = None
+) -> int:
     """Measures the log, writes summary.json and prints it; returns the exit code."""
     if not finished.recorded:
         ending = "stopped by you" if finished.stopped_early else "ended"
         console.print(f"{scenario.name} {ending}; not recorded, so nothing is measured.")
         return OK
-    summary, _ = summarize(finished, scenario)
+    summary, _ = summarize(finished, scenario, run)
+    if "run" in summary.header:
+        told = f"{summary.header['run']} is measured; --run chooses another"
+        console.print(f"{finished.log}: {told}", soft_wrap=True)
     console.print(summary.table(f"{scenario.name} on {scenario.robot.name}, {finished.mode}"))
     show_faults(summary, finished.folder, console)
     console.print(f"log and summary: {finished.folder}", soft_wrap=True)
@@ -110,8 +117,10 @@ def _boxes(folder: Path) -> list[str]:
     ]
 
 
-def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]:
-    log = Log(finished.log)
+def summarize(
+    finished: FinishedRun, scenario: Scenario, run: int | None = None
+) -> tuple[Summary, list]:
+    log, several = Log(finished.log).one_run(run)
     lost = finished.recorder.get("lost", {})
     dropped = finished.recorder.get("dropped", 0)
     summary, pushes = measure(
@@ -120,6 +129,8 @@ def summarize(finished: FinishedRun, scenario: Scenario) -> tuple[Summary, list]
     if len(log.read("JOINT_STATE")) == 0:
         raise InputError(f"{finished.log} holds no JOINT_STATE: the driver never came up")
     summary.faults = with_words(summary.faults, finished.folder)
+    if several:
+        summary.header["run"] = several
     summary.header["recorder_lost"] = {name: count for name, count in lost.items() if count}
     if dropped:
         summary.header["recorder_dropped"] = dropped

@@ -51,25 +51,23 @@ def demo(seconds: float | None, sensors: bool, options: RunOptions, console: Con
     if options.page:
         network.require_shared_network(options.private_network, "the ports that a browser opens")
     network.ensure_multicast(options.private_network)
-    folder = run_folder(options.out or commands.next_folder("demo"))
     console.print(
         f"A simulated {scenario.robot.name} on a CAN bus; driver and controller as for a real arm. "
-        f"{scenario.duration_s:g} s, {'lock step' if options.lockstep else 'realtime'}."
+        f"{scenario.duration_s:g} s of arm time."
     )
-    finished = runner.run(scenario, folder, options, console)
+    finished = _run(scenario, options, console)
     summary, pushes = commands.summarize(finished, scenario)
     if _was_late(summary, finished):
         cause = summary.faults[0]
         console.print(
             f"[yellow]After {cause.time_s:.1f} s this machine was busy elsewhere for too long "
             f"({cause.problem.code}), and the driver stopped the arm, as it should "
-            f"({folder}).\nHere is the same without a clock; limber doctor names cures.[/]"
+            f"({finished.folder}).\nHere is the same with simulated time that waits for the "
+            "machine; limber doctor names cures.[/]"
         )
-        again = replace(options, out=None, lockstep=True)
-        beside = options.out and options.out.with_name(f"{options.out.name}-lockstep")
-        folder = run_folder(beside or commands.next_folder("demo"))
-        finished = runner.run(scenario, folder, again, console)
+        finished = _run(scenario, _beside(options, "lockstep", lockstep=None), console)
         summary, pushes = commands.summarize(finished, scenario)
+    folder = finished.folder
     _show(summary, pushes, scenario, folder, console)
     picture = _picture(finished.log, scenario, pushes, folder)
     files = {
@@ -80,6 +78,28 @@ def demo(seconds: float | None, sensors: bool, options: RunOptions, console: Con
     for path, what in files.items():
         console.print(f"{path}  [dim]{what}[/]", soft_wrap=True)
     return OK if summary.passed else OUT_OF_TOLERANCE
+
+
+def _run(scenario: Scenario, options: RunOptions, console: Console) -> FinishedRun:
+    """In one process, if the machine does not keep up with three."""
+    folder = run_folder(options.out or commands.next_folder("demo"))
+    finished = runner.run(scenario, folder, options, console)
+    if not finished.behind or options.one_process:
+        return finished
+    share = runner.BEHIND.search(finished.behind)
+    console.print(
+        f"[yellow]With three processes {share[0] if share else 'it lags'}: each waits for its turn "
+        f"on a busy machine ({folder}).\nHere is the same in one process (--one-process), which "
+        "needs no turns.[/]"
+    )
+    again = _beside(options, "one-process", one_process=True, leave_when_behind=False)
+    return _run(scenario, again, console)
+
+
+def _beside(options: RunOptions, word: str, **changed: bool | None) -> RunOptions:
+    """For a second attempt, in a folder of its own."""
+    out = options.out and options.out.with_name(f"{options.out.name}-{word}")
+    return replace(options, out=out, **changed)
 
 
 def _was_late(summary: Summary, finished: FinishedRun) -> bool:

@@ -12,7 +12,8 @@ CAN_LOG_NAME = "run.can.log"
 @dataclass(frozen=True)
 class RunOptions:
     out: Path | None = None  # folder for the results; None: out/NAME-<n>
-    lockstep: bool | None = None  # None: the scenario's mode
+    lockstep: bool | None = None  # or real time; None: see pace.choose()
+    one_process: bool = False  # driver, controller and simulator in one
     buses: tuple[str, ...] = ()  # NAME=ADDR, each overrides an address of robot.yaml
     with_simulator: bool = True  # False: an arm, or another simulator, is on the bus
     private_network: bool = False
@@ -22,6 +23,7 @@ class RunOptions:
     record_plain: bool = False  # a plain LCM log instead of a compressed one
     record_can: bool = False  # the frames, too
     page: bool = False  # `limber monitor` beside it
+    leave_when_behind: bool = False  # end a paced run that the machine does not keep up with
 
     @property
     def log_name(self) -> str:
@@ -31,8 +33,9 @@ class RunOptions:
 @dataclass
 class FinishedRun:
     folder: Path
-    mode: str  # lockstep, realtime or lab
+    mode: str  # lockstep, paced, realtime or lab
     stopped_early: bool = False
+    behind: str = ""  # it was left since the machine did not keep up: the program's words
     recorded: bool = True
     log_name: str = LOG_NAME
     recorder: dict[str, Any] = field(default_factory=dict)  # the report of limber-record

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from limber.errors import WRONG_INPUT, InputError, LimberError, RunError
+from limber.output import new_file
 
 _PR_SET_PDEATHSIG = 1
 _MARKS = (": warning: ", ": error: ")  # as the programs write them
@@ -86,7 +87,7 @@ class ProcessGroup:
             if os.getppid() != parent:
                 os._exit(1)
 
-        with open(log, "wb") as output:
+        with new_file(log, "wb") as output:
             process = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,

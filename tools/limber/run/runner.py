@@ -1,7 +1,7 @@
 """Runs a scenario: starts the processes, watches them, stops them, leaves a folder of results."""
 
 import json
-import shutil
+import re
 import signal
 import sys
 from collections.abc import Callable
@@ -14,40 +14,44 @@ from limber.errors import RunError
 from limber.live.receiver import driver_is_running
 from limber.model.robot import copy_description
 from limber.model.scenario import Scenario
+from limber.output import copy_new
 from limber.paths import program
 from limber.run.display import display
 from limber.run.options import CAN_LOG_NAME, LOG_NAME, FinishedRun, RunOptions
+from limber.run.pace import Pace, choose
 from limber.run.processes import Child, ProcessGroup, process_group, sigterm_as_interrupt
 
 START_TIMEOUT_S = 10.0
 STOP_TIMEOUT_S = 5.0
-TELLERS = ("limber-driver", "limber-controller", "limber-lab")
+DRIVER, LAB = "limber-driver", "limber-lab"  # the clock: a run is over when it ends
+TELLERS = (DRIVER, "limber-controller", "limber-sim", LAB)
+BEHIND = re.compile(r"simulated time runs at \d+ % of real time")  # in all of one process' words
 MONITOR = "limber-monitor"
 LISTENERS = ("limber-record", "limber-can", MONITOR)  # never a reason to stop an arm
 
 
 def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> FinishedRun:
-    """The three processes and a recorder. Ctrl-C ends the run in good order, the log stays."""
+    """The three processes and a recorder, or all in one. Ctrl-C ends the run in good order, the
+    log stays.
+    """
     if driver_is_running():
         raise RunError(
             "another driver is publishing on this machine: stop it, or run beside it with --private"
         )
-    lockstep = scenario.lockstep if options.lockstep is None else options.lockstep
+    pace = choose(scenario, options)
     recorded = scenario.record if options.record is None else options.record
-    commands = _commands(scenario, folder, options, lockstep, recorded)
+    commands = _commands(scenario, folder, options, pace, recorded)
     copy_inputs(scenario, folder)
-    mode = "lockstep" if lockstep else "realtime"
-    result = FinishedRun(folder, mode, recorded=recorded, log_name=options.log_name)
+    result = FinishedRun(folder, str(pace), recorded=recorded, log_name=options.log_name)
     with process_group(folder) as group, sigterm_as_interrupt():
         for name, command in commands.items():
             _start(group, name, command, console)
-        driver = group.children["limber-driver"]
-        code = _follow(
-            group, display(scenario, result.log, console, options.live_view), result, console
-        )
-        _tell(group, console)
-        if code != 0 and not result.stopped_early:
-            raise driver.failure()
+        clock = group.children[list(commands)[-1]]
+        shown = display(scenario, result.log, console, options.live_view)
+        code = _follow(group, clock.name, shown, result, options, console)
+        _tell(group, console, quiet=bool(result.behind))
+        if code != 0 and not (result.stopped_early or result.behind):
+            raise clock.failure()
         result.recorder = _stop_others(group)
     return result
 
@@ -79,7 +83,7 @@ def lab(
 
 def copy_inputs(scenario: Scenario, folder: Path) -> None:
     """The scenario and the robot as they were: a log without them cannot be understood later."""
-    shutil.copyfile(scenario.path, folder / "scenario.yaml")
+    copy_new(scenario.path, folder / "scenario.yaml")
     copy_description(scenario.robot, folder)
 
 
@@ -89,15 +93,49 @@ def _last_line(child: Child) -> str:
 
 
 def _commands(
-    scenario: Scenario, folder: Path, options: RunOptions, lockstep: bool, recorded: bool
+    scenario: Scenario, folder: Path, options: RunOptions, pace: Pace, recorded: bool
 ) -> dict[str, list[str]]:
-    """Program -> command line in the order of starting: the driver, the clock, is last."""
+    """Program -> command line in the order of starting: the clock, driver or lab, is last."""
+    started = {
+        name: [str(program(name)), *words]
+        for name, words in (
+            {LAB: _lab_words(scenario, folder, options, pace, recorded)}
+            if options.one_process
+            else _process_words(scenario, folder, options, pace, recorded)
+        ).items()
+    }
+    if pace == Pace.LOCKSTEP:  # as fast as the processors allow, but whoever records comes first
+        for name in started.keys() - {"limber-record", "limber-can"}:
+            started[name] = ["nice", "-n", "10", *started[name]]
+    if options.page:
+        path, robot = str(scenario.path), str(scenario.robot.folder)
+        started = {MONITOR: _monitor(path, robot, options.with_simulator), **started}
+    return started
+
+
+def _length_words(scenario: Scenario, options: RunOptions, pace: Pace) -> list[str]:
+    rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
+    if pace == Pace.REALTIME:
+        return [*rate, "--duration", f"{scenario.duration_s:.9g}"]
+    rate_hz = options.rate_hz or scenario.robot.rate_hz
+    return [*rate, "--cycles", str(round(scenario.duration_s * rate_hz))]
+
+
+def _lab_words(
+    scenario: Scenario, folder: Path, options: RunOptions, pace: Pace, recorded: bool
+) -> list[str]:
+    """It writes the log itself: no recorder has to keep up."""
+    words = [str(scenario.path), "--live", *["--paced"] * (pace == Pace.PACED)]
+    words += ["--log", str(folder / options.log_name)] * recorded
+    words += ["--can", str(folder / CAN_LOG_NAME)] * options.record_can
+    return words + _length_words(scenario, options, pace)
+
+
+def _process_words(
+    scenario: Scenario, folder: Path, options: RunOptions, pace: Pace, recorded: bool
+) -> dict[str, list[str]]:
     buses = [word for bus in options.buses for word in ("--bus", bus)]
     path, robot = str(scenario.path), str(scenario.robot.folder)
-    duration = ["--duration", f"{scenario.duration_s:.9g}"]
-    if lockstep:
-        rate_hz = options.rate_hz or scenario.robot.rate_hz
-        duration = ["--cycles", str(round(scenario.duration_s * rate_hz))]
     rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
     commands: dict[str, list[str]] = {}
     if recorded:
@@ -105,20 +143,12 @@ def _commands(
     if options.record_can:
         can_log = str(folder / CAN_LOG_NAME)
         commands["limber-can"] = ["record", robot, "--out", can_log, *buses]
-    pace = "--lockstep" if lockstep else "--realtime"
     if options.with_simulator:
-        commands["limber-sim"] = ["--scenario", path, *buses, *rate, pace]
-    commands["limber-controller"] = ["--scenario", path, "--robot", robot, pace]
-    commands["limber-driver"] = ["--robot", robot, *buses, *rate, *duration]
-    if lockstep:
-        commands["limber-driver"].append("--lockstep")
-    started = {name: [str(program(name)), *words] for name, words in commands.items()}
-    if lockstep:  # as fast as the processors allow, but whoever records comes first
-        for name in started.keys() - {"limber-record", "limber-can"}:
-            started[name] = ["nice", "-n", "10", *started[name]]
-    if options.page:
-        started = {MONITOR: _monitor(path, robot, options.with_simulator), **started}
-    return started
+        commands["limber-sim"] = ["--scenario", path, *buses, *rate, pace.option]
+    commands["limber-controller"] = ["--scenario", path, "--robot", robot, pace.option]
+    length = _length_words(scenario, options, pace)
+    commands[DRIVER] = ["--robot", robot, *buses, *length, pace.option]
+    return commands
 
 
 def _monitor(scenario: str, robot: str, simulated: bool) -> list[str]:
@@ -130,7 +160,7 @@ def _monitor(scenario: str, robot: str, simulated: bool) -> list[str]:
 def _start(group: ProcessGroup, name: str, command: list[str], console: Console) -> None:
     """Waits until the program is ready, which its first line of output shows."""
     child = group.start(name, command, spared=name in LISTENERS)
-    if name != "limber-driver":
+    if name not in (DRIVER, LAB):
         group.wait_for_line(child, "\n", START_TIMEOUT_S)
     if name == MONITOR:
         for line in child.last_lines(2):  # its address
@@ -139,32 +169,51 @@ def _start(group: ProcessGroup, name: str, command: list[str], console: Console)
 
 def _follow(
     group: ProcessGroup,
+    clock: str,
     display: AbstractContextManager[Callable[[], None]],
     result: FinishedRun,
+    options: RunOptions,
     console: Console,
 ) -> int:
-    """Shows the run until the driver ends, or ends the driver on Ctrl-C; returns its exit code."""
+    """Shows the run until the clock ends, or ends it on Ctrl-C; returns its exit code."""
     try:
         with display as update:
 
             def tick() -> None:
-                _tell(group, console)
+                told = _tell(group, console, quiet=options.leave_when_behind)
+                lagging = next((line for line in told if BEHIND.search(line)), "")
+                if lagging and options.leave_when_behind:
+                    result.behind = lagging
+                    raise _LeftError
                 for child in group.missed():
                     lost = f"{child.failure()}; the run goes on without it"
                     console.print(lost, style="bold red", markup=False, soft_wrap=True)
                 update()
 
-            return group.run_until("limber-driver", tick)
+            return group.run_until(clock, tick)
+    except _LeftError:
+        return group.stop(clock, signal.SIGINT, STOP_TIMEOUT_S)
     except KeyboardInterrupt:
         result.stopped_early = True
-        return group.stop("limber-driver", signal.SIGINT, STOP_TIMEOUT_S)
+        return group.stop(clock, signal.SIGINT, STOP_TIMEOUT_S)
 
 
-def _tell(group: ProcessGroup, console: Console) -> None:
-    """What the user has to know now, not when he reads the logs."""
+class _LeftError(Exception):
+    """The machine does not keep up, and the caller knows better."""
+
+
+def _tell(group: ProcessGroup, console: Console, quiet: bool = False) -> list[str]:
+    """What the user has to know now, not when he reads the logs; `quiet`: but for a lagging pace,
+    which is left to the caller. Returns the lines.
+    """
+    told: list[str] = []
     for child in (group.children[name] for name in TELLERS if name in group.children):
         for line in child.news():
+            told.append(line)
+            if quiet and "% of real time" in line:
+                continue
             console.print(line, style="yellow", highlight=False, markup=False, soft_wrap=True)
+    return told
 
 
 def _stop_others(group: ProcessGroup) -> dict:

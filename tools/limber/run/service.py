@@ -11,7 +11,8 @@ from rich.console import Console
 
 from limber.errors import OK, InputError
 from limber.model.robot import load_robot
-from limber.model.validation import run_checker
+from limber.model.validation import load_checked_robot
+from limber.output import write_again
 from limber.paths import output_folder, program, robot_folder
 from limber.run.buses import addresses, real
 
@@ -128,14 +129,11 @@ def files(robot: str, overrides: tuple[str, ...] = ()) -> dict[str, str]:
 
 def write(robot: str, overrides: tuple[str, ...], out: Path, console: Console) -> int:
     """The units, and what to do with them."""
-    checked = run_checker(["robot", str(robot_folder(robot))])
-    if checked.returncode != 0:
-        raise InputError(checked.stderr.strip())
+    checked = load_checked_robot(robot)
     contents = files(robot, overrides)
     folder = output_folder(out)
     for name, text in contents.items():
-        (folder / name).write_text(text, encoding="utf-8")
+        write_again(folder / name, text)
         console.print(f"wrote {folder / name}", soft_wrap=True)
-    name = load_robot(str(robot_folder(robot))).name
-    console.print(STEPS.format(out=folder, robot=name), soft_wrap=True)
+    console.print(STEPS.format(out=folder, robot=checked.name), soft_wrap=True)
     return OK

@@ -1,21 +1,22 @@
 """`limber sim`: what is about to be simulated, and how other programs join its buses."""
 
-import subprocess
 from pathlib import Path
 
 from rich.console import Console
 
 from limber.errors import InputError
 from limber.live import network
-from limber.paths import program, robot_folder
+from limber.paths import captured, program, robot_folder
 
 
-def introduce(robot: str, bus_words: list[str], without_stand: bool, console: Console) -> Path:
+def introduce(
+    robot: str, bus_words: list[str], without_stand: bool, paced: bool, console: Console
+) -> Path:
     """Says which motors are on which bus; returns the robot's folder."""
     folder = robot_folder(robot)
     network.require_multicast()
     command = [str(program("limber-can")), "nodes", str(folder), *bus_words]
-    nodes = subprocess.run(command, capture_output=True, text=True, check=False)
+    nodes = captured(command)
     if nodes.returncode != 0:
         raise InputError(nodes.stderr.strip().removeprefix("limber-can: "))
     print(nodes.stdout, end="")
@@ -26,5 +27,9 @@ def introduce(robot: str, bus_words: list[str], without_stand: bool, console: Co
             "The arm lies in its stand until every drive has been enabled for 0.3 s; --no-stand "
             "leaves it out."
         )
-    console.print("In real time until Ctrl-C.")
+    console.print(
+        "In lock step with limber-driver --paced until Ctrl-C."
+        if paced
+        else "In real time until Ctrl-C."
+    )
     return folder

@@ -87,8 +87,8 @@ def _push(scenario: Scenario, push: Push) -> str:
 def _expected(scenario: Scenario, push: Push) -> tuple[float, float] | None:
     """Stiffness along the push and the force that friction can hold, at the home pose."""
     robot, gains = scenario.robot, scenario.gains_at(push.at_s)
-    J = robot.chain.jacobian(robot.home)
-    G = statics.tip_response(gains.law, J, gains.K_x, gains.K_q)
+    J, X_BT = robot.chain.jacobian(robot.home), robot.chain.forward(robot.home)
+    G = statics.tip_response(gains.law, J, gains.in_base(X_BT[:3, :3]), gains.K_q)
     if G is None:
         return None
     direction = np.concatenate([push.wrench[:3] / np.linalg.norm(push.wrench[:3]), np.zeros(3)])

@@ -15,6 +15,7 @@ from limber.log.convert.windows import Writer, joint_names, windows
 from limber.log.cut import copy_events
 from limber.log.reader import Log, log_file
 from limber.log.results import complete_or_nothing, require_new
+from limber.output import write_again
 from limber.paths import ROOT
 
 
@@ -47,14 +48,18 @@ def convert(
     wanted: Sequence[str],
     names: events.Names,
     console: Console,
+    run: int | None = None,
 ) -> None:
-    """`names`: of joints and laws; the joints' as the log tells them come first."""
+    """`run`: the only one to convert; None: all. `names`: of joints and laws; the joints' as the
+    log tells them come first.
+    """
     kind = _format(to, out)
     source = log_file(path)
     target = out or source.with_name(base_name(source) + FORMATS[kind].suffix)
     writer_class = _writer_class(kind)
     require_new(target)
     log = Log(source)
+    log = log if run is None else log.of_run(run)
     channels = log.chosen(wanted)
     joints, several = joint_names(log, names.joints)
     told: list[str] = []
@@ -126,6 +131,8 @@ def _write(
     told = []
     story: list[events.Event] = []
     try:
+        if log.runs > 1:
+            raise InputError(f"{log.runs} runs, one after the other; --run N converts one")
         story = events.events(log, names)
     except InputError as error:
         told.append(f"the story of the run is left out: {error}")
@@ -179,5 +186,5 @@ def _write_layout(target: Path, joints: tuple[str, ...], console: Console) -> No
     from limber.log.convert import foxglove_layout
 
     path = target.with_suffix(".foxglove.json")
-    path.write_text(foxglove_layout.text(joints), encoding="utf-8")
+    write_again(path, foxglove_layout.text(joints))
     console.print(f"wrote {path}: panels for Foxglove, Layouts > Import from file", soft_wrap=True)

@@ -96,6 +96,7 @@ class Layout:
     def _describe(self, message: descriptor_pb2.DescriptorProto, node: _Node) -> None:
         for number, name, part in _fields(node):
             entry = message.field.add(name=name, number=number, label=_Field.LABEL_OPTIONAL)
+            entry.json_name = name  # rot_y and rotY would both become rotY
             if isinstance(part, Column):
                 entry.type = self._kind(part)[0]
                 if part.words:

@@ -68,7 +68,7 @@ def joint_names(log: Log, otherwise: Sequence[str]) -> tuple[tuple[str, ...], bo
     """The joints' names as identifiers, and whether the log holds several arms: then the first
     counts. Named by ROBOT_INFO, else as given, else numbered.
     """
-    told = list(dict.fromkeys(tuple(info.joints) for info in log.decode("ROBOT_INFO")))
+    told = list(dict.fromkeys(tuple(info.joints) for info in log.each("ROBOT_INFO")))
     names = told[0] if told else tuple(otherwise)
     if not names:
         counts = [_first_count(log, name) for name in ("JOINT_STATE", "CONTROLLER_STATUS")]
@@ -89,5 +89,8 @@ def _identifiers(names: Sequence[str]) -> tuple[str, ...]:
     for i, name in enumerate(names):
         word = re.sub(r"\W", "_", name, flags=re.ASCII)
         word = word if re.match(r"[A-Za-z_]", word) else f"joint_{word}"
-        made.append(word if word not in made else f"{word}_{i + 1}")
+        once, number = word, i + 1
+        while once in made:
+            once, number = f"{word}_{number}", number + 1
+        made.append(once)
     return tuple(made)

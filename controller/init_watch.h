@@ -1,0 +1,54 @@
+// What keeps the controller in INIT although the drives answer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limber/controller_status_t.hpp>
+#include <limber/joint_state_t.hpp>
+#include <optional>
+
+#include "common/joints.h"
+
+namespace limber {
+
+/// Allowed in the cycle.
+class InitWatch {
+ public:
+  static constexpr std::int64_t kPatience_ns = 2'000'000'000;  ///< arm time
+
+  struct Finding {
+    int joint;     ///< the one that is late most often
+    double share;  ///< of the cycles
+  };
+
+  /// Each state that was answered; what was found, once an INIT.
+  std::optional<Finding> note(std::int8_t mode, const joint_state_t& state) noexcept {
+    const bool waits =
+        mode == controller_status_t::MODE_INIT && state.drive_state == joint_state_t::DRIVE_OFF;
+    if (!waits) {
+      *this = InitWatch();
+      return {};
+    }
+    if (states_++ == 0) begun_ns_ = state.time_ns;
+    for (int i = 0; i < state.num_joints && i < kMaxJoints; ++i)
+      late_[static_cast<std::size_t>(i)] +=
+          (state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0;
+    if (told_ || state.time_ns - begun_ns_ < kPatience_ns) return {};
+    told_ = true;
+    Finding worst{0, 0.0};
+    for (int i = 0; i < state.num_joints && i < kMaxJoints; ++i) {
+      const double share =
+          static_cast<double>(late_[static_cast<std::size_t>(i)]) / static_cast<double>(states_);
+      if (share > worst.share) worst = {i, share};
+    }
+    return worst;
+  }
+
+ private:
+  std::int64_t states_ = 0;
+  std::int64_t begun_ns_ = 0;
+  std::array<std::int64_t, kMaxJoints> late_{};
+  bool told_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,230 @@
+#include "controller/output/stopping.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limber/controller_status_t.hpp>
+#include <limits>
+#include <span>
+
+#include "controller/elastic/joint_springs.h"
+#include "controller/output/torque_limiter.h"
+
+namespace limber::controller {
+namespace {
+
+constexpr double kShareOfVelocity = 0.8;
+constexpr double kShareOfTorque = 0.5;  // the rest is for payloads, other joints, and the way there
+constexpr double kLeastBraking = 0.1;   // of the torque limit, where the weight takes the rest
+constexpr double kShareOfRate = 0.3;    // likewise, and for joints that unwind together
+constexpr double kThrown = 0.4;         // r
+constexpr double kSpeedGain_per_s = 8.0;          // kappa
+constexpr double kAccelerationGain_per_s = 20.0;  // gamma
+// The same of arms with springs in the joints, which faster ones would swing up.
+constexpr double kSpringSpeedGain_per_s = 4.0;
+constexpr double kSpringAccelerationGain_per_s = 10.0;
+// Of the speed that can be stopped, and of the torque that may be: joints below both are far off.
+constexpr double kJudgedFrom = 0.2;
+constexpr double kKnown_s = 3.0 * Stopping::kMemory_s;
+constexpr double kFirm = 0.4;
+constexpr double kMovesFrom = 0.02;  // of the speed that can be stopped; dither is slower
+constexpr double kStays = 0.25;      // of what a joint's torque changes, for the sake of others
+constexpr int kSweeps = 10;
+// Of the torque that is missing; keeps joints with little effect from going far.
+constexpr double kReluctance = 0.5;
+
+// s(x; k, c), and its slope.
+struct Speed {
+  double value;
+  double slope;
+};
+Speed stoppable(double x, double k, double c) noexcept {
+  if (x * k * k <= c) return {k * x, k};
+  const double speed = std::sqrt(2.0 * c * (x - 0.5 * c / (k * k)));
+  return {speed, c / speed};
+}
+
+}  // namespace
+
+/// n^T a <= most.
+struct Stopping::Row {
+  VectorJ n;
+  double most;
+  std::int32_t limit;
+  VectorJ W_n{};        ///< M^-1 n
+  double mobility = 0;  ///< n^T M^-1 n
+  double lambda = 0.0;
+  double excess(const VectorJ& a) const noexcept { return n.dot(a) - most; }
+};
+
+struct Stopping::Rows {
+  std::array<Row, 2 * kMaxJoints + 1> all;
+  std::size_t count = 0;
+
+  void add(const VectorJ& n, double most, std::int32_t limit) noexcept {
+    all[count++] = {n, most, limit};
+  }
+  std::span<Row> span() noexcept { return std::span(all).first(count); }
+  std::span<const Row> span() const noexcept { return std::span(all).first(count); }
+};
+
+Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
+    : position_min_(torque_Nm.size()),
+      position_max_(torque_Nm.size()),
+      velocity_(torque_Nm.size()),
+      speed_gain_per_s_(kSpeedGain_per_s),
+      acceleration_gain_per_s_(kAccelerationGain_per_s),
+      torque_(torque_Nm),
+      torque_rate_(torque_Nm.size()),
+      K_J_(VectorJ::Constant(torque_Nm.size(), std::numeric_limits<double>::infinity())),
+      v_(VectorJ::Zero(torque_Nm.size())),
+      theta_dot_(v_),
+      r_(v_) {
+  const JointSprings springs(robot);
+  if (springs.any()) {
+    speed_gain_per_s_ = kSpringSpeedGain_per_s;
+    acceleration_gain_per_s_ = kSpringAccelerationGain_per_s;
+  }
+  Eigen::Index i = 0;
+  for (const JointConfig& joint : robot.joints) {
+    if (!joint.rigid()) K_J_[i] = springs.at_rest()[i];
+    position_min_[i] = joint.position_min;
+    position_max_[i] = joint.position_max;
+    velocity_[i] = kShareOfVelocity * joint.velocity_limit;
+    torque_rate_[i++] = kShareOfGateStep * joint.torque_rate_limit_Nm_per_s;
+  }
+}
+
+// Only between two states without a gap is the change of speed what the torque has made.
+void Stopping::observe(const ArmState& state, const ArmTerms& terms) noexcept {
+  const double dt = 1e-9 * static_cast<double>(state.time_ns - time_ns_);
+  const bool follows = time_ns_ >= 0 && dt > 0.0 && dt < 1.5 * state.period_s;
+  time_ns_ = state.time_ns;
+  const VectorJ dv = state.v_reported - v_;
+  const VectorJ dtheta_dot = state.theta_dot_reported - theta_dot_;
+  v_ = state.v_reported;
+  theta_dot_ = state.theta_dot_reported;
+  if (!follows) {
+    r_.setZero();
+    observed_s_ = 0.0;
+    return;
+  }
+  observed_s_ += dt;
+  const VectorJ force = state.tau_applied - terms.g - terms.Cv + r_;
+  const VectorJ gained = terms.M * dv + (terms.M_total - terms.M) * dtheta_dot;
+  r_ += (gained - dt * force) / kMemory_s;
+}
+
+bool Stopping::firm(Eigen::Index i, const ArmTerms& terms) const noexcept {
+  return K_J_[i] >= kFirm / (kMemory_s * kMemory_s) * terms.M_total(i, i);
+}
+
+void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
+                           const ArmTerms& terms, const VectorJ& load, const VectorJ& tau,
+                           Rows* rows) const noexcept {
+  const double u = std::max(sign * state.v_reported[i], sign * state.theta_dot_reported[i]);
+  const double d = sign > 0.0 ? position_max_[i] - state.q[i] : state.q[i] - position_min_[i];
+  const double M = terms.M_total(i, i);
+  const double braking = std::max(torque_[i] + sign * load[i], kLeastBraking * torque_[i]);
+  Speed most = stoppable(d, speed_gain_per_s_, kShareOfTorque * braking / M);
+  std::int32_t limit = controller_status_t::LIMIT_POSITION;
+  if (!(most.value < velocity_[i])) {
+    most = {velocity_[i], 0.0};
+    limit = controller_status_t::LIMIT_VELOCITY;
+  }
+  const double jerk = kShareOfRate * torque_rate_[i] / M;
+  const double spare = stoppable(most.value - u, acceleration_gain_per_s_, jerk).value;
+  const double a_most = spare - std::max(u, 0.0) * most.slope;
+  const bool known = observed_s_ > kKnown_s;
+  const bool pushed =
+      known && u > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
+  if (u < kJudgedFrom * most.value && !pushed) return;
+  rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
+}
+
+void Stopping::bound_energy(const ArmState& state, const ArmTerms& terms,
+                            Rows* rows) const noexcept {
+  const VectorJ left = (torque_ - terms.g.cwiseAbs()).cwiseMax(kLeastBraking * torque_);
+  const double thrown = terms.Cv.cwiseAbs().cwiseQuotient(left).maxCoeff();
+  if (!(thrown > kJudgedFrom * kThrown)) return;
+  const VectorJ momentum = terms.M_total * state.v_reported;
+  const double E = 0.5 * state.v_reported.dot(momentum);
+  const double p = momentum.norm();
+  rows->add(momentum / p, acceleration_gain_per_s_ * E * (kThrown / thrown - 1.0) / p,
+            controller_status_t::LIMIT_VELOCITY);
+}
+
+// Least squares of what is left beyond the bounds, joint by joint, as far as each brakes itself or
+// changes its torque less: what throws a joint is that the others' torques change.
+void Stopping::let_others_help(const Rows& rows, const MatrixJ& W, const ArmState& state,
+                               const ArmTerms& terms, const Reach& reach, VectorJ* a,
+                               VectorJ* tau) const noexcept {
+  const VectorJ& v = state.v_reported;
+  const VectorJ held =
+      (*tau + kStays * (state.tau_applied - *tau)).cwiseMax(reach.low).cwiseMin(reach.high);
+  const VectorJ low = (v.array() > 0.0).select(reach.low, tau->cwiseMin(held));
+  const VectorJ high = (v.array() < 0.0).select(reach.high, tau->cwiseMax(held));
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (Eigen::Index j = 0; j < tau->size(); ++j) {
+      if (!firm(j, terms)) continue;
+      double slope = 0.0;
+      double curvature = kReluctance;
+      for (const Row& row : rows.span()) {
+        const double missing = row.excess(*a) / row.mobility;
+        if (!(missing > 0.0)) continue;
+        const double effect = row.W_n[j] / row.mobility;
+        slope += missing * effect;
+        curvature += effect * effect;
+      }
+      const double wanted = std::clamp((*tau)[j] - slope / curvature, low[j], high[j]);
+      *a += (wanted - (*tau)[j]) * W.col(j);
+      (*tau)[j] = wanted;
+    }
+  }
+}
+
+std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const Reach& reach,
+                             VectorJ* tau) const noexcept {
+  VectorJ load = terms.Cv + terms.g;
+  const VectorJ pushing = *tau - load;
+  load -= r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
+  Rows rows;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    for (const double sign : {-1.0, 1.0}) bound_joint(i, sign, state, terms, load, *tau, &rows);
+  }
+  bound_energy(state, terms, &rows);
+  if (rows.count == 0) return 0;
+  const auto n = tau->size();
+  const MatrixJ W = terms.M_total.llt().solve(MatrixJ::Identity(n, n));
+  VectorJ a = W * (*tau - load);
+  const auto kept = [&a](const Row& row) { return row.excess(a) <= 0.0; };
+  if (std::ranges::all_of(rows.span(), kept)) return 0;
+
+  for (Row& row : rows.span()) {
+    row.W_n = W * row.n;
+    row.mobility = row.n.dot(row.W_n);
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (Row& row : rows.span()) {
+      const double lambda = std::max(row.lambda + row.excess(a) / row.mobility, 0.0);
+      const double step = row.lambda - lambda;
+      row.lambda = lambda;
+      *tau += step * row.n;
+      a += step * row.W_n;
+    }
+  }
+  std::int32_t acted = 0;
+  for (const Row& row : rows.span()) {
+    if (row.lambda > 0.0) acted |= row.limit;
+  }
+  const VectorJ reached = tau->cwiseMax(reach.low).cwiseMin(reach.high);
+  if (reached != *tau) {
+    a += W * (reached - *tau);
+    *tau = reached;
+    let_others_help(rows, W, state, terms, reach, &a, tau);
+  }
+  return acted;
+}
+
+}  // namespace limber::controller

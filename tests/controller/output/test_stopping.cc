@@ -1,0 +1,171 @@
+// A joint stays slow enough to be stopped, whatever is demanded.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limber/controller_status_t.hpp>
+#include <random>
+
+#include "controller/output/joint_limits.h"
+#include "controller/output/stopping.h"
+#include "tests/controller/arms.h"
+
+namespace limber::controller::test_stopping {
+namespace {
+
+using Status = controller_status_t;
+using limber::testing::Plant;
+
+constexpr double kT = 1e-3;
+
+LoadedRobot desktop() {
+  LoadedRobot robot = limber::testing::planar_arm(limber::testing::kDesktop);
+  for (JointConfig& joint : robot.robot.joints) {
+    joint.position_min = -2.6;
+    joint.position_max = 2.6;
+    joint.velocity_limit = 20.0;
+    joint.torque_limit_Nm = 7.0;
+    joint.torque_rate_limit_Nm_per_s = 350.0;
+  }
+  return robot;
+}
+
+/// One joint of M = 0.5 kg m^2 without weight: -1..2 rad, 10 rad/s, 20 N m.
+class OneJoint : public ::testing::Test {
+ protected:
+  OneJoint() : state(1), terms(1) {
+    robot.joints.resize(1);
+    JointConfig& joint = robot.joints[0];
+    joint.position_min = -1.0;
+    joint.position_max = 2.0;
+    joint.velocity_limit = 10.0;
+    joint.torque_limit_Nm = 20.0;
+    joint.torque_rate_limit_Nm_per_s = 20'000.0;
+    terms.M_total << 0.5;
+    state.period_s = kT;
+  }
+  /// The torque left of `demand` at position q and speed v; the bits that acted are in acted.
+  double shaped(double q, double v, double demand) {
+    state.q << q;
+    state.v_reported << v;
+    state.theta_dot_reported << v;
+    const VectorJ most = VectorJ::Constant(1, 20.0);
+    VectorJ tau = VectorJ::Constant(1, demand);
+    acted = Stopping(robot, most).shape(state, terms, {-most, most}, &tau);
+    return tau[0];
+  }
+
+  Robot robot;
+  ArmState state;
+  ArmTerms terms;
+  std::int32_t acted = 0;
+};
+
+TEST_F(OneJoint, FarFromItsLimitsItIsLeftAlone) {
+  EXPECT_EQ(shaped(0.0, 0.5, 3.0), 3.0);
+  EXPECT_EQ(shaped(0.0, -0.5, -3.0), -3.0);
+  EXPECT_EQ(acted, 0);
+}
+
+// 8 rad/s is 0.8 of the limit: gamma (8 - u) with gamma = 20 / s is all the acceleration there is.
+TEST_F(OneJoint, NearItsVelocityLimitItsAccelerationFades) {
+  EXPECT_NEAR(shaped(-0.9, 7.9, 15.0), 0.5 * 20.0 * 0.1, 1e-9);
+  EXPECT_EQ(acted, +Status::LIMIT_VELOCITY);
+  EXPECT_NEAR(shaped(-0.9, 8.4, 15.0), -0.5 * 20.0 * 0.4, 1e-9) << "beyond it, it brakes";
+  EXPECT_NEAR(shaped(1.9, -8.4, -15.0), 0.5 * 20.0 * 0.4, 1e-9);
+  EXPECT_EQ(shaped(-0.9, 8.4, -15.0), -15.0) << "what brakes harder is left alone";
+}
+
+// Half of 20 N m on 0.5 kg m^2 brakes with a = 20 rad/s^2. With kappa = 8 / s that is linear up to
+// 20 / 64 rad: 0.25 rad before the end 2 rad/s can be stopped.
+TEST_F(OneJoint, TowardsItsEndItIsBraked) {
+  EXPECT_NEAR(shaped(1.75, 2.0, 5.0), 0.5 * (-8.0 * 2.0), 1e-9);
+  EXPECT_EQ(acted, +Status::LIMIT_POSITION);
+  EXPECT_NEAR(shaped(1.75, 1.9, 5.0), 0.5 * (20.0 * 0.1 - 8.0 * 1.9), 1e-9);
+  EXPECT_NEAR(shaped(-0.75, -2.0, -5.0), 0.5 * 8.0 * 2.0, 1e-9);
+  EXPECT_EQ(shaped(1.75, -2.0, -5.0), -5.0) << "on its way back";
+  const double fast = std::sqrt(2.0 * 20.0 * (0.5 - 10.0 / 64.0));
+  EXPECT_NEAR(shaped(1.5, fast, 5.0), -10.0, 1e-9) << "further away with half of the torque";
+}
+
+TEST_F(OneJoint, WhatCarriesTheWeightStays) {
+  terms.g << 6.0;
+  EXPECT_NEAR(shaped(-0.9, 7.9, 15.0), 6.0 + 1.0, 1e-9);
+}
+
+TEST_F(OneJoint, TheReportedVelocityIsJudgedNotTheEstimate) {
+  state.v << 0.0;
+  EXPECT_LT(shaped(-0.9, 8.4, 15.0), 0.0);
+  state.v << 50.0;
+  EXPECT_EQ(shaped(0.0, 0.0, 3.0), 3.0);
+}
+
+/// Random torques of up to their limits, held for 20 to 200 ms, through limits and rate. No
+/// friction, no delay but one cycle. Returns the greatest of speed over its limit, and of what is
+/// beyond an end, rad.
+struct Worst {
+  double speed = 0.0;
+  double beyond = -1.0;
+};
+Worst torture(const LoadedRobot& robot, unsigned seed, double gravity_share, int cycles) {
+  const int n = robot.robot.size();
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Plant plant(robot);
+  ArmModel model(robot);
+  ArmState state(n);
+  ArmTerms terms(n);
+  state.period_s = kT;
+  JointLimits limits(robot.robot);
+  VectorJ demand = VectorJ::Zero(n);
+  Worst worst;
+  for (int k = 0, next = 0; k < cycles; ++k) {
+    if (k == next) {
+      for (Eigen::Index i = 0; i < n; ++i)
+        demand[i] = uniform(random) * 1.5 * limits.torque_limit()[i];
+      next += 20 + static_cast<int>(90.0 * (1.0 + uniform(random)));
+    }
+    state.time_ns = k * std::int64_t{1'000'000};
+    state.q = plant.q;
+    state.v_reported = state.theta_dot_reported = plant.v;
+    model.evaluate(plant.q, plant.v, &terms);
+    VectorJ tau = demand + gravity_share * terms.g;
+    const VectorJ walls = limits.walls(state, terms.M_total);
+    tau += walls;
+    const VectorJ before = state.tau_applied;
+    limits.shape(state, terms, walls, &tau);
+    limits.clamp(state, terms, &tau);
+    plant.advance(kT, [&](const VectorJ&, const VectorJ&) { return before; });
+    state.tau_applied = tau;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const JointConfig& joint = robot.robot.joints[static_cast<std::size_t>(i)];
+      worst.speed = std::max(worst.speed, std::abs(plant.v[i]) / joint.velocity_limit);
+      worst.beyond = std::max(
+          {worst.beyond, plant.q[i] - joint.position_max, joint.position_min - plant.q[i]});
+    }
+  }
+  return worst;
+}
+
+TEST(Stopping, RandomTorquesCarryNoJointPastItsLimits) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Worst worst = torture(desktop(), seed, 1.0, 30'000);
+    EXPECT_LT(worst.speed, 1.0) << seed;
+    EXPECT_GT(worst.speed, 0.5) << "the torques do drive it fast";
+    EXPECT_LT(worst.beyond, 0.0) << seed;
+    EXPECT_GT(worst.beyond, -0.2) << "and towards its ends";
+  }
+}
+
+TEST(Stopping, SlowRatesAndHeavyArmsToo) {
+  LoadedRobot robot = desktop();
+  for (JointConfig& joint : robot.robot.joints) {
+    joint.torque_rate_limit_Nm_per_s = 200.0;
+    joint.velocity_limit = 10.0;
+  }
+  const Worst worst = torture(robot, 5, 1.0, 30'000);
+  EXPECT_LT(worst.speed, 1.1);
+  EXPECT_LT(worst.beyond, 0.02);
+}
+
+}  // namespace
+}  // namespace limber::controller::test_stopping

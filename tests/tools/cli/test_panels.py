@@ -1,0 +1,31 @@
+"""`limber --help` by what a person wants."""
+
+import re
+
+from typer.main import get_command
+
+from limber.cli.main import app
+from limber.cli.panels import PANELS, PLACES
+
+
+def test_every_command_has_its_panel_and_no_panel_a_ghost():
+    assert set(get_command(app).commands) == set(PLACES)
+    assert len(PLACES) == sum(map(len, PANELS.values())), "none stands in two"
+
+
+def test_the_panels_stand_in_the_order_of_a_persons_way(limber):
+    shown = limber("--help").stdout
+    places = [shown.index(panel) for panel in PANELS]
+    assert places == sorted(places)
+    for panel, names in PANELS.items():
+        block = shown[shown.index(panel) :].split("╰")[0]
+        listed = re.findall(r"^│ (\w+) ", block, re.MULTILINE)
+        assert tuple(listed) == names
+
+
+def test_words_that_are_no_commands_are_answered_with_the_command(limber):
+    for word, hint in (("stiffness", "K_x_translation_N_per_m"), ("stop", "mode: stop")):
+        done = limber(word)
+        assert done.returncode == 2
+        assert f"No such command '{word}'" in done.stderr and hint in done.stderr
+    assert "See limber --help" in limber("xyzzy").stderr

@@ -1,0 +1,32 @@
+"""XML as limber-check judges it: the same parser, UTF-8 whatever is declared, prefixes as part of a
+name.
+"""
+
+from pathlib import Path
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from limber.errors import InputError
+
+
+def read_xml(path: Path, comments: bool = False) -> Element:
+    """The root. Attributes and elements with a prefix keep it: "drake:acceleration"; nobody has to
+    declare it. `comments`: keep them, too. Raises InputError.
+    """
+    builder = TreeBuilder(insert_comments=comments)
+    parser = expat.ParserCreate("utf-8")  # not the declared encoding
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    parser.CommentHandler = builder.comment
+    try:
+        parser.Parse(path.read_bytes(), True)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from error
+    except expat.ExpatError as error:
+        problem = expat.ErrorString(error.code)
+        raise InputError(
+            f"{path}:{error.lineno}: cannot be read as URDF: not well-formed XML: {problem}"
+        ) from error
+    return builder.close()
