@@ -97,7 +97,9 @@ TEST(BusIntruders, AnswersToSomebodyElsesReadsAreNoStates) {
        {joint_state_t::DRIVE_OFF + 0, joint_state_t::DRIVE_ON + 0, joint_state_t::DRIVE_HOLD + 0}) {
     IntrudedArm arm(test_robot(3));
     ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, joint_command_t::REQUEST_KEEP));
-    if (state != joint_state_t::DRIVE_OFF) ASSERT_TRUE(arm.switch_on());
+    if (state != joint_state_t::DRIVE_OFF) {
+      ASSERT_TRUE(arm.switch_on());
+    }
     if (state == joint_state_t::DRIVE_HOLD) arm.cycle_with(joint_command_t::REQUEST_HOLD);
     constexpr std::uint8_t kBoardVoltage = 60;      // which this driver does not read
     arm.motors[1].set_float(kBoardVoltage, -1e30);  // bytes that would be 73 and 241 degC
