@@ -32,7 +32,10 @@ std::string out_of_range_line(const ArmJoint& joint) {
 
 ArmDrives::ArmDrives(const Robot& robot, int bridged_cycles)
     : settling_cycles_(cycles_of(kSettling_s, robot.rate_hz)) {
-  for (const JointConfig& joint : robot.joints) joints_.emplace_back(robot, joint, bridged_cycles);
+  for (const JointConfig& joint : robot.joints) {
+    joints_.emplace_back(robot, joint, bridged_cycles);
+    rest_torque_.emplace_back(joint.torque_limit_Nm, robot.rate_hz);
+  }
   for (const ArmJoint& joint : joints_) {
     for (const Drive& motor : joint.motors()) ++motors_on_bus_[motor.bus()];
   }
@@ -46,11 +49,22 @@ void ArmDrives::apply(DriveEvent event, int joint) noexcept {
   enabling_ended_.store(event == DriveEvent::kEnableTimedOut, std::memory_order_relaxed);
   cycles_in_state_ = 0;
   for (std::size_t i = 0; i < joints_.size(); ++i)
-    joints_[i].enter(machine_.state(), torque_present_[i], {tau_gravity_[i], torque_[i].preload});
+    joints_[i].enter(machine_.state(), torque_present_[i], held_after(event, i));
   if (in(DriveState::kOn) && from == DriveState::kEnabling) {
     torque_.fill({});
     torque_present_.fill({});
   }
+}
+
+// A controller that is gone leaves what it had right: what kept a resting joint in its place. Any
+// other event may be one of the joint itself, whose rest may be that of its encoder alone.
+JointTorque ArmDrives::held_after(DriveEvent event, std::size_t joint) const noexcept {
+  const bool controller_gone = event == DriveEvent::kControllerLost ||
+                               event == DriveEvent::kCommandRefused ||
+                               event == DriveEvent::kOverrun;
+  const RestTorque& rest = rest_torque_[joint];
+  const double tau = controller_gone && rest.known() ? rest.mean() : tau_gravity_[joint];
+  return {tau, torque_[joint].preload};
 }
 
 bool ArmDrives::follows_torque() const noexcept {
@@ -236,7 +250,11 @@ bool ArmDrives::receive(std::size_t bus, const CanFrame& frame, bool late) noexc
 }
 
 void ArmDrives::close_cycle(std::int64_t cycle, double time_s) noexcept {
-  for (ArmJoint& joint : joints_) joint.close_cycle(machine_.state(), cycle, time_s);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    ArmJoint& joint = joints_[i];
+    joint.close_cycle(machine_.state(), cycle, time_s);
+    if (in(DriveState::kOn)) rest_torque_[i].add(torque_[i].tau, joint.theta_dot());
+  }
 }
 
 void ArmDrives::update_torque_present() noexcept {

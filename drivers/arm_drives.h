@@ -15,6 +15,7 @@
 #include "drivers/arm_joint.h"
 #include "drivers/drive/bus_end.h"
 #include "drivers/drive/drive_state_machine.h"
+#include "drivers/drive/rest_torque.h"
 #include "drivers/gate/torque_gate.h"
 #include "robots/loader/robot.h"
 
@@ -102,6 +103,7 @@ class ArmDrives {
 
  private:
   bool follows_torque() const noexcept;
+  JointTorque held_after(DriveEvent event, std::size_t joint) const noexcept;
   void execute(int request) noexcept;
   void turn_on(bool acknowledge) noexcept;
   void acknowledge() noexcept;
@@ -116,6 +118,7 @@ class ArmDrives {
   std::array<int, kMaxBuses> motors_on_bus_{};
   std::array<JointTorque, kMaxJoints> torque_{};          ///< accepted last, sent next
   std::array<double, kMaxJoints> tau_gravity_{};          ///< N m, of the command accepted last
+  std::vector<RestTorque> rest_torque_;                   ///< of the joints, in ON
   std::array<JointTorque, kMaxJoints> torque_present_{};  ///< sent last, or exerted by the drives
 };
 
