@@ -138,7 +138,7 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const double a_most = spare - std::max(u, 0.0) * most.slope;
   const bool known = observed_s_ > kKnown_s;
   const bool pushed =
-      known && u > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
+      known && std::abs(u) > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
   if (u < kJudgedFrom * most.value && !pushed) return;
   rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
 }
