@@ -21,7 +21,8 @@ namespace limber::controller {
 ///   s(x; k, c) = k x near zero, then sqrt(2 c (x - c / (2 k^2)))  from x = c / k^2 on
 ///
 /// s is the speed from which a steady deceleration c stops in x, made linear near rest; the same
-/// form takes an acceleration back with a steady jerk.
+/// form takes an acceleration back with a steady jerk. It bounds what brakes as well: a joint must
+/// not turn round with a torque that is not gone before it is too fast the other way.
 ///
 /// The arm as a whole is bounded, too: where one joint's speed throws another with more than a
 /// share r of the torque that its weight leaves it, it could not be stopped. Such torques grow with
