@@ -2,8 +2,8 @@
 // controller.
 //
 //   first 100 ms:  tau = held - kd theta_dot,  held: from the torque before, by the joint's
-//                                              torque rate, to the motor's part of gravity and
-//                                              preload
+//                                              torque rate, to the motor's part of gravity, or
+//                                              of the torque at rest (rest_torque.h), and preload
 //   then:          tau = held + kp (theta_hold - theta) - kd theta_dot,
 //                                              theta_hold: the angle reached by then
 //   DAMP:          tau = held - kd theta_dot,  held: likewise to 0
