@@ -137,8 +137,8 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const double spare = stoppable(most.value - u, acceleration_gain_per_s_, jerk).value;
   const double a_most = spare - std::max(u, 0.0) * most.slope;
   const bool known = observed_s_ > kKnown_s;
-  const bool pushed =
-      known && std::abs(u) > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
+  const bool pushed = known && std::abs(u) > kMovesFrom * most.value &&
+                      sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
   if (u < kJudgedFrom * most.value && !pushed) return;
   rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
 }
@@ -188,7 +188,7 @@ std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const
                              VectorJ* tau) const noexcept {
   VectorJ load = terms.Cv + terms.g;
   const VectorJ pushing = *tau - load;
-  load -= r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
+  load -= (pushing.array() > 0.0).select(r_.cwiseMax(-pushing), r_.cwiseMin(-pushing));
   Rows rows;
   for (Eigen::Index i = 0; i < tau->size(); ++i) {
     for (const double sign : {-1.0, 1.0}) bound_joint(i, sign, state, terms, load, *tau, &rows);

@@ -53,6 +53,8 @@ class OneJoint : public ::testing::Test {
     Stopping stopping(robot, most);
     for (int cycle = 0; cycle < seen_cycles; ++cycle) {
       state.time_ns += std::llround(1e9 * kT);
+      state.v_reported << v - (seen_cycles - 1 - cycle) * kT * seen_acceleration;
+      state.theta_dot_reported = state.v_reported;
       stopping.observe(state, terms);
     }
     acted = stopping.shape(state, terms, {-most, most}, &tau);
@@ -62,7 +64,8 @@ class OneJoint : public ::testing::Test {
   Robot robot;
   ArmState state;
   ArmTerms terms;
-  int seen_cycles = 0;  ///< at this position and speed, without torque
+  int seen_cycles = 0;  ///< before, without torque
+  double seen_acceleration = 0.0;
   std::int32_t acted = 0;
 };
 
@@ -104,6 +107,15 @@ TEST_F(OneJoint, ABrakeIsLetGoInTime) {
   EXPECT_NEAR(shaped(0.0, 1.0, -20.0), -0.5 * std::sqrt(2.0 * j * (9.0 - j / 800.0)), 1e-6);
   EXPECT_EQ(acted, +Status::LIMIT_VELOCITY);
   EXPECT_EQ(shaped(0.0, 1.0, -10.0), -10.0) << "in time";
+}
+
+// 0.1 rad/s below 8 rad/s 2 rad/s^2 are left. A force that made 10 rad/s^2 by itself is 5 N m.
+TEST_F(OneJoint, AForceThatHelpsTheTorqueCounts) {
+  seen_cycles = 300;
+  seen_acceleration = 10.0;
+  EXPECT_NEAR(shaped(-0.9, 7.9, 1.0), 0.5 * 2.0 - 5.0, 1e-3);
+  seen_acceleration = -10.0;
+  EXPECT_EQ(shaped(-0.9, 7.9, 5.0), 5.0) << "a force against it leaves the joint at its speed";
 }
 
 TEST_F(OneJoint, WhatCarriesTheWeightStays) {
