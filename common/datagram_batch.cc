@@ -43,9 +43,9 @@ void wait_for_stamps() {
   ReceiveBatch batch(1);
   for (int waited_ms = 0; waited_ms < kMost_ms; ++waited_ms) {
     if (send(socket.get(), "", 1, MSG_DONTWAIT) != 1) return;
-    const std::int64_t sent_ns = realtime_ns();
+    const std::int64_t sent_ns = monotonic_ns();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (batch.receive(socket.get(), 1) == 1 && batch.wall_time_ns(0) <= sent_ns) return;
+    if (batch.receive(socket.get(), 1) == 1 && batch.timestamp_ns(0) <= sent_ns) return;
   }
 }
 

@@ -35,10 +35,6 @@ class ReceiveBatch {
   std::int64_t timestamp_ns(int i) const noexcept {
     return timestamps_[static_cast<std::size_t>(i)];
   }
-  /// The same by the wall clock, as the kernel has stamped it.
-  std::int64_t wall_time_ns(int i) const noexcept {
-    return wall_times_[static_cast<std::size_t>(i)];
-  }
   const sockaddr_in& sender(int i) const noexcept { return senders_[static_cast<std::size_t>(i)]; }
   /// Datagrams the kernel has dropped because the socket's buffer was full, as far as it has
   /// reported.

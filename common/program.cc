@@ -1,6 +1,7 @@
 #include "common/program.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -49,6 +50,7 @@ const volatile std::sig_atomic_t& stop_on_signals() {
 }
 
 int run_program(CommandLine& line, int argc, char** argv, const std::function<int()>& run) {
+  umask(umask(0) | S_IWOTH);  // containers start with none: nobody else changes what is written
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is a write error as others
   start_log(line.name());

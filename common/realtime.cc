@@ -11,6 +11,31 @@
 #include "common/clock.h"
 
 namespace limber {
+namespace {
+
+/// Under a limit (ulimit -l) that is enough for what a process has at its start, whatever it
+/// requests later would be refused, instead of not being locked: it would end with bad_alloc.
+bool room_for_more() {
+  constexpr std::size_t kRoom_bytes = 256 << 20;  // nobody may use it, so that it costs nothing
+  void* room = mmap(nullptr, kRoom_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return room != MAP_FAILED && munmap(room, kRoom_bytes) == 0;
+}
+
+bool lock_memory() {
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) return false;
+  if (room_for_more()) return true;
+  munlockall();
+  return false;
+}
+
+std::string lock_refusal() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  return "locked memory refused: only " + std::to_string(limit.rlim_cur / 1024) +
+         " KiB are permitted (ulimit -l)";
+}
+
+}  // namespace
 
 RealtimeGrant ask_for_realtime(int priority) {
   RealtimeGrant grant;
@@ -19,10 +44,10 @@ RealtimeGrant ask_for_realtime(int priority) {
   parameter.sched_priority = priority;
   grant.fifo = sched_setscheduler(0, SCHED_FIFO, &parameter) == 0;
   if (!grant.fifo) grant.reason = std::string("SCHED_FIFO refused: ") + std::strerror(errno);
-  grant.locked_memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  grant.locked_memory = lock_memory();
   if (!grant.locked_memory) {
     if (!grant.reason.empty()) grant.reason += "; ";
-    grant.reason += std::string("locked memory refused: ") + std::strerror(errno);
+    grant.reason += lock_refusal();
   }
   return grant;
 }

@@ -19,6 +19,7 @@
 
 #include "common/clock.h"
 #include "common/tell.h"
+#include "common/wall_clock.h"
 
 namespace limber {
 namespace {
@@ -121,11 +122,9 @@ void BlackBox::open(const std::string& name, std::size_t bytes) {
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, file_.get(), 0);
   if (memory == MAP_FAILED) fail(path_);
   memory_ = {static_cast<std::uint8_t*>(memory), size};
-  const std::int64_t since_epoch_ns =
-      std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
   const std::string header =
       fmt::format("{}\nname: {}\nprocess: {}\nepoch_minus_monotonic_ns: {}\n", kFormat, name,
-                  getpid(), since_epoch_ns - monotonic_ns());
+                  getpid(), epoch_minus_monotonic_ns());
   header.copy(reinterpret_cast<char*>(memory), kHeaderBytes - 1);
   ring_.emplace(memory_.subspan(kHeaderBytes));
 }

@@ -4,6 +4,7 @@ ends as it should.
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -39,12 +40,22 @@ def hostile(port: int, protocol: str | None, *messages: bytes | str) -> None:
     """Sends and reads nothing."""
     protocols = None if protocol is None else [protocol]
     try:
-        with connect(f"ws://127.0.0.1:{port}", subprotocols=protocols, max_size=None) as socket:
+        with connect(f"ws://127.0.0.1:{port}", subprotocols=protocols, max_size=None) as connection:
             for message in messages:
-                socket.send(message)
+                connection.send(message)
             time.sleep(0.1)
     except (WebSocketException, OSError):
         pass  # thrown out
+
+
+def half_open(port: int) -> list[socket.socket]:
+    """Connections that say nothing, half of a request, or half of a frame, and stay."""
+    said = [b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\n"]
+    made = []
+    for number in range(90):
+        made.append(socket.create_connection(("127.0.0.1", port)))
+        made[-1].sendall(said[number % len(said)])
+    return made
 
 
 def test_nothing_is_lost_with_twenty_viewers_and_hostile_ones(publisher):
@@ -60,6 +71,8 @@ def test_nothing_is_lost_with_twenty_viewers_and_hostile_ones(publisher):
             ended.enter_context(connect(f"ws://127.0.0.1:{port}", subprotocols=[version]))
             for _ in range(3)
         ]  # they never read
+        for connection in half_open(port):
+            ended.callback(connection.close)
         looking = ended.enter_context(viewers(port, VIEWERS))
         served_by = time.monotonic() + 60.0
         while min(looking.read) < 3 and time.monotonic() < served_by:

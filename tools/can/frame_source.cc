@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <memory>
 #include <vector>
 
 #include "common/clock.h"
 #include "common/config_error.h"
+#include "common/wall_clock.h"
 #include "drivers/can/can_bus.h"
 #include "drivers/can/candump_log.h"
 
@@ -17,12 +17,6 @@ namespace limber::bus_tools {
 namespace {
 
 constexpr std::int64_t kIdle_ns = 100'000'000;
-
-/// Since 1970, less CLOCK_MONOTONIC.
-std::int64_t unix_offset_ns() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - monotonic_ns();
-}
 
 struct Heard {
   int bus;
@@ -81,7 +75,7 @@ class Listener {
 ListeningLosses listen(const Robot& robot, const FrameSource& source, const FrameSink& sink,
                        const std::function<void()>& idle) {
   Listener listener(robot);
-  const std::int64_t offset_ns = unix_offset_ns();
+  const std::int64_t offset_ns = epoch_minus_monotonic_ns();
   const std::int64_t start_ns = monotonic_ns();
   const auto end_ns = start_ns + static_cast<std::int64_t>(source.duration_s * 1e9);
   bool enough = false;

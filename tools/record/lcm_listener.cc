@@ -56,8 +56,9 @@ int LcmListener::take_batch(const Handler& handler) {
 }
 
 void LcmListener::take(int i, const Handler& handler) {
-  newest_ns_ = batch_.timestamp_ns(i);
-  const std::int64_t time_us = batch_.wall_time_ns(i) / 1000;
+  // The kernel's stamps, brought to another clock, may go back by microseconds.
+  newest_ns_ = std::max(newest_ns_, batch_.timestamp_ns(i));
+  const std::int64_t time_us = (epoch_minus_monotonic_ns_ + newest_ns_) / 1000;
   const std::span<const std::uint8_t> datagram = batch_.datagram(i);
   if (const auto message = read_lcm_datagram(datagram)) {
     handler(time_us, *message);

@@ -9,6 +9,7 @@
 #include "common/datagram_batch.h"
 #include "common/file_descriptor.h"
 #include "common/lcm_fragments.h"
+#include "common/wall_clock.h"
 
 namespace limber {
 
@@ -19,7 +20,8 @@ class LcmListener {
   /// ConfigError.
   explicit LcmListener(const std::string& url);
 
-  /// `time_us`: by the wall clock; of a message in fragments, that of the last.
+  /// `time_us`: by the wall clock as it was set when this began, so that no time goes back or
+  /// leaps when it is set meanwhile; of a message in fragments, that of the last.
   using Handler = std::function<void(std::int64_t time_us, const LcmDatagram& message)>;
   /// Handles one batch of what has arrived, without waiting; returns how many datagrams it was.
   /// What is no message is left out, and told once. Throws what `handler` throws, and
@@ -43,6 +45,7 @@ class LcmListener {
   FileDescriptor socket_;
   ReceiveBatch batch_;
   LcmFragments fragments_;
+  std::int64_t epoch_minus_monotonic_ns_ = epoch_minus_monotonic_ns();
   std::int64_t newest_ns_ = 0;
   bool told_ = false;
 };

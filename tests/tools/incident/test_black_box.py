@@ -13,8 +13,8 @@ from limber.incident.black_box import Record, incidents, read, together, write_l
 EPOCH_us = 1_000_000_000
 
 
-def header(text: str = "limber-black-box/1\nname: driver-x\n") -> bytes:
-    text += f"epoch_minus_monotonic_ns: {EPOCH_us * 1000}\n"
+def header(text: str = "limber-black-box/1\nname: driver-x\n", epoch_us: int = EPOCH_us) -> bytes:
+    text += f"epoch_minus_monotonic_ns: {epoch_us * 1000}\n"
     return text.encode().ljust(black_box.HEADER_BYTES, b"\0")
 
 
@@ -120,4 +120,16 @@ def test_boxes_of_one_incident_become_one_log(tmp_path, monkeypatch):
         ("SIM_TRUTH", b"truth"),
         ("JOINT_TORQUE", b"torque"),
     ]
+    assert [e.timestamp - EPOCH_us for e in events] == [10, 20, 30]
+
+
+def test_a_wall_clock_that_was_set_between_two_starts_changes_no_order(tmp_path, monkeypatch):
+    """The controller was started anew an hour of wall clock later, at the same time."""
+    monkeypatch.setenv("LIMBER_INCIDENTS", str(tmp_path))
+    box(tmp_path, record(0, data=b"1st", time_us=10) + record(1, data=b"3rd", time_us=30))
+    later = header(epoch_us=EPOCH_us + 3600 * 10**6) + record(0, data=b"2nd", time_us=20)
+    (tmp_path / "20261122T101114-controller-x-controller.DRIVER_FAULT.box").write_bytes(later)
+    assert write_log(incidents(), tmp_path / "log") == 3
+    events = list(lcm.EventLog(str(tmp_path / "log")))
+    assert [e.data for e in events] == [b"1st", b"2nd", b"3rd"]
     assert [e.timestamp - EPOCH_us for e in events] == [10, 20, 30]

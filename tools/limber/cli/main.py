@@ -2,6 +2,7 @@
 
 import io
 import os
+import stat
 import sys
 from typing import Annotated, NoReturn
 
@@ -64,6 +65,7 @@ def fail(message: str, code: int) -> NoReturn:
 
 def main() -> NoReturn:
     """Exit codes: 0 ok, 1 result out of tolerance, 2 wrong input, 3 run failed."""
+    os.umask(os.umask(0) | stat.S_IWOTH)  # as common/program.cc
     if isinstance(sys.stdout, io.TextIOWrapper):  # a terminal that does not know ± gets a ?
         sys.stdout.reconfigure(errors="replace")
     if os.environ.get("LIMBER_DEBUG") == "1":

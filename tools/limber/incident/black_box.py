@@ -79,8 +79,17 @@ def together(with_it: Incident, boxes: list[Incident]) -> list[Incident]:
     ]
 
 
-def read(path: Path) -> list[Record]:
-    """The whole records of a box, in the order in which they were written."""
+def read(path: Path, epoch_us: int | None = None) -> list[Record]:
+    """The whole records of a box, in the order in which they were written. `epoch_us`: since 1970
+    at the start of CLOCK_MONOTONIC, if not as the box has it.
+    """
+    own_epoch_us, ring = _opened(path)
+    records = _records(ring, own_epoch_us if epoch_us is None else epoch_us)
+    return sorted(records, key=lambda record: record.number)
+
+
+def _opened(path: Path) -> tuple[int, bytes]:
+    """Its `epoch_us`, and its ring."""
     content = path.read_bytes()
     header, ring = content[:HEADER_BYTES], content[HEADER_BYTES:]
     lines = header.split(b"\0", 1)[0].decode("utf-8", "replace").splitlines()
@@ -88,10 +97,9 @@ def read(path: Path) -> list[Record]:
         raise InputError(f"{path} is no black box of this version ({FORMAT})")
     entries = dict(line.split(": ", 1) for line in lines[1:] if ": " in line)
     try:
-        epoch_us = int(entries["epoch_minus_monotonic_ns"]) // 1000
+        return int(entries["epoch_minus_monotonic_ns"]) // 1000, ring
     except (KeyError, ValueError) as error:
         raise InputError(f"{path}: its header has no clock") from error
-    return sorted(_records(ring, epoch_us), key=lambda record: record.number)
 
 
 def _records(ring: bytes, epoch_us: int) -> list[Record]:
@@ -126,11 +134,13 @@ def write_log(boxes: list[Incident], path: Path) -> int:
     """All records of the boxes once, by time, as an LCM event log; returns how many.
 
     A state that the driver sent and the controller heard is in both boxes: the first one counts.
+    All times are by the first box's wall clock, which may have been set before others began.
     """
     seen = set()
     count = 0
     log = lcm.EventLog(str(path), "w", overwrite=True)
-    records = [record for box in boxes for record in read(box.path)]
+    epoch_us, _ = _opened(boxes[0].path)
+    records = [record for box in boxes for record in read(box.path, epoch_us)]
     for record in sorted(records, key=lambda record: record.time_us):
         if (record.channel, record.data) in seen:
             continue

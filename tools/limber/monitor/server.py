@@ -17,6 +17,7 @@ import websockets.asyncio.server
 from websockets.http11 import Response
 
 from limber.errors import RunError
+from limber.monitor.field_values import keep_possible
 from limber.monitor.page_link import PROTOCOL, PageLink
 from limber.paths import ASSETS
 
@@ -35,6 +36,7 @@ class Server(viser.ViserServer):
         self.link = PageLink()
         with _closed(self.link), redirect_stdout(io.StringIO()):
             super().__init__(host=HOST, port=port, label="limber", verbose=False)
+        keep_possible(self.gui)
 
     def close(self) -> None:
         with redirect_stdout(io.StringIO()):
