@@ -81,10 +81,11 @@ void RequestSender::send_entry(const std::string& entry) {
 }
 
 std::string RequestSender::refusal() const {
-  const std::string reason = answer_->code == request_answer_t::REFUSED_MODE
-                                 ? not_in_mode(mode_, *answer_)
-                                 : answer_->reason;
-  return refusal_text(answer_->code, reason);
+  if (answer_->code != request_answer_t::REFUSED_MODE)
+    return refusal_text(answer_->code, answer_->reason);
+  // The way there is in the words, so the table's general one is left out.
+  return find_problem(problems::kRequest, answer_->code)->code +
+         (": " + not_in_mode(mode_, *answer_));
 }
 
 void RequestSender::send(const ScenarioMessage& message, std::int64_t controller) {
