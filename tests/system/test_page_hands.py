@@ -16,11 +16,13 @@ from browser_page import (
     ROBOT,
     Arm,
     activate,
+    drag_goal,
     free_port,
     grab,
     launched,
     monitor,
     opened,
+    press,
     upper_arm,
 )
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
@@ -146,15 +148,15 @@ def buttons(page) -> dict[str, tuple[float, bool, bool]]:
 
 
 @pytest.fixture(params=SIZES)
-def size(request, page):
+def size(request, page, stack):
+    activate(page, stack)  # before: a touch on a telephone's panel folds it
     page.set_viewport_size(window(request.param))
     yield SIZES[request.param]
     page.set_viewport_size(window("small"))
 
 
-def test_a_fault_is_left_by_the_buttons_of_its_box(stack, page, client, size):
+def test_a_fault_is_left_by_the_buttons_of_its_box(stack, page, size, client):
     """In the order of the way there; each waits until it can act."""
-    activate(page, stack)
     gone_s = break_drive(stack)
     box = page.locator("div", has=page.get_by_text("FAULT", exact=True)).filter(
         has=button(page, "acknowledge")
@@ -185,8 +187,7 @@ def test_a_fault_is_left_by_the_buttons_of_its_box(stack, page, client, size):
         wanted = getattr(Status, f"MODE_{mode}")
         end = time.monotonic() + 60
         while stack.mode != wanted and time.monotonic() < end:
-            if button(page, word).is_enabled():
-                button(page, word).click()
+            press(page, word)
             time.sleep(0.5)
         assert stack.mode == wanted
     page.locator('button[aria-current="true"]', has_text="active").wait_for()
@@ -194,9 +195,9 @@ def test_a_fault_is_left_by_the_buttons_of_its_box(stack, page, client, size):
 
 def test_recover_goes_the_way_and_names_where_it_stops(stack, page, client):
     activate(page, stack)
-    gone_s = break_drive(stack, for_s=20.0)
+    gone_s = break_drive(stack, for_s=10.0)
     with pytest.raises(RecoveryError, match=r"stopped at '(acknowledge|hold)'.* in ") as failed:
-        client.recover(timeout_s=15.0)
+        client.recover(timeout_s=8.0)
     assert failed.value.step in ("acknowledge", "hold")
     wait_arm_time(stack, gone_s)
     client.recover(timeout_s=30.0)
@@ -350,6 +351,28 @@ def test_a_push_ends_with_the_monitor(stack, browser, at_home):
     finally:
         process.kill()
         process.wait()
+
+
+def test_a_motion_ends_at_its_last_goal_when_its_page_is_closed(stack, url, page, browser, at_home):
+    """In the middle of a drag; the law runs on, and the other viewer has the arm."""
+    start = stack.status["p_BD"].copy()
+    with opened(browser, url, window("small")) as other:
+        button(other, "hold").wait_for()
+        drag_goal(other, stack, let_go=False)
+        stack.until(lambda: np.linalg.norm(stack.status["p_BD"] - start) > 0.02, "a motion")
+    before = np.full(3, np.nan)
+
+    def rests() -> bool:
+        nonlocal before
+        goal, before = before, stack.status["p_BD"].copy()
+        wait_arm_time(stack, arm_time_s(stack) + 0.3)
+        return bool(np.allclose(goal, before, atol=1e-5))
+
+    stack.until(rests, "the goal to rest")
+    assert stack.mode == Status.MODE_ACTIVE
+    assert np.linalg.norm(before - start) < 0.3
+    press(page, "hold")
+    stack.until(lambda: stack.mode == Status.MODE_HOLD, "hold, by the other viewer")
 
 
 def test_anybody_stops_the_arm(stack, browser, url, page, client, active):

@@ -103,7 +103,7 @@ def test_none_outlives_the_last_sign_of_life_by_more_than_a_quarter_second(tool,
 
 
 def test_the_last_moment_of_a_life_is_no_push(tool, clock):
-    """Shorter than any push may be: the request would be refused, and the page tell of a failure."""
+    """A request so short is refused, and the page would tell of a failure."""
     drag(tool, ME, "start")
     run(tool, clock, 1.0, alive=True)
     clock.now_s += LIFE_S - 0.5 * SHORTEST_PUSH_S
