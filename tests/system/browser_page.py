@@ -161,14 +161,17 @@ def press(page, word: str) -> None:
 def activate(page, stack: Arm) -> None:
     """ACTIVE, by the page's own buttons."""
     page.get_by_text("limber ·").first.click()  # no field has the focus
-    end = time.monotonic() + 60
-    while stack.mode != Status.MODE_ACTIVE and time.monotonic() < end:
+
+    def there() -> bool:
+        if stack.mode == Status.MODE_ACTIVE:
+            return page.get_by_text("ACTIVE", exact=True).first.is_visible()
         faulty = stack.mode in (Status.MODE_FAULT, Status.MODE_ESTOP)
-        word = "acknowledge" if faulty else "active" if stack.mode == Status.MODE_HOLD else "hold"
-        press(page, word)
+        onward = "active" if stack.mode == Status.MODE_HOLD else "hold"
+        press(page, "acknowledge" if faulty else onward)
         time.sleep(0.5)
-    assert stack.mode == Status.MODE_ACTIVE
-    page.get_by_text("ACTIVE", exact=True).wait_for()
+        return False
+
+    stack.until(there, "ACTIVE, by the buttons, and shown", 120.0)
 
 
 def screen(page, point: np.ndarray) -> tuple[float, float]:

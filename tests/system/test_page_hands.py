@@ -193,6 +193,17 @@ def test_a_fault_is_left_by_the_buttons_of_its_box(stack, page, size, client):
     page.locator('button[aria-current="true"]', has_text="active").wait_for()
 
 
+TALLEST_LABEL = """() => Math.max(...[...document.querySelectorAll("label[for]")].map(label =>
+  label.getBoundingClientRect().height / parseFloat(getComputedStyle(label).lineHeight)))"""
+
+
+def test_labels_are_two_lines_at_most(page):
+    for tab, label in (("push", "at most N"), ("view", "forces"), ("control", "damping ratio")):
+        page.get_by_role("tab", name=tab).click()
+        page.get_by_text(label, exact=True).first.wait_for(timeout=30_000)
+        assert 0.9 < page.evaluate(TALLEST_LABEL) < 2.1, tab
+
+
 def test_recover_goes_the_way_and_names_where_it_stops(stack, page, client):
     activate(page, stack)
     gone_s = break_drive(stack, for_s=10.0)
