@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 from collections import defaultdict
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from io import BytesIO
 
 import numpy as np
@@ -148,17 +148,30 @@ def opened(browser, url: str, size: dict = SIZE):
     assert outside == []
 
 
+def press(page, word: str) -> None:
+    """A button of the box. One that cannot act any more, since the mode has changed meanwhile, is
+    not waited for.
+    """
+    from playwright.sync_api import TimeoutError as InVain
+
+    with suppress(InVain):
+        page.get_by_role("button", name=word, exact=True).click(timeout=5_000)
+
+
 def activate(page, stack: Arm) -> None:
     """ACTIVE, by the page's own buttons."""
     page.get_by_text("limber ·").first.click()  # no field has the focus
-    end = time.monotonic() + 60
-    while stack.mode != Status.MODE_ACTIVE and time.monotonic() < end:
+
+    def there() -> bool:
+        if stack.mode == Status.MODE_ACTIVE:
+            return page.get_by_text("ACTIVE", exact=True).first.is_visible()
         faulty = stack.mode in (Status.MODE_FAULT, Status.MODE_ESTOP)
-        word = "acknowledge" if faulty else "active" if stack.mode == Status.MODE_HOLD else "hold"
-        page.get_by_role("button", name=word, exact=True).click()
+        onward = "active" if stack.mode == Status.MODE_HOLD else "hold"
+        press(page, "acknowledge" if faulty else onward)
         time.sleep(0.5)
-    assert stack.mode == Status.MODE_ACTIVE
-    page.get_by_text("ACTIVE", exact=True).wait_for()
+        return False
+
+    stack.until(there, "ACTIVE, by the buttons, and shown", 120.0)
 
 
 def screen(page, point: np.ndarray) -> tuple[float, float]:
@@ -222,3 +235,15 @@ def upper_arm(page, stack) -> tuple[float, float]:
         X = X @ X_PF @ turn
         places.append(X[:3, 3])
     return screen(page, 0.5 * (places[2] + places[3]))
+
+
+def drag_goal(page, stack, let_go: bool = True) -> np.ndarray:
+    """By the gizmo's first arrow, 8 cm; returns the arrow's direction in the base frame."""
+    status = stack.status
+    R = Rotation.from_quat(status["quat_BD"], scalar_first=True)
+    axis, grip = R.apply([1.0, 0.0, 0.0]), 0.28 * figure(load_robot(ROBOT)).reach_m
+    p = status["p_BD"].copy()
+    begin, end = screen(page, p + grip * axis), screen(page, p + (grip + 0.08) * axis)
+    way = end[0] - begin[0], end[1] - begin[1]
+    grab(page, lambda: screen(page, p + grip * axis), way, let_go=let_go)
+    return axis

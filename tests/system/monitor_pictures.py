@@ -23,6 +23,7 @@ def pushed_arm(browser, path: Path) -> None:
     stack = Arm(Path(tempfile.mkdtemp()))
     try:
         with monitor("--control", "--robot", ROBOT) as url, opened(browser, url, SIZE) as page:
+            page.goto(f"{url}/?fixedDpr=1")  # the whole resolution, though drawn by the processor
             stack.start_all()
             activate(page, stack)
             page.get_by_role("combobox", name="show").click()

@@ -195,7 +195,7 @@ def test_states_come_at_a_rate(arm):
 
 
 def test_refusals_carry_code_and_reason(arm):
-    with pytest.raises(RefusedError, match="goals are accepted in ACTIVE only") as refused:
+    with pytest.raises(RefusedError, match="the way there: hold, active") as refused:
         arm.set_goal(offset_m=[0, 0.01, 0])
     assert refused.value.code == "request.MODE"
     with pytest.raises(RefusedError, match="elastic joint"):

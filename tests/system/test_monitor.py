@@ -9,7 +9,6 @@ import time
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from browser_page import (
     CHROMIUM,
@@ -17,17 +16,15 @@ from browser_page import (
     Arm,
     activate,
     drag,
+    drag_goal,
     grab,
     launched,
     monitor,
     opened,
-    screen,
     settled,
     upper_arm,
 )
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
-from limber.model.robot import load_robot
-from limber.monitor.shapes import figure
 from stack import BIN, ROOT
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
@@ -83,13 +80,8 @@ def test_a_slider_makes_the_arm_stiffer(page, stack, active):
 
 
 def test_the_gizmo_moves_the_goal(page, stack, active):
-    start = stack.status
-    R = Rotation.from_quat(start["quat_BD"], scalar_first=True)
-    axis, grip = R.apply([1.0, 0.0, 0.0]), 0.28 * figure(load_robot(ROBOT)).reach_m
-    p = start["p_BD"].copy()
-    begin, end = screen(page, p + grip * axis), screen(page, p + (grip + 0.08) * axis)
-    way = end[0] - begin[0], end[1] - begin[1]
-    grab(page, lambda: screen(page, p + grip * axis), way)
+    p = stack.status["p_BD"].copy()
+    axis = drag_goal(page, stack)
     stack.until(lambda: (stack.status["p_BD"] - p) @ axis > 0.04, "the goal along the axis")
     moved = stack.status["p_BD"] - p
     assert np.linalg.norm(moved - (moved @ axis) * axis) < 0.01

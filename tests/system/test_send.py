@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.live.way import in_words
 from stack import BIN, ROOT
 
 
@@ -72,5 +73,26 @@ def test_one_line_an_entry(standing):
     )
     answers = done.stdout.splitlines()
     assert [answer.split(":")[0] for answer in answers] == ["ok", "error", "error", "ok"]
-    assert "ACTIVE is entered from HOLD, drives on" in answers[1]
+    assert in_words("IDLE", "active") in answers[1]
     assert done.returncode == 2
+
+
+@pytest.mark.usefixtures("standing")
+def test_a_refusal_names_request_mode_and_way():
+    """In the same words as the page and Python."""
+    goal = "goal: {position_m: [0.3, 0, 0.3], quaternion_wxyz: [1, 0, 0, 0]}"
+    for entry, wanted in (("mode: active", "active"), ("mode: acknowledge", "acknowledge")):
+        assert in_words("IDLE", wanted) in limber_send(entry).stderr
+    words = limber_send(goal).stderr
+    assert words.rstrip().endswith("the way there: hold, active"), "and nothing else to do"
+
+
+def test_in_a_fault_the_way_begins_with_acknowledge(standing):
+    stack = standing
+    limber_send("mode: hold")
+    stack.until(lambda: stack.mode == Status.MODE_HOLD, 10, "HOLD")
+    limber_send("fault: {joint: joint3, kind: silent, for_s: 0.3}")
+    stack.until(lambda: stack.mode == Status.MODE_FAULT, 20, "FAULT")
+    refused = limber_send("mode: active").stderr
+    assert "request.MODE: active is not taken in FAULT" in refused
+    assert "the way there: acknowledge, hold, active" in refused

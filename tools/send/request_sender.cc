@@ -14,6 +14,7 @@
 #include "common/problem_text.h"
 #include "controller/laws/registry.h"
 #include "lcmtypes/channels.h"
+#include "tools/send/mode_way.h"
 
 namespace limber {
 namespace {
@@ -42,9 +43,11 @@ RequestSender::RequestSender(const LoadedRobot& robot, std::int64_t client)
                                       if (answer.client == client_ && answer.seq == seq_)
                                         answer_ = answer;
                                     });
-  port_.subscribe<controller_status_t>(
-      channels::kControllerStatus, 1,
-      [this](const controller_status_t& status) { controller_ = status.controller; });
+  port_.subscribe<controller_status_t>(channels::kControllerStatus, 1,
+                                       [this](const controller_status_t& status) {
+                                         controller_ = status.controller;
+                                         mode_ = status.mode;
+                                       });
 }
 
 template <typename Condition>
@@ -73,10 +76,16 @@ void RequestSender::send_entry(const std::string& entry) {
   send(timed.message, to_controller ? running_controller() : 0);
   if (!to_controller) return;
   if (!wait_for([this] { return answer_.has_value(); })) throw ConfigError("no controller answers");
-  if (answer_->accepted == 0) {
-    throw ConfigError("refused by the controller: " + refusal_text(answer_->code, answer_->reason));
-  }
+  if (answer_->accepted == 0) throw ConfigError("refused by the controller: " + refusal());
   if (!answer_->reason.empty()) spdlog::warn("warning: {}", answer_->reason);
+}
+
+std::string RequestSender::refusal() const {
+  if (answer_->code != request_answer_t::REFUSED_MODE)
+    return refusal_text(answer_->code, answer_->reason);
+  // The way there is in the words, so the table's general one is left out.
+  return find_problem(problems::kRequest, answer_->code)->code +
+         (": " + not_in_mode(mode_, *answer_));
 }
 
 void RequestSender::send(const ScenarioMessage& message, std::int64_t controller) {

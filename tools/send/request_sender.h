@@ -26,6 +26,8 @@ class RequestSender {
  private:
   /// Number of the controller that runs now. Throws ConfigError if none does.
   std::int64_t running_controller();
+  /// In words; of the last answer.
+  std::string refusal() const;
   void send(const ScenarioMessage& message, std::int64_t controller);
   template <typename Condition>
   bool wait_for(Condition met);
@@ -36,6 +38,7 @@ class RequestSender {
   LcmPort port_;
   std::int64_t seq_ = 0;
   std::optional<std::int64_t> controller_;
+  std::int8_t mode_ = 0;  ///< of the controller, as heard last
   std::optional<request_answer_t> answer_;
 };
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from limber import messages
+from limber.live.request_messages import SHORTEST_PUSH_S
 from limber.model.robot import load_robot
 from limber.monitor import push_tool
 from limber.monitor.arm_view import ArmView
@@ -99,6 +100,16 @@ def test_none_outlives_the_last_sign_of_life_by_more_than_a_quarter_second(tool,
         ends += [clock.now_s + duration for _, _, duration in tool.asked.pushes[before:]]
     assert ends, "it does not break off at once"
     assert max(ends) <= silent_s + LIFE_S + 1e-9
+
+
+def test_the_last_moment_of_a_life_is_no_push(tool, clock):
+    """A request so short is refused, and the page would tell of a failure."""
+    drag(tool, ME, "start")
+    run(tool, clock, 1.0, alive=True)
+    clock.now_s += LIFE_S - 0.5 * SHORTEST_PUSH_S
+    before = len(tool.asked.pushes)
+    tool.draw()
+    assert tool.asked.pushes[before:] == []
 
 
 def test_a_page_that_draws_slowly_has_a_second(tool, clock):

@@ -129,3 +129,20 @@ def test_a_message_that_is_heard_and_not_taken_yet_is_no_error(feed, channel):
     hearing = feed(mode=STATUS.MODE_ACTIVE)
     del hearing.newest[channel]
     assert situation(hearing, []).headline.startswith("NO ")
+
+
+@pytest.mark.parametrize("mode", ["FAULT", "IDLE"])
+def test_a_drive_that_let_go_is_enabled_only_after_idle(feed, mode):
+    """`hold` enables all or none, and those that hold the arm are not switched off for it."""
+    flags = np.zeros(16, int)
+    flags[:2] = STATE.JOINT_ENABLED
+    modes = {"mode": getattr(STATUS, f"MODE_{mode}"), "drive_state": STATE.DRIVE_HOLD}
+    whole = situation(feed(**modes, joint_flags=flags), ["a", "b"])
+    assert "idle" not in whole.detail
+    flags[1] = STATE.JOINT_DRIVE_ERROR
+    now = situation(feed(**modes, joint_flags=flags), ["a", "b"])
+    assert now.detail.index("support it") < now.detail.index("idle (releases all drives), hold")
+    assert ("acknowledge, idle" in now.detail) is (mode == "FAULT")
+    for situated, disabled in ((whole, mode == "FAULT"), (now, True)):
+        box = card(Shown(situated, control=True))[0]
+        assert ('data-limber="hold" disabled' in box) is disabled

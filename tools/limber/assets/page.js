@@ -5,6 +5,7 @@
   const PROTOCOL = "limber-page";
   const BEAT_MS = 50, HELLO_MS = 250, AGAIN_MS = 500;
   const FRAMES = {graphics_card: 30, software: 5}; // a second
+  const SOFTWARE_SCALE = "0.5"; // a quarter of the pixels: all that a processor can draw beside an arm
 
   const software = (() => {
     const gl = document.createElement("canvas").getContext("webgl2");
@@ -14,6 +15,14 @@
     gl.getExtension("WEBGL_lose_context")?.loseContext();
     return /swiftshader|llvmpipe|softpipe|software/i.test(name);
   })();
+
+  // --- resolution of the arm: viser reads it from the address
+  const address = new URL(location);
+  if (software !== address.searchParams.has("fixedDpr")) {
+    if (software) address.searchParams.set("fixedDpr", SOFTWARE_SCALE);
+    else address.searchParams.delete("fixedDpr"); // of a copied address
+    history.replaceState(null, "", address);
+  }
 
   // --- frames: whoever draws again and again is called no more often than this
   const period = 1000 / (software ? FRAMES.software : FRAMES.graphics_card);

@@ -17,6 +17,7 @@ _WAYS = {
     "GOAL_JOINT": ("joints_rad",),
     "GOAL_CIRCLE": ("circle_centre_m", "circle_axis"),
 }
+SHORTEST_PUSH_S = 1e-3
 _MORE = ("force_N", "torque_Nm", "posture_rad", "duration_s", "valid_for_s")
 
 
@@ -76,7 +77,7 @@ def push(
     message.id = number_
     message.link = link
     message.wrench = _six({"force_N": force_N, "torque_Nm": torque_Nm}, "force_N", "torque_Nm")
-    message.duration_s = number("for_s", for_s, 1e-3, 60.0)
+    message.duration_s = number("for_s", for_s, SHORTEST_PUSH_S, 60.0)
     message.ramp_s = number("ramp_s", ramp_s, 0.0, 0.5 * message.duration_s)
     return message
 

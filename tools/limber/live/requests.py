@@ -9,6 +9,7 @@ from typing import Any
 from limber import messages
 from limber.live.arm_errors import RefusedError, StackLostError
 from limber.live.stack_link import StackLink
+from limber.live.way import in_words_of
 from limber.problems import problem
 
 ANSWER_S = 5.0  # for a machine that is busy
@@ -44,7 +45,7 @@ class RequestPort:
                 for data in self._answers.raw():
                     answer = _answer(data)
                     if answer and (answer.client, answer.seq) == (self.client, message_seq):
-                        return _accepted(answer)
+                        return _accepted(answer, self._link)
         raise StackLostError(
             f"the controller has not answered a request within {timeout_s:g} s: see whether "
             "limber-controller and limber-driver still run"
@@ -73,7 +74,7 @@ def _answer(data: bytes) -> Any:
         return None
 
 
-def _accepted(answer: Any) -> Any:
+def _accepted(answer: Any, link: StackLink) -> Any:
     if answer.accepted:
         if answer.reason:
             warnings.warn(f"taken, but: {answer.reason}", stacklevel=5)
@@ -81,4 +82,8 @@ def _accepted(answer: Any) -> Any:
     cause = problem("request", answer.code)
     if cause is None:
         raise RefusedError("request", answer.reason)
+    if answer.code == answer.REFUSED_MODE:
+        mode = int(link.receiver.newest("CONTROLLER_STATUS")["mode"])
+        words = in_words_of(answer, messages.constants("controller_status_t", "MODE_")[mode])
+        raise RefusedError(cause.code, words)
     raise RefusedError(cause.code, answer.reason, cause.remedy)

@@ -1,5 +1,9 @@
 """The controller's modes, the requests that each takes, and the way from one to another."""
 
+from typing import Any
+
+from limber.messages import constants
+
 WAY = ("acknowledge", "hold", "active")
 """Requests from FAULT to ACTIVE, in their order."""
 
@@ -47,3 +51,11 @@ def in_words(mode: str, wanted: str) -> str:
     if way == [wanted]:
         return f"{refused} yet: the drives are not on"
     return f"{refused}; the way there: {', '.join(way)}" if way else f"{refused}: nothing to do"
+
+
+def in_words_of(answer: Any, mode: str) -> str:
+    """The same of an answer with REFUSED_MODE."""
+    kind = constants("request_answer_t", "KIND_")[answer.kind].lower()
+    if kind == "mode":
+        kind = constants("mode_request_t", "REQUEST_").get(answer.what, kind).lower()
+    return in_words(mode, kind)

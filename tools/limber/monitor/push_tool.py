@@ -7,6 +7,7 @@ import numpy as np
 import viser
 from numpy.typing import ArrayLike
 
+from limber.live.request_messages import SHORTEST_PUSH_S
 from limber.monitor.arm_view import ArmView
 from limber.monitor.feed import Feed
 from limber.monitor.page_link import PageLink
@@ -91,7 +92,7 @@ class PushTool:
         if silent_s > FORGOTTEN_S:
             self._pull = None
         life_s = SLOW_LIFE_S if self._link.draws_slowly(pull.viewer) else LIFE_S
-        if silent_s >= life_s:
+        if life_s - silent_s < SHORTEST_PUSH_S:
             return
         self._sent_s = now
         duration_s = (life_s - silent_s) * self._pace.rate

@@ -10,7 +10,7 @@ import numpy as np
 from limber import messages
 from limber.errors import InputError
 from limber.live import gains_message, request_messages
-from limber.live.way import in_words
+from limber.live.way import in_words_of
 from limber.monitor.feed import Batch
 from limber.monitor.live_feed import LiveFeed
 from limber.monitor.words import mode_of
@@ -104,14 +104,12 @@ class Requests:
         elif answer.accepted:
             released = answer.kind == KIND_MODE and answer.what == MODE.REQUEST_RELEASE
             self._leased = not released
-        return Outcome(kind, "" if answer.accepted else self._refusal(answer, kind))
+        return Outcome(kind, "" if answer.accepted else self._refusal(answer))
 
-    def _refusal(self, answer: Any, kind: str) -> str:
+    def _refusal(self, answer: Any) -> str:
         """A request that does not fit the mode is named, with the mode and the way there."""
         if answer.code == ANSWER.REFUSED_MODE:
-            words = messages.constants("mode_request_t", "REQUEST_")
-            asked = words.get(int(answer.what), kind).lower() if kind == "mode" else kind
-            return f"request.MODE: {in_words(mode_of(self._feed) or 'this mode', asked)}."
+            return f"request.MODE: {in_words_of(answer, mode_of(self._feed) or 'this mode')}."
         return _refusal(answer.code, answer.reason)
 
     def _repeat_stop(self, now: float) -> None:

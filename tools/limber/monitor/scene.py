@@ -25,6 +25,7 @@ from limber.monitor.springs import Springs
 from limber.monitor.walls import WallChange, wall_at
 
 BACKGROUND = (236, 240, 245)
+GROUND = (150, 150, 160)
 GHOST_S = 0.1
 AWAY = 1.75  # camera to arm, in reaches
 GHOST = (46, 130, 220)
@@ -89,6 +90,9 @@ class Scene:
     def _place_camera(self, server: viser.ViserServer) -> None:
         place = camera(self._robot, self.figure)
         server.scene.set_up_direction(place.up)
+        # viser's picture of surroundings takes seconds without a graphics card
+        server.scene.configure_environment_map(hdri=None)
+        server.scene.add_light_hemisphere("/sky", ground_color=GROUND, intensity=2.0)
         server.scene.set_background_image(np.full((2, 2, 3), BACKGROUND, np.uint8))
         server.initial_camera.position = place.position
         server.initial_camera.look_at = place.look_at

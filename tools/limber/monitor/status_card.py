@@ -83,10 +83,13 @@ def _buttons(now: Situation) -> str:
 
 
 def _button(word: str, now: Situation) -> str:
-    """In IDLE, *idle* releases drives that still hold the arm by themselves."""
+    """In IDLE, *idle* releases drives that still hold the arm by themselves; before, *hold* cannot
+    enable one that let go.
+    """
     here = word != "acknowledge" and LEADS_TO.get(word) == now.mode
     releases = word == "idle" and now.mode == "IDLE" and now.fallback
     can = word in TAKES.get(now.mode, ()) or word == "release" or releases
+    can = can and not (word == "hold" and now.let_go)
     state = ' aria-current="true"' if here else ""
     state += "" if can else " disabled"
     return f'<button type="button" data-limber="{word}"{state}>{word}</button>'

@@ -5,20 +5,20 @@ import viser
 from limber.monitor.scene import Scene
 
 WORDS = {
-    "goal": "goal, where the arm is away from it",
-    "forces": "forces",
-    "stiffness": "stiffness",
-    "springs": "springs of elastic joints, 20 times as bent",
+    "goal": ("goal", "Where the arm is away from it."),
+    "forces": ("forces", None),
+    "stiffness": ("stiffness", None),
+    "springs": ("springs", "Of elastic joints, drawn 20 times as bent as they are."),
 }
 
 
 def add_view_options(gui: viser.GuiApi, scene: Scene) -> None:
-    for key, words in WORDS.items():
-        _checkbox(gui, scene, key, words)
+    for key, (label, hint) in WORDS.items():
+        _checkbox(gui, scene, key, label, hint)
 
 
-def _checkbox(gui: viser.GuiApi, scene: Scene, key: str, words: str) -> None:
-    box = gui.add_checkbox(words, scene.seen[key])
+def _checkbox(gui: viser.GuiApi, scene: Scene, key: str, label: str, hint: str | None) -> None:
+    box = gui.add_checkbox(label, scene.seen[key], hint=hint)
 
     @box.on_update
     async def _(_event: viser.GuiEvent) -> None:

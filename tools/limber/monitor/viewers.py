@@ -35,6 +35,7 @@ class Viewers:
         self._notes: dict[int, viser.GuiHtmlHandle] = {}
         self._layouts: dict[int, tuple[int, int, bool]] = {}
         server.link.on("size", self._size)
+        server.scene.configure_default_lights(cast_shadow=False)  # until a graphics card is found
 
         @server.on_client_connect
         async def _(client: viser.ClientHandle) -> None:
@@ -51,7 +52,9 @@ class Viewers:
         client = self._server.get_clients().get(viewer)
         if client is None:
             return
-        self._notes[viewer].content = note(viewer, bool(size["software"]))
+        software = bool(size["software"])
+        self._notes[viewer].content = note(viewer, software)
+        client.scene.configure_default_lights(cast_shadow=not software)
         layout = widths(min(max(int(size["width"]), 1), 100_000))
         if layout == self._layouts.get(viewer):
             return

@@ -15,11 +15,14 @@ WANTED = ("driver.REQUESTED", "controller.STOP_REQUESTED")  # by the user: no fa
 CAUSES_FIRST = ("stop", "driver", "controller", "bus", "joint", "sensor", "limit")
 FOLLOWS = ("controller.DRIVER_FAULT",)  # of a fault that the driver reports itself
 FAULTY = ("FAULT", "ESTOP")
-DRIVE_HOLD = message_class("joint_state_t").DRIVE_HOLD
-IN_FALLBACK = (
-    "the drives hold the arm by themselves; hold takes it over. If a drive was in error: support "
-    "the arm, idle (releases all drives), then hold"
-)
+STATE = message_class("joint_state_t")
+IN_FALLBACK = "the drives hold the arm by themselves; hold takes it over"
+LET_GO = "a drive is off or in error, the others hold the arm: support it; {}, hold, active"
+IDLE_FIRST = "idle (releases all drives)"
+LET_GO_WORDS = {
+    "IDLE": LET_GO.format(IDLE_FIRST),
+    "FAULT": LET_GO.format(f"acknowledge, {IDLE_FIRST}"),
+}
 MODE_WORDS = {
     "BOOT": "waiting for the driver",
     "INIT": "checking the arm's state",
@@ -45,7 +48,7 @@ class Note:
 @dataclass
 class Situation:
     """`mode`: the controller's, empty if it is silent; `notes`: the cause first; `fallback`: the
-    drives hold the arm by themselves.
+    drives hold the arm by themselves; `let_go`: but for one that is off or in error.
     """
 
     level: str
@@ -54,6 +57,7 @@ class Situation:
     notes: list[Note] = field(default_factory=list)
     mode: str = ""
     fallback: bool = False
+    let_go: bool = False
 
     @property
     def faulty(self) -> bool:
@@ -83,9 +87,13 @@ def situation(feed: Feed, joints: list[str], limits: int = 0) -> Situation:
     if mode in ("FAULT", "ESTOP") or any(note.level == BAD for note in notes):
         level = BAD
     ranked = sorted(notes, key=_rank)
-    fallback = int(feed.newest["JOINT_STATE"]["drive_state"]) == DRIVE_HOLD
+    state = feed.newest["JOINT_STATE"]
+    fallback = int(state["drive_state"]) == STATE.DRIVE_HOLD
+    flags = state["joint_flags"][: int(state["num_joints"])]
+    let_go = fallback and not np.all(flags & STATE.JOINT_ENABLED)
     words = IN_FALLBACK if fallback and mode == "IDLE" else MODE_WORDS.get(mode, "")
-    return Situation(level, mode.replace("_", " "), words, ranked, mode, fallback)
+    words = LET_GO_WORDS.get(mode, words) if let_go else words
+    return Situation(level, mode.replace("_", " "), words, ranked, mode, fallback, let_go)
 
 
 def mode_of(feed: Feed) -> str:
