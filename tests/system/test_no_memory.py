@@ -42,7 +42,8 @@ def test_a_drive_that_fails(stack, without, kind):
     stack.until(lambda: stack.state.drive_state == State.DRIVE_HOLD, 20, "FALLBACK")
     stack.pass_time(1.0)
     assert stack.processes[without].poll() is None, stack.describe()
-    held = slice(1 if kind == Event.FAULT_DRIVE_ERROR else 0, None)  # a drive in error holds nothing
+    # A drive in error holds nothing.
+    held = slice(1 if kind == Event.FAULT_DRIVE_ERROR else 0, None)
     assert np.abs(positions(stack) - before)[held].max() < HELD_RAD
 
 
