@@ -11,16 +11,16 @@
 namespace limber::test_controller_lost {
 namespace {
 
-using testing::FakeArm;
 using loaded::kFallback;
 using loaded::kKd1;
 using loaded::kKp50;
 using loaded::kOn;
 using loaded::kRequestOn;
 using loaded::loaded_arm;
-using testing::raw_command;
 using loaded::text_of_fault;
 using loaded::torque_sent;
+using testing::FakeArm;
+using testing::raw_command;
 
 TEST(ControllerLostTest, TwoCyclesAreBridgedTheThirdHolds) {
   FakeArm arm = loaded_arm(2);

@@ -7,8 +7,6 @@
 namespace limber::test_reply_lost {
 namespace {
 
-using testing::FakeArm;
-using testing::is_special;
 using loaded::kFallback;
 using loaded::kFault;
 using loaded::kKd1;
@@ -17,10 +15,12 @@ using loaded::kOff;
 using loaded::kOn;
 using loaded::kRequestOn;
 using loaded::loaded_arm;
-using testing::raw_command;
-using testing::test_robot;
 using loaded::text_of_fault;
 using loaded::torque_sent;
+using testing::FakeArm;
+using testing::is_special;
+using testing::raw_command;
+using testing::test_robot;
 
 TEST(ReplyLostTest, TwoAreBridgedTheThirdHoldsTheOthers) {
   FakeArm arm = loaded_arm(3);
