@@ -40,9 +40,9 @@ namespace limber::controller {
 ///
 /// by projected Gauss-Seidel. r is what acts besides the motors, a payload, friction or a contact,
 /// seen by the change of momentum of links and rotors, in which the springs between them cancel.
-/// Where it helps the torque it counts; against the torque no further than that, as friction and a
-/// wall do not push back, and a joint at rest may push as hard as its torque allows. Until it is
-/// known, only joints that move are judged. What torque and rate limits
+/// Where it helps the torque it counts; against the torque no further than
+/// that, as friction and a wall do not push back, and a joint at rest may push as hard as its
+/// torque allows. Until it is known, only joints that move are judged. What torque and rate limits
 /// keep from all that is made up for by the joints that can, by least squares: they brake
 /// themselves, or change their torque less. Joints do not if their spring is softer than
 /// 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end is not
@@ -73,6 +73,7 @@ class Stopping {
                    const VectorJ& load, const VectorJ& tau, Rows* rows) const noexcept;
   /// Whether motor and link move as one within kMemory_s.
   bool firm(Eigen::Index joint, const ArmTerms& terms) const noexcept;
+  VectorJ counted(const VectorJ& pushing) const noexcept;
   void bound_energy(const ArmState& state, const ArmTerms& terms, Rows* rows) const noexcept;
   void let_others_help(const Rows& rows, const MatrixJ& W, const ArmState& state,
                        const ArmTerms& terms, const Reach& reach, VectorJ* a,
