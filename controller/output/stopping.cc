@@ -29,7 +29,6 @@ constexpr double kJudgedFrom = 0.2;
 constexpr double kKnown_s = 3.0 * Stopping::kMemory_s;
 constexpr double kFirm = 0.4;
 constexpr double kMovesFrom = 0.02;  // of the speed that can be stopped; dither is slower
-constexpr double kTurnsFrom = 0.05;  // of its fastest: a joint that is braked may turn round
 constexpr double kStays = 0.25;      // of what a joint's torque changes, for the sake of others
 constexpr int kSweeps = 10;
 // Of the torque that is missing; keeps joints with little effect from going far.
@@ -130,7 +129,7 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const double braking = std::max(torque_[i] + sign * load[i], kLeastBraking * torque_[i]);
   Speed most = stoppable(d, speed_gain_per_s_, kShareOfTorque * braking / M);
   std::int32_t limit = controller_status_t::LIMIT_POSITION;
-  if (u < 0.0 || !(most.value < velocity_[i])) {
+  if (!(most.value < velocity_[i])) {
     most = {velocity_[i], 0.0};
     limit = controller_status_t::LIMIT_VELOCITY;
   }
@@ -138,8 +137,8 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const double spare = stoppable(most.value - u, acceleration_gain_per_s_, jerk).value;
   const double a_most = spare - std::max(u, 0.0) * most.slope;
   const bool known = observed_s_ > kKnown_s;
-  const bool moves = u > kMovesFrom * most.value || u < -kTurnsFrom * velocity_[i];
-  const bool pushed = known && moves && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
+  const bool pushed =
+      known && u > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
   if (u < kJudgedFrom * most.value && !pushed) return;
   rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
 }
@@ -185,15 +184,11 @@ void Stopping::let_others_help(const Rows& rows, const MatrixJ& W, const ArmStat
   }
 }
 
-// Of r: against the torque as far as that, with it as it is.
-VectorJ Stopping::counted(const VectorJ& pushing) const noexcept {
-  return (pushing.array() > 0.0).select(r_.cwiseMax(-pushing), r_.cwiseMin(-pushing));
-}
-
 std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const Reach& reach,
                              VectorJ* tau) const noexcept {
   VectorJ load = terms.Cv + terms.g;
-  load -= counted(*tau - load);
+  const VectorJ pushing = *tau - load;
+  load -= r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
   Rows rows;
   for (Eigen::Index i = 0; i < tau->size(); ++i) {
     for (const double sign : {-1.0, 1.0}) bound_joint(i, sign, state, terms, load, *tau, &rows);

@@ -21,8 +21,7 @@ namespace limber::controller {
 ///   s(x; k, c) = k x near zero, then sqrt(2 c (x - c / (2 k^2)))  from x = c / k^2 on
 ///
 /// s is the speed from which a steady deceleration c stops in x, made linear near rest; the same
-/// form takes an acceleration back with a steady jerk. It bounds what brakes as well: a joint must
-/// not turn round with a torque that is not gone before it is too fast the other way.
+/// form takes an acceleration back with a steady jerk.
 ///
 /// The arm as a whole is bounded, too: where one joint's speed throws another with more than a
 /// share r of the torque that its weight leaves it, it could not be stopped. Such torques grow with
@@ -39,10 +38,9 @@ namespace limber::controller {
 ///   kMemory_s r' = M_links v' + B theta'' + C v + g - tau_applied - r
 ///
 /// by projected Gauss-Seidel. r is what acts besides the motors, a payload, friction or a contact,
-/// seen by the change of momentum of links and rotors, in which the springs between them cancel.
-/// Where it helps the torque it counts; against the torque no further than
-/// that, as friction and a wall do not push back, and a joint at rest may push as hard as its
-/// torque allows. Until it is known, only joints that move are judged. What torque and rate limits
+/// seen by the change of momentum of links and rotors, in which the springs between them cancel. It
+/// counts as far as it holds against the torque, so that a joint at rest may push as hard as its
+/// torque allows; until it is known, only joints that move are judged. What torque and rate limits
 /// keep from all that is made up for by the joints that can, by least squares: they brake
 /// themselves, or change their torque less. Joints do not if their spring is softer than
 /// 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end is not
@@ -73,7 +71,6 @@ class Stopping {
                    const VectorJ& load, const VectorJ& tau, Rows* rows) const noexcept;
   /// Whether motor and link move as one within kMemory_s.
   bool firm(Eigen::Index joint, const ArmTerms& terms) const noexcept;
-  VectorJ counted(const VectorJ& pushing) const noexcept;
   void bound_energy(const ArmState& state, const ArmTerms& terms, Rows* rows) const noexcept;
   void let_others_help(const Rows& rows, const MatrixJ& W, const ArmState& state,
                        const ArmTerms& terms, const Reach& reach, VectorJ* a,

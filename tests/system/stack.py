@@ -114,6 +114,7 @@ class Stack:
         self.directory = directory
         self.robot = robot
         self.pace = pace
+        self.under: list[str] = []  # a command that starts the processes
         self.processes: dict[str, subprocess.Popen] = {}
         self.starts: dict[str, int] = defaultdict(int)
         self.user = Listener(USER_URL)
@@ -123,7 +124,8 @@ class Stack:
         self.starts[tag] += 1
         path = self.directory / f"{tag}-{self.starts[tag]}.log"
         pace = [] if set(arguments) & set(PACES) else [self.pace]
-        command = [str(BIN / f"limber-{name}"), "--robot", self.robot, *pace, *arguments]
+        program = str(BIN / f"limber-{name}")
+        command = [*self.under, program, "--robot", self.robot, *pace, *arguments]
         with open(path, "w", encoding="utf-8") as log:
             process = subprocess.Popen(
                 command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
