@@ -76,9 +76,9 @@ int ReceiveBatch::receive(int descriptor, int at_most) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t wall_now_ns = realtime_ns();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    wall_times_[i] = wall_now_ns;
+    timestamps_[i] = wall_now_ns;
     read_control(messages_[i].msg_hdr, i);
-    timestamps_[i] = now_ns + std::min<std::int64_t>(wall_times_[i] - wall_now_ns, 0);
+    timestamps_[i] = now_ns + std::min<std::int64_t>(timestamps_[i] - wall_now_ns, 0);
   }
   return count;
 }
@@ -90,7 +90,7 @@ void ReceiveBatch::read_control(const msghdr& header, std::size_t i) noexcept {
     if (part->cmsg_type == SCM_TIMESTAMPNS) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(part), sizeof(stamp));
-      wall_times_[i] = to_ns(stamp);
+      timestamps_[i] = to_ns(stamp);
     } else if (part->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t lost = 0;
       std::memcpy(&lost, CMSG_DATA(part), sizeof(lost));

@@ -52,7 +52,6 @@ class ReceiveBatch {
   std::array<iovec, kBatch> vectors_{};
   std::array<mmsghdr, kBatch> messages_{};
   std::array<std::int64_t, kBatch> timestamps_{};
-  std::array<std::int64_t, kBatch> wall_times_{};
   std::array<sockaddr_in, kBatch> senders_{};
   std::uint32_t lost_count_ = 0;  // the kernel's counter, modulo 2^32
   std::int64_t lost_ = 0;

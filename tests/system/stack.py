@@ -11,6 +11,7 @@ import time
 from collections import defaultdict
 from pathlib import Path
 
+import numpy as np
 import yaml
 
 from limber import messages
@@ -164,6 +165,12 @@ class Stack:
     @property
     def truth(self) -> sim_truth_t:
         return self.user.latest("SIM_TRUTH")
+
+    @property
+    def positions(self) -> np.ndarray:
+        """Of the links, as they truly are."""
+        truth = self.truth
+        return np.array(truth.q[: truth.num_joints])
 
     @property
     def driver_status(self) -> driver_status_t:

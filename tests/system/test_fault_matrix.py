@@ -31,11 +31,6 @@ def freeze(stack: Stack, tag: str, seconds: float = FREEZE_s) -> None:
     stack.processes[tag].send_signal(signal.SIGCONT)
 
 
-def positions(stack: Stack) -> np.ndarray:
-    truth = stack.truth
-    return np.array(truth.q[: truth.num_joints])
-
-
 def speed_since(stack: Stack, index: int) -> float:
     truths = stack.user.since("SIM_TRUTH", index)
     return max(np.abs(truth.v[: truth.num_joints]).max() for truth in truths)
@@ -44,14 +39,14 @@ def speed_since(stack: Stack, index: int) -> float:
 @pytest.mark.realtime
 def test_a_controller_that_freezes_is_not_followed_again(refereed):
     active(refereed)
-    before = positions(refereed)
+    before = refereed.positions
     freeze(refereed, "controller")
     refereed.until(lambda: refereed.state.drive_state == State.DRIVE_HOLD, 5, "the drives to hold")
     time.sleep(0.5)
     assert refereed.state.drive_state == State.DRIVE_HOLD, "thawed, it asks for nothing"
     assert refereed.state.fault == State.FAULT_CONTROLLER_LOST
     assert refereed.mode == Status.MODE_FAULT
-    assert np.abs(positions(refereed) - before).max() < 3 * DEGREE
+    assert np.abs(refereed.positions - before).max() < 3 * DEGREE
     refereed.acknowledge()
     refereed.bring_to(Status.MODE_HOLD)
     refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 5, "the drives to obey")
@@ -76,18 +71,18 @@ def test_a_driver_that_freezes_sends_no_old_commands(refereed):
 @pytest.mark.realtime
 def test_an_arm_that_comes_back_elsewhere_stays_there(refereed):
     active(refereed)
-    home = positions(refereed)
+    home = refereed.positions
     refereed.kill("sim")
     refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 5, "FAULT")
     elsewhere = home + np.array([0.2, 0.1, -0.2, 0.2, 0.1, -0.1, 0.2])
     refereed.start("sim", "--start-q", *map(str, elsewhere))
     time.sleep(1.0)
-    assert np.abs(positions(refereed) - elsewhere).max() < 1 * DEGREE, "it lies in its stand"
+    assert np.abs(refereed.positions - elsewhere).max() < 1 * DEGREE, "it lies in its stand"
     refereed.acknowledge()
     refereed.bring_to(Status.MODE_HOLD)
     refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
     time.sleep(1.0)
-    assert np.abs(positions(refereed) - elsewhere).max() < 6 * DEGREE, "not to the old goal"
+    assert np.abs(refereed.positions - elsewhere).max() < 6 * DEGREE, "not to the old goal"
 
 
 def test_a_recorder_that_hangs_is_not_noticed(refereed, tmp_path):
@@ -120,7 +115,7 @@ def test_a_simulator_that_stalls_is_a_fault(refereed):
 
 def test_a_flood_of_telemetry_stops_no_arm(refereed):
     active(refereed)
-    before = positions(refereed)
+    before = refereed.positions
     end = time.monotonic() + 3.0
     sent = 0
     while time.monotonic() < end:
@@ -131,7 +126,7 @@ def test_a_flood_of_telemetry_stops_no_arm(refereed):
     assert sent > 1000
     assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
     assert refereed.mode == Status.MODE_ACTIVE
-    assert np.abs(positions(refereed) - before).max() < 1 * DEGREE
+    assert np.abs(refereed.positions - before).max() < 1 * DEGREE
 
 
 @pytest.mark.realtime
@@ -155,14 +150,14 @@ def test_replayed_requests_enable_nothing(refereed):
 @pytest.mark.realtime
 def test_a_network_that_goes_down_is_a_fault(refereed):
     active(refereed)
-    before = positions(refereed)
+    before = refereed.positions
     _ip("link", "set", "lo", "down")
     time.sleep(FREEZE_s)
     _ip("link", "set", "lo", "up")
     _ip("route", "replace", "224.0.0.0/4", "dev", "lo")
     refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 10, "FAULT")
     assert refereed.state.drive_state != State.DRIVE_ON
-    assert np.abs(positions(refereed) - before).max() < 30 * DEGREE, "it sank on shorted phases"
+    assert np.abs(refereed.positions - before).max() < 30 * DEGREE, "it sank on shorted phases"
     refereed.acknowledge()
     refereed.bring_to(Status.MODE_HOLD)
     refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")

@@ -20,10 +20,6 @@ def speeds(truths) -> np.ndarray:
     return np.array([np.abs(truth.v[: truth.num_joints]).max() for truth in truths])
 
 
-def positions(truth) -> np.ndarray:
-    return np.array(truth.q[: truth.num_joints])
-
-
 def active(stack) -> None:
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
@@ -32,7 +28,7 @@ def active(stack) -> None:
 
 def test_controller_dies(stack):
     active(stack)
-    before = positions(stack.truth)
+    before = stack.positions
     index = stack.user.count("SIM_TRUTH")
     states = stack.user.count("JOINT_STATE")
     stack.kill("controller")
@@ -41,12 +37,12 @@ def test_controller_dies(stack):
     # The driver notices within three cycles of the last answer and keeps the arm up by itself.
     held = [s for s in stack.user.since("JOINT_STATE", states) if s.drive_state == State.DRIVE_HOLD]
     assert held[0].fault == State.FAULT_CONTROLLER_LOST
-    assert np.abs(positions(stack.truth) - before).max() < 3 * DEGREE
+    assert np.abs(stack.positions - before).max() < 3 * DEGREE
     assert speeds(stack.user.since("SIM_TRUTH", index)).max() < FALLING_rad_per_s
     assert speeds(stack.user.since("SIM_TRUTH", -SLOW_HZ // 2)).max() < 0.02
 
     # A new controller starts in INIT, moves nothing, and holds when asked, without a jump.
-    held_at = positions(stack.truth)
+    held_at = stack.positions
     stack.start("controller")
     stack.until(lambda: stack.mode == Status.MODE_IDLE, 10, "the new controller to be IDLE")
     assert stack.state.drive_state == State.DRIVE_HOLD, (
@@ -56,7 +52,7 @@ def test_controller_dies(stack):
     stack.bring_to(Status.MODE_HOLD)
     stack.until(lambda: stack.state.drive_state == State.DRIVE_ON, 5, "the drives to obey again")
     time.sleep(1.0)
-    assert np.abs(positions(stack.truth) - held_at).max() < 1 * DEGREE
+    assert np.abs(stack.positions - held_at).max() < 1 * DEGREE
     assert speeds(stack.user.since("SIM_TRUTH", index)).max() < 0.2
 
 
@@ -79,11 +75,11 @@ def test_driver_dies(stack):
         "no motion without being asked"
     )
     stack.acknowledge()
-    held_at = positions(stack.truth)
+    held_at = stack.positions
     stack.bring_to(Status.MODE_HOLD)
     time.sleep(1.5)
     assert stack.state.drive_state == State.DRIVE_ON, stack.describe()
-    assert np.abs(positions(stack.truth) - held_at).max() < 12 * DEGREE, (
+    assert np.abs(stack.positions - held_at).max() < 12 * DEGREE, (
         "enabling ramps the torque in: it may sink a little"
     )
     assert speeds(stack.user.since("SIM_TRUTH", -SLOW_HZ // 2)).max() < 0.05

@@ -22,11 +22,6 @@ def fail(stack, kind: int) -> None:
     stack.user.lcm.publish("SCENARIO_EVENT", event.encode())
 
 
-def positions(stack) -> np.ndarray:
-    truth = stack.truth
-    return np.array(truth.q[: truth.num_joints])
-
-
 def take_memory(process) -> None:
     resource.prlimit(process.pid, resource.RLIMIT_DATA, (0, 0))
 
@@ -37,14 +32,14 @@ def test_a_drive_that_fails(stack, without, kind):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
     take_memory(stack.processes[without])
-    before = positions(stack)
+    before = stack.positions
     fail(stack, kind)
     stack.until(lambda: stack.state.drive_state == State.DRIVE_HOLD, 20, "FALLBACK")
     stack.pass_time(1.0)
     assert stack.processes[without].poll() is None, stack.describe()
     # A drive in error holds nothing.
     held = slice(1 if kind == Event.FAULT_DRIVE_ERROR else 0, None)
-    assert np.abs(positions(stack) - before)[held].max() < HELD_RAD
+    assert np.abs(stack.positions - before)[held].max() < HELD_RAD
 
 
 @pytest.mark.realtime
@@ -52,9 +47,9 @@ def test_a_controller_that_dies(stack):
     stack.start_all()
     stack.bring_to(Status.MODE_ACTIVE)
     take_memory(stack.processes["driver"])
-    before = positions(stack)
+    before = stack.positions
     stack.kill("controller")
     stack.until(lambda: stack.state.drive_state == State.DRIVE_HOLD, 20, "FALLBACK")
     stack.pass_time(1.0)
     assert stack.processes["driver"].poll() is None, stack.describe()
-    assert np.abs(positions(stack) - before).max() < HELD_RAD
+    assert np.abs(stack.positions - before).max() < HELD_RAD
