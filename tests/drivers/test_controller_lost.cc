@@ -46,7 +46,9 @@ TEST(ControllerLostTest, GravityAndDampingThenThePositionReached) {
     for (std::size_t j = 0; j < 2; ++j) {
       const auto raw = raw_command(arm.motors[j].last());
       EXPECT_EQ(raw.kp, 0) << cycle;
-      if (cycle > 3 || j == 1) EXPECT_EQ(raw.kd, kKd1) << cycle;  // 1 N m in steps of 0.5 N m
+      if (cycle > 3 || j == 1) {
+        EXPECT_EQ(raw.kd, kKd1) << cycle;  // 1 N m in steps of 0.5 N m
+      }
       EXPECT_NEAR(torque_sent(arm, j), 0.3, 5e-3);
     }
     arm.set_angle(0, 0.1 * cycle / 100.0);  // sinks a little meanwhile
