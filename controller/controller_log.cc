@@ -1,5 +1,6 @@
 #include "controller/controller_log.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <array>
@@ -14,11 +15,21 @@ namespace {
 constexpr std::array kModeNames = {"BOOT",   "INIT",      "IDLE",  "HOLD",
                                    "ACTIVE", "SOFT_STOP", "FAULT", "ESTOP"};
 constexpr std::array kKindNames = {"mode", "goal", "gains"};
+constexpr std::array kModeRequestNames = {"idle", "hold",        "active",
+                                          "stop", "acknowledge", "release"};
 
 template <typename Names>
 const char* name_in(const Names& names, int index) {
   const auto i = static_cast<std::size_t>(index);
   return i < names.size() ? names[i] : "unknown";
+}
+
+/// "goal at 1.250 s", "mode hold at 1.250 s".
+std::string requested(const request_answer_t& answer) {
+  std::string what = name_in(kKindNames, answer.kind);
+  if (answer.kind == request_answer_t::KIND_MODE)
+    what += std::string(" ") + name_in(kModeRequestNames, answer.what);
+  return fmt::format("{} at {:.3f} s", what, 1e-9 * static_cast<double>(answer.time_ns));
 }
 
 }  // namespace
@@ -77,13 +88,10 @@ void ControllerLog::note(const controller_status_t& status, const joint_state_t&
 
 void ControllerLog::note(const request_answer_t& answer) {
   if (answer.accepted != 0) {
-    if (!answer.reason.empty())
-      spdlog::warn("warning: {} at {:.3f} s: {}", name_in(kKindNames, answer.kind),
-                   static_cast<double>(answer.time_ns) * 1e-9, answer.reason);
+    if (!answer.reason.empty()) spdlog::warn("warning: {}: {}", requested(answer), answer.reason);
     return;
   }
-  spdlog::warn("warning: {} at {:.3f} s refused: {}", name_in(kKindNames, answer.kind),
-               static_cast<double>(answer.time_ns) * 1e-9,
+  spdlog::warn("warning: {} refused: {}", requested(answer),
                refusal_text(answer.code, answer.reason));
 }
 

@@ -1,9 +1,14 @@
 #include "controller/modes/supervisor.h"
 
+#include <array>
 #include <limber/joint_command_t.hpp>
 
 namespace limber::controller {
 namespace {
+
+constexpr std::array<const char*, kModes> kNotTaken = {
+    "not taken in BOOT",   "not taken in INIT",      "not taken in IDLE",  "not taken in HOLD",
+    "not taken in ACTIVE", "not taken in SOFT_STOP", "not taken in FAULT", "not taken in ESTOP"};
 
 std::optional<Event> event_of(std::int8_t request) noexcept {
   switch (request) {
@@ -100,7 +105,8 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
         request_answer_t::REFUSED_PRELOAD,
         "the springs between two motors are slack: HOLD winds them up (`preload` of JOINT_STATE, "
         "to preload_rad of robot.yaml); ask again when that is done"};
-  if (!raise(*event)) return {request_answer_t::REFUSED_MODE, "not in this mode"};
+  if (!raise(*event))
+    return {request_answer_t::REFUSED_MODE, kNotTaken[static_cast<std::size_t>(mode_)]};
   if (event == Event::kRequestAcknowledge) {
     reason_ = controller_status_t::REASON_NONE;
     reason_joint_ = -1;

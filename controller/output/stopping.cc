@@ -30,6 +30,10 @@ constexpr double kKnown_s = 3.0 * Stopping::kMemory_s;
 constexpr double kFirm = 0.4;
 constexpr double kMovesFrom = 0.02;  // of the speed that can be stopped; dither is slower
 constexpr double kStays = 0.25;      // of what a joint's torque changes, for the sake of others
+constexpr double kThrownBack = 0.5;  // of the velocity limit, once the torque has unwound
+// Of the velocity limit: from here on a force that drives the joint counts, in full at the second.
+constexpr double kFast = 0.5;
+constexpr double kFastest = 0.8;
 constexpr int kSweeps = 10;
 // Of the torque that is missing; keeps joints with little effect from going far.
 constexpr double kReluctance = 0.5;
@@ -137,9 +141,11 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const double spare = stoppable(most.value - u, acceleration_gain_per_s_, jerk).value;
   const double a_most = spare - std::max(u, 0.0) * most.slope;
   const bool known = observed_s_ > kKnown_s;
-  const bool pushed =
-      known && u > kMovesFrom * most.value && sign * (tau[i] - load[i]) > kJudgedFrom * M * a_most;
-  if (u < kJudgedFrom * most.value && !pushed) return;
+  const double a = sign * (tau[i] - load[i]) / M;
+  const bool pushed = known && u > kMovesFrom * most.value && a > kJudgedFrom * a_most;
+  const bool thrown =
+      known && u < 0.0 && a > 0.0 && u + 0.5 * a * a / jerk > kThrownBack * velocity_[i];
+  if (u < kJudgedFrom * most.value && !pushed && !thrown) return;
   rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
 }
 
@@ -188,7 +194,11 @@ std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const
                              VectorJ* tau) const noexcept {
   VectorJ load = terms.Cv + terms.g;
   const VectorJ pushing = *tau - load;
-  load -= r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
+  const VectorJ against = r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
+  const VectorJ share = state.v_reported.cwiseAbs().cwiseQuotient(velocity_);
+  const VectorJ fast = ((share.array() - kFast) / (kFastest - kFast)).cwiseMax(0.0).cwiseMin(1.0);
+  const VectorJ driven = (r_.array() * state.v_reported.array() > 0.0).select(r_ - against, 0.0);
+  load -= against + fast.cwiseProduct(driven);
   Rows rows;
   for (Eigen::Index i = 0; i < tau->size(); ++i) {
     for (const double sign : {-1.0, 1.0}) bound_joint(i, sign, state, terms, load, *tau, &rows);

@@ -40,7 +40,10 @@ namespace limber::controller {
 /// by projected Gauss-Seidel. r is what acts besides the motors, a payload, friction or a contact,
 /// seen by the change of momentum of links and rotors, in which the springs between them cancel. It
 /// counts as far as it holds against the torque, so that a joint at rest may push as hard as its
-/// torque allows; until it is known, only joints that move are judged. What torque and rate limits
+/// torque allows, and in full where it drives a joint that nears its velocity limit; until it is
+/// known, only joints that move are judged. A joint that is braked is judged the other way, too,
+/// where its torque would throw it back faster than half of the limit before it has unwound,
+/// a^2 / 2j later. What torque and rate limits
 /// keep from all that is made up for by the joints that can, by least squares: they brake
 /// themselves, or change their torque less. Joints do not if their spring is softer than
 /// 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end is not

@@ -1,5 +1,6 @@
 """limber-send: requests to a running stack, accepted, or refused with a reason."""
 
+import re
 import subprocess
 import sys
 
@@ -96,3 +97,6 @@ def test_in_a_fault_the_way_begins_with_acknowledge(standing):
     refused = limber_send("mode: active").stderr
     assert "request.MODE: active is not taken in FAULT" in refused
     assert "the way there: acknowledge, hold, active" in refused
+    limber_send("mode: hold")
+    wanted = re.compile(r"mode hold at \d+\.\d{3} s refused: request\.MODE: .*not taken in FAULT")
+    stack.until(lambda: wanted.search(stack.log("controller")), 10, "the controller's log")

@@ -56,7 +56,7 @@ TEST_F(EmergencyStopInput, IsAcknowledgedOnceItIsReleased) {
     to_hold();
     states_with(stop, 200, State::DRIVE_HOLD);
     EXPECT_EQ(ask(Request::REQUEST_ACKNOWLEDGE), kPressed);
-    EXPECT_EQ(ask(Request::REQUEST_HOLD), "not in this mode");
+    EXPECT_EQ(ask(Request::REQUEST_HOLD), "not taken in ESTOP");
     EXPECT_EQ(supervisor_.mode(), Mode::kEstop);
     states_with(State::STOP_RELEASED, 1, State::DRIVE_HOLD);
     EXPECT_EQ(supervisor_.mode(), Mode::kEstop) << "latched";
