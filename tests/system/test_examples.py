@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -59,6 +60,17 @@ def test_example(name, openarm, tmp_path):
     openarm.until(lambda: openarm.mode == mode, 5, "the arm to be left")
     if name == "record_and_plot":
         assert (tmp_path / "push.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_one_in_the_readme(openarm, tmp_path):
+    """As it is printed there; the arm is left held."""
+    code = re.search(
+        r"^```python\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.M | re.S
+    )[1]
+    script = tmp_path / "readme.py"
+    script.write_text(code, encoding="utf-8")
+    assert len(run(script, tmp_path).split("[")) == 3, "position and error"
+    openarm.until(lambda: openarm.mode == Status.MODE_HOLD, 5, "the arm to be left")
 
 
 def test_stiffer_moves_less(openarm, tmp_path):
