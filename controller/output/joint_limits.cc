@@ -15,6 +15,8 @@ constexpr double kWallWidth = 0.10;  // rad or m
 constexpr double kWallShareOfRange = 0.1;
 constexpr double kWallTorqueAtLimit = 0.5;  // share of the torque limit
 constexpr double kWallDampingRatio = 0.7;
+// Its natural frequency times the period: an answer that is two cycles old still damps.
+constexpr double kWallTurnPerCycle_rad = 0.15;
 constexpr double kLeadsOut = 0.1;   // rad/s or m/s
 constexpr double kFadesFrom = 0.5;  // of the wall
 
@@ -107,7 +109,8 @@ VectorJ JointLimits::walls(const ArmState& state, const MatrixJ& M) const noexce
     const bool rigid = rigid_[static_cast<std::size_t>(i)];
     const double v = rigid ? state.v_reported[i] : state.theta_dot_reported[i];
     const double speed = std::max(outwards * v, 0.0);
-    const double K = kWallTorqueAtLimit * torque_limit()[i] / wall_[i];
+    const double K = std::min(kWallTorqueAtLimit * torque_limit()[i] / wall_[i],
+                              std::pow(kWallTurnPerCycle_rad / state.period_s, 2) * M(i, i));
     // The damper comes in with the depth: at the edge of the wall nothing jumps.
     const double D =
         2.0 * kWallDampingRatio * std::sqrt(K * M(i, i)) * std::min(depth / wall_[i], 1.0);

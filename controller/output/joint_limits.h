@@ -16,10 +16,11 @@ namespace limber::controller {
 /// Limits of every joint, in the order they act. The gate in the driver trips; these shape. All
 /// judge the velocities that the drives report, never an estimate:
 ///   walls     from 0.10 rad (0.10 m) inside the ends on, at most a tenth of the range, a spring
-///             that reaches half the joint's torque at the end, and a damper against motion into
-///             the wall (of the motor where it has a spring before it). A joint that the torque
-///             finds in its wall is led out: there the wall begins where it is, and moves back to
-///             its place at 0.1 rad/s (m/s);
+///             that reaches half the joint's torque at the end (less where the joint is so light
+///             that it would swing by more than 0.15 rad of phase a cycle), and a damper against
+///             motion into the wall (of the motor where it has a spring before it). A joint that
+///             the torque finds in its wall is led out: there the wall begins where it is, and
+///             moves back to its place at 0.1 rad/s (m/s);
 ///   power     where the net power of all joints would exceed the arm's limit, the torque beyond
 ///             what carries the weight is scaled down to it, by one factor for all joints;
 ///   position  in the inner half of the wall what else pushes outwards fades, to zero at the end:

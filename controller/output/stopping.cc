@@ -31,6 +31,7 @@ constexpr double kFirm = 0.4;
 constexpr double kMovesFrom = 0.02;  // of the speed that can be stopped; dither is slower
 constexpr double kStays = 0.25;      // of what a joint's torque changes, for the sake of others
 constexpr double kThrownBack = 0.5;  // of the velocity limit, once the torque has unwound
+constexpr double kLightFrom = 0.1;   // of the velocity limit, within two cycles
 // Of the velocity limit: from here on a force that drives the joint counts, in full at the second.
 constexpr double kFast = 0.5;
 constexpr double kFastest = 0.8;
@@ -145,7 +146,10 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const bool pushed = known && u > kMovesFrom * most.value && a > kJudgedFrom * a_most;
   const bool thrown =
       known && u < 0.0 && a > 0.0 && u + 0.5 * a * a / jerk > kThrownBack * velocity_[i];
-  if (u < kJudgedFrom * most.value && !pushed && !thrown) return;
+  const double step = 2.0 * state.period_s;
+  const bool light = step * torque_[i] > kThrownBack * velocity_[i] * M &&
+                     u + step * a > kLightFrom * velocity_[i];
+  if (u < kJudgedFrom * most.value && !pushed && !thrown && !light) return;
   rows->add(sign * VectorJ::Unit(state.q.size(), i), a_most, limit);
 }
 

@@ -17,7 +17,10 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
   blend_next_ = false;
   blend_.add_to(&tau);
   if (blend_.active()) *limits |= controller_status_t::LIMIT_RAMP;
-  *limits |= limits_.clamp(state, terms, &tau);
+  const bool relieved = relief_.apply(terms.g, &tau);
+  const std::int32_t clamped = limits_.clamp(state, terms, &tau);
+  if (springs_) relief_.note((clamped & controller_status_t::LIMIT_RATE) != 0, state.period_s);
+  *limits |= clamped | (relieved ? controller_status_t::LIMIT_RATE : 0);
   const VectorJ& wanted = preload != nullptr ? *preload : preload_.preload_at_rest();
   *limits |= preload_.control(state, wanted, deflection, tau, dt_s);
   return true;
@@ -26,6 +29,7 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
 void TorqueOutput::stand_by(VectorJ target, const Standby& how, const ArmState& state,
                             std::int32_t* limits) noexcept {
   walls_.setZero();
+  relief_.reset();
   limits_.rest(state.q);
   preload_.rest(state, how.preload, how.in_steps);
   if (how.in_steps) {

@@ -1,8 +1,10 @@
 // From the torque that is wanted to the torque that is sent.
 #pragma once
 
+#include "controller/elastic/joint_springs.h"
 #include "controller/output/joint_limits.h"
 #include "controller/output/preload_servo.h"
+#include "controller/output/rate_relief.h"
 #include "controller/output/torque_blend.h"
 
 namespace limber::controller {
@@ -19,14 +21,15 @@ struct Standby {
   PreloadAtRest preload = PreloadAtRest::kReleased;
 };
 
-/// Joint limits, blend after a switch, torque and rate limit, preload; owns the torque sent last.
-/// All members may be called in the cycle.
+/// Joint limits, blend after a switch, relief of springs, torque and rate limit, preload; owns the
+/// torque sent last. All members may be called in the cycle.
 class TorqueOutput {
  public:
   explicit TorqueOutput(const Robot& robot)
       : limits_(robot),
         blend_(robot.size()),
         preload_(robot),
+        springs_(JointSprings(robot).any()),
         walls_(VectorJ::Zero(robot.size())) {}
 
   /// The torque that is shaped next differs by a jump from the one before: it is blended.
@@ -56,6 +59,8 @@ class TorqueOutput {
   JointLimits limits_;
   TorqueBlend blend_;
   PreloadServo preload_;
+  bool springs_;
+  RateRelief relief_;
   VectorJ walls_;
   bool blend_next_ = false;
 };

@@ -106,6 +106,9 @@ TEST_F(Limits, WallsPushBackWithASpringAndADamper) {
   EXPECT_NEAR(wall(2.0, 1.0), -10.0 - D, 1e-12);
   EXPECT_NEAR(wall(2.0, -1.0), -10.0, 1e-12) << "leaving is not braked";
   EXPECT_NEAR(wall(1.9 + 1e-6, 2.0), 0.0, 1e-3) << "no edge";
+  terms.M_total(0, 0) = 0.002;
+  state.period_s = 1e-3;
+  EXPECT_NEAR(wall(2.0, 0.0), -0.1 * 45.0, 1e-12) << "a light joint: (0.15 / 1 ms)^2 0.002 kg m^2";
 }
 
 // The wall of 0.1 rad pushes with 100 N m/rad; from its middle on the rest of what pushes outwards

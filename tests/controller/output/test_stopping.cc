@@ -92,6 +92,14 @@ TEST_F(OneJoint, WhatCarriesTheWeightStays) {
   EXPECT_NEAR(shaped(-0.9, 7.9, 15.0), 6.0 + 1.0, 1e-9);
 }
 
+// 20 N m bring 0.005 kg m^2 to half of 8 rad/s in 1 ms: judged at rest, too. 0.5 kg m^2 are not.
+TEST_F(OneJoint, ALightJointIsJudgedBeforeItMoves) {
+  EXPECT_EQ(shaped(0.0, 0.0, 15.0), 15.0);
+  terms.M_total << 0.005;
+  EXPECT_NEAR(shaped(0.0, 0.0, 15.0), 0.005 * 20.0 * 8.0, 1e-9);
+  EXPECT_EQ(acted, +Status::LIMIT_VELOCITY);
+}
+
 TEST_F(OneJoint, TheReportedVelocityIsJudgedNotTheEstimate) {
   state.v << 0.0;
   EXPECT_LT(shaped(-0.9, 8.4, 15.0), 0.0);

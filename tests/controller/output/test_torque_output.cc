@@ -1,6 +1,7 @@
 // From the torque that is wanted to the torque that is sent: blend, limits and preload in a row.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limber/controller_status_t.hpp>
 #include <limits>
@@ -66,6 +67,30 @@ TEST_F(TorqueOutputTest, ATorqueThatFitsIsSent) {
   EXPECT_TRUE(shape(1.2));
   EXPECT_EQ(torque(), 1.2);
   EXPECT_EQ(limits_, 0);
+}
+
+// What it demands changes sign before the torque, in steps of 0.4 N m, has got there.
+TEST_F(TorqueOutputTest, OfSpringsALawLetsGoThatItsRateLimitHoldsBack) {
+  state_.preload[0] = 0.3;
+  terms_.g << 2.0;
+  sent(2.0);
+  const auto swing = [&] {
+    double most = 0.0;
+    for (int k = 0; k < 200; ++k) {
+      EXPECT_TRUE(shape(k / 20 % 2 == 0 ? 20.0 : -20.0));
+      if (k >= 160) most = std::max(most, std::abs(torque() - 2.0));
+    }
+    return most;
+  };
+  EXPECT_LT(swing(), 3.0);
+  EXPECT_TRUE(limits_ & Status::LIMIT_RATE);
+  robot_ = limber::testing::one_pair({}).robot;
+  robot_.joints[0].has_antagonist = false;
+  robot_.joints[0].transmission = {};
+  robot_.joints[0].torque_rate_limit_Nm_per_s = 500.0;
+  robot_.joints[0].torque_limit_Nm = 20.0;
+  output_ = TorqueOutput(robot_);
+  EXPECT_GT(swing(), 3.5) << "a rigid joint is only held back";
 }
 
 TEST_F(TorqueOutputTest, AllLimitsAreTold) {
