@@ -1,6 +1,8 @@
 // The soak works, is the same every time, and sees what it is there to see.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "soak/soak.h"
 #include "soak/soak_report.h"
 
@@ -31,6 +33,24 @@ TEST(Soak, TheSameSeedDoesTheSame) {
   EXPECT_EQ(first.actions, second.actions);
   EXPECT_EQ(first.trips, second.trips);
   EXPECT_NE(first.actions, minutes(0.5, 6, planar2r()).actions);
+}
+
+// Any law, gain and goal as fast as may be. These seeds swing soft springs up at their rate limit
+// (baxter, antagonist2r), and throw a joint back that is braked (openarm).
+TEST(Soak, AcceptedRequestsCarryNoJointPastItsLimits) {
+  struct Case {
+    const char* robot;
+    std::uint64_t seed;
+    double arm_s;
+  };
+  for (const auto& [name, seed, arm_s] :
+       {Case{"baxter", 1, 25.0}, {"antagonist2r", 31, 6.0}, {"openarm", 11, 103.0}}) {
+    const LoadedRobot robot = load_robot(std::string(LIMBER_SOURCE_DIR "/robots/") + name);
+    soak::Soak soak(robot, seed, soak::Habit::kAnything);
+    const soak::SoakResult result = soak.run(arm_s, [] { return true; });
+    EXPECT_TRUE(result.violations.empty()) << name << ": " << result.violations.front();
+    EXPECT_GT(result.cycles, 1000.0 * arm_s - 2.0) << name;
+  }
 }
 
 // An arm whose speed limit any goal exceeds trips without a fault: the soak must say so.
