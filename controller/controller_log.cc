@@ -8,6 +8,7 @@
 
 #include "common/problem_text.h"
 #include "controller/modes/supervisor.h"
+#include "lcmtypes/mode_words.h"
 
 namespace limber {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr std::array kModeNames = {"BOOT",   "INIT",      "IDLE",  "HOLD",
                                    "ACTIVE", "SOFT_STOP", "FAULT", "ESTOP"};
 constexpr std::array kKindNames = {"mode", "goal", "gains"};
-constexpr std::array kModeRequestNames = {"idle", "hold",        "active",
-                                          "stop", "acknowledge", "release"};
 
 template <typename Names>
 const char* name_in(const Names& names, int index) {
@@ -28,7 +27,7 @@ const char* name_in(const Names& names, int index) {
 std::string requested(const request_answer_t& answer) {
   std::string what = name_in(kKindNames, answer.kind);
   if (answer.kind == request_answer_t::KIND_MODE)
-    what += std::string(" ") + name_in(kModeRequestNames, answer.what);
+    what += std::string(" ") + name_in(kModeRequestWords, answer.what);
   return fmt::format("{} at {:.3f} s", what, 1e-9 * static_cast<double>(answer.time_ns));
 }
 

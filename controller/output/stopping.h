@@ -43,12 +43,11 @@ namespace limber::controller {
 /// torque allows, and in full where it drives a joint that nears its velocity limit; until it is
 /// known, only joints that move are judged. A joint that is braked is judged the other way, too,
 /// where its torque would throw it back faster than half of the limit before it has unwound,
-/// a^2 / 2j later; so is a joint at rest, if it is so light that its torque can bring it
-/// there within two cycles.
-/// What torque and rate limits keep from all that is made up for by the joints that can, by least
-/// squares: they brake themselves, or change their torque less. Joints do not if their spring is
-/// softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end
-/// is not pushed.
+/// a^2 / 2j later; so is a joint at rest, if it is so light that its torque can bring it there
+/// within two cycles. What torque and rate limits keep from all that is made up for by the joints
+/// that can, by least squares: they brake themselves, or change their torque less. Joints do not if
+/// their spring is softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint
+/// that leaves its end is not pushed.
 ///
 /// Judged by the velocities that the drives report; of motor and link, where a spring is between
 /// them, the one that is faster that way.

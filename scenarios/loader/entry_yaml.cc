@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/suggest.h"
+#include "lcmtypes/mode_words.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/goal_yaml.h"
 #include "scenarios/loader/values_yaml.h"
@@ -15,8 +16,7 @@ namespace {
 
 const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "push",
                                          "wall", "payload", "fault"};
-const std::vector<std::string> kModes = {"idle", "hold",        "active",
-                                         "stop", "acknowledge", "release"};  // REQUEST_* order
+const std::vector<std::string> kModes(kModeRequestWords.begin(), kModeRequestWords.end());
 
 ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
                              const EntryContext& context) {

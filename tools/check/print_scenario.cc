@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lcmtypes/mode_words.h"
 #include "tools/check/json.h"
 #include "tools/check/pose_report.h"
 #include "tools/check/print.h"
@@ -16,8 +17,7 @@ std::string three(const double* values) {
 }
 
 std::string describe(const mode_request_t& request) {
-  const char* const names[] = {"idle", "hold", "active", "stop", "acknowledge", "release"};
-  return fmt::format("mode {}", names[request.request]);
+  return fmt::format("mode {}", kModeRequestWords[static_cast<std::size_t>(request.request)]);
 }
 
 std::string describe(const compliance_gains_t& gains) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controller/modes/mode_table.h"
+#include "lcmtypes/mode_words.h"
 
 namespace limber {
 namespace {
@@ -16,14 +17,14 @@ using controller::Mode;
 struct Request {
   std::int8_t number;
   Event event;
-  const char* word;
+  const char* word() const { return kModeRequestWords[static_cast<std::size_t>(number)]; }
 };
 
 constexpr std::array<Request, 4> kRequests{{
-    {mode_request_t::REQUEST_IDLE, Event::kRequestIdle, "idle"},
-    {mode_request_t::REQUEST_HOLD, Event::kRequestHold, "hold"},
-    {mode_request_t::REQUEST_ACTIVE, Event::kRequestActive, "active"},
-    {mode_request_t::REQUEST_ACKNOWLEDGE, Event::kRequestAcknowledge, "acknowledge"},
+    {mode_request_t::REQUEST_IDLE, Event::kRequestIdle},
+    {mode_request_t::REQUEST_HOLD, Event::kRequestHold},
+    {mode_request_t::REQUEST_ACTIVE, Event::kRequestActive},
+    {mode_request_t::REQUEST_ACKNOWLEDGE, Event::kRequestAcknowledge},
 }};
 constexpr std::array<const char*, controller::kModes> kModes{
     "BOOT", "INIT", "IDLE", "HOLD", "ACTIVE", "SOFT STOP", "FAULT", "ESTOP"};
@@ -38,7 +39,7 @@ std::string way_to(const Request& wanted, Mode mode) {
     for (const Request& request : kRequests) {
       const controller::Transition* step = controller::find_transition(from, request.event);
       if (step == nullptr || step->to == from) continue;
-      const std::string longer = (way.empty() ? "" : way + ", ") + request.word;
+      const std::string longer = (way.empty() ? "" : way + ", ") + request.word();
       if (request.number == wanted.number) return longer;
       ways.emplace_back(step->to == Mode::kSoftStop ? Mode::kHold : step->to, longer);
     }
@@ -56,7 +57,7 @@ std::string not_in_mode(std::int8_t mode, const request_answer_t& answer) {
   for (const Request& request : kRequests)
     if (request.number == number) wanted = &request;
   if (wanted == nullptr || mode < 0 || mode >= controller::kModes) return answer.reason;
-  const std::string word = of_mode ? wanted->word : "goal";
+  const std::string word = of_mode ? wanted->word() : "goal";
   const std::string refused = word + " is not taken in " + kModes[static_cast<std::size_t>(mode)];
   switch (const Mode now{mode}; now) {
     case Mode::kBoot:

@@ -84,11 +84,9 @@ TEST_F(TorqueOutputTest, OfSpringsALawLetsGoThatItsRateLimitHoldsBack) {
   };
   EXPECT_LT(swing(), 3.0);
   EXPECT_TRUE(limits_ & Status::LIMIT_RATE);
-  robot_ = limber::testing::one_pair({}).robot;
+  robot_ = made();
   robot_.joints[0].has_antagonist = false;
   robot_.joints[0].transmission = {};
-  robot_.joints[0].torque_rate_limit_Nm_per_s = 500.0;
-  robot_.joints[0].torque_limit_Nm = 20.0;
   output_ = TorqueOutput(robot_);
   EXPECT_GT(swing(), 3.5) << "a rigid joint is only held back";
 }
