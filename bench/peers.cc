@@ -9,7 +9,7 @@
 #include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
-#include "controller/gains/nullspace.h"
+#include "controller/impedance/nullspace.h"
 #include "controller/model/arm_terms.h"
 #include "controller/model/pose_error.h"
 #include "robots/loader/load_robot.h"

@@ -2,7 +2,7 @@
 // `limber experiment run E06` puts them beside the whole cycle.
 #include <benchmark/benchmark.h>
 
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/model/arm_terms.h"
 #include "robots/loader/load_robot.h"
 

@@ -15,14 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "controller/modes/encoder_watch.h"
-#include "controller/modes/energy_watch.h"
-#include "controller/modes/load_watch.h"
-#include "controller/modes/start_watch.h"
 #include "controller/modes/supervisor.h"
 #include "controller/output/torque_limiter.h"
 #include "controller/request_outcome.h"
 #include "controller/torque_cycle.h"
+#include "controller/watches/encoder_watch.h"
+#include "controller/watches/energy_watch.h"
+#include "controller/watches/load_watch.h"
+#include "controller/watches/start_watch.h"
 #include "robots/loader/load_robot.h"
 #include "scenarios/loader/scenario.h"
 

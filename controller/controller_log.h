@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/black_box/black_box.h"
-#include "controller/init_watch.h"
 #include "controller/request_outcome.h"
+#include "controller/watches/init_watch.h"
 
 namespace limber {
 

@@ -9,6 +9,13 @@
 namespace limber::controller {
 
 struct CycleTrace {
+  /// Forgets what a law did in the last cycle.
+  void begin() noexcept {
+    law.reset();
+    reports.fill(0.0F);
+    limits = 0;
+  }
+
   // Of the cycle's owners, as they are.
   const ControlPoint& point;
   const ArmTerms& terms;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "controller/refusal.h"
+#include "controller/kinds/refusal.h"
 
 namespace limber {
 

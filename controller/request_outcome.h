@@ -5,7 +5,7 @@
 #include <limber/compliance_goal_t.hpp>
 #include <limber/mode_request_t.hpp>
 
-#include "controller/refusal.h"
+#include "controller/kinds/refusal.h"
 
 namespace limber {
 

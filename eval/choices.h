@@ -1,7 +1,7 @@
 // The words of the inputs that choose something.
 #pragma once
 
-#include "controller/gains/law_settings.h"
+#include "controller/kinds/law_settings.h"
 #include "eval/inputs.h"
 
 namespace limber::eval {

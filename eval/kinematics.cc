@@ -1,5 +1,5 @@
 // Where the tip is, how it moves, what the arm weighs; pose errors; singularities.
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/model/pose_error.h"
 #include "controller/model/singularity.h"
 #include "eval/arm.h"

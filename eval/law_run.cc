@@ -28,7 +28,7 @@ LawRun::LawRun(Arm* given, const std::string& law, Inputs& in)
       point(arm.model.size()),
       state(arm.model.size()),
       goal(arm.model.size()),
-      gains(arm.model.size()),
+      gains(arm.model.size(), law_catalog().parameters),
       estimates(arm.model.size()),
       output(arm.model.size()),
       entry_(laws()[static_cast<std::size_t>(find_law(law))]) {

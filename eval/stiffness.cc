@@ -1,5 +1,5 @@
 // A Cartesian stiffness in joint coordinates.
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/model/pose_error.h"
 #include "eval/choices.h"
 #include "eval/law_run.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/types.h"
-#include "controller/gains/nullspace.h"
+#include "controller/impedance/nullspace.h"
 
 namespace limber::eval {
 

@@ -1,8 +1,8 @@
 // What is left beside the task, and damping that suits the inertia at the tip.
 #include <limits>
 
-#include "controller/gains/damping_design.h"
-#include "controller/gains/nullspace.h"
+#include "controller/impedance/damping_design.h"
+#include "controller/impedance/nullspace.h"
 #include "eval/law_run.h"
 
 namespace limber::eval {
@@ -12,7 +12,7 @@ Json nullspace(Arm& arm, Inputs& in) {
   const Eigen::Index n = arm.size();
   ControlPoint point(arm.model.size());
   Goal goal(arm.model.size());
-  Gains gains(arm.model.size());
+  Gains gains(arm.model.size(), {});
   const ArmTerms terms = arm.terms(in);
   point.q = in.vector("q", n);
   point.v = in.vector_or_zero("v", n);

@@ -7,7 +7,7 @@
 namespace limber::faults {
 namespace {
 
-constexpr int kStartCycle = 2000;  // the arm has been weighed (controller/modes/load_watch.h)
+constexpr int kStartCycle = 2000;  // the arm has been weighed (controller/watches/load_watch.h)
 constexpr int kPhaseCycles = 137;  // has no factor in common with
 constexpr int kCircleCycles = 1000;
 constexpr int kPassedAfter = 50;

@@ -3,7 +3,7 @@
 
 #include "common/types.h"
 #include "controller/elastic/joint_springs.h"
-#include "controller/gains/law_settings.h"
+#include "controller/kinds/law_settings.h"
 
 namespace limber::controller {
 

@@ -1,9 +1,9 @@
 // Gives the link the stiffness asked for, from the motor's position alone.
 #pragma once
 
-#include "controller/gains/spring_limit.h"
 #include "controller/model/arm_terms.h"
 #include "controller/model/pose_error.h"
+#include "controller/model/spring_limit.h"
 
 namespace limber::controller {
 

@@ -1,7 +1,7 @@
 // Moves from one set of gains to another.
 #pragma once
 
-#include "controller/gains/gains.h"
+#include "controller/kinds/gains.h"
 
 namespace limber::controller {
 

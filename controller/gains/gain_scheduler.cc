@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "common/config_error.h"
+#include "controller/gains/read_gains.h"
+#include "controller/model/pose_error.h"
 
 namespace limber::controller {
 namespace {
@@ -38,9 +40,9 @@ MatrixJ at_joints(const Matrix6& K_x, const ArmView& arm) noexcept {
 
 }  // namespace
 
-GainScheduler::GainScheduler(const Robot& robot, const JointSprings& springs)
+GainScheduler::GainScheduler(const Robot& robot, const JointSprings& springs, LawRows rows)
     : springs_check_(robot),
-      ramp_(default_gains(robot)),
+      ramp_(default_gains(robot, rows)),
       effective_(ramp_.now()),
       tank_({0.0, 0.0, 0.0, 0.0}, ramp_.now().K_x) {
   check_joint_springs(robot, ramp_.now().K_q, springs);

@@ -1,11 +1,11 @@
 // The gains of each cycle, from those that were requested.
 #pragma once
 
+#include "controller/elastic/arm_view.h"
 #include "controller/gains/energy_tank.h"
 #include "controller/gains/gain_ramp.h"
-#include "controller/gains/springs_check.h"
-#include "controller/laws/law.h"
-#include "controller/model/arm_view.h"
+#include "controller/impedance/springs_check.h"
+#include "controller/kinds/law_entry.h"
 
 namespace limber::controller {
 
@@ -15,7 +15,7 @@ namespace limber::controller {
 class GainScheduler {
  public:
   /// Throws ConfigError where robot.yaml's K_q is stiffer than 0.9 times a joint's spring.
-  GainScheduler(const Robot& robot, const JointSprings& springs);
+  GainScheduler(const Robot& robot, const JointSprings& springs, LawRows rows);
 
   /// The gains the arm is on the way to; their settings are already chosen.
   const Gains& target() const noexcept { return ramp_.now(); }

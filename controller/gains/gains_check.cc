@@ -7,7 +7,6 @@
 
 #include "common/overloaded.h"
 #include "common/types.h"
-#include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
 
 namespace limber::controller {
@@ -62,10 +61,10 @@ GainsCheck::Row GainsCheck::make_row(const GainRow& row) {
           told("is not positive semidefinite")};
 }
 
-GainsCheck::GainsCheck(int joints, bool simulated)
+GainsCheck::GainsCheck(int joints, bool simulated, LawRows rows)
     : joints_(joints), simulated_(simulated), ramp_(make_row(ramp_row())) {
   for (const GainRow& row : gain_table()) rows_.push_back(make_row(row));
-  for (const GainRow* row : law_catalog().parameters) parameters_.push_back(make_row(*row));
+  for (const GainRow* row : rows) parameters_.push_back(make_row(*row));
 }
 
 const char* GainsCheck::check(const Message& request, const Message& merged) const noexcept {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/types.h"
+#include "controller/kinds/law_parameters.h"
 #include "lcmtypes/gains_table.h"
 
 namespace limber::controller {
@@ -16,7 +17,7 @@ class GainsCheck {
  public:
   /// `simulated`: every bus is; only then choices that demonstrate a mistake are allowed. Set-up
   /// only.
-  GainsCheck(int joints, bool simulated);
+  GainsCheck(int joints, bool simulated, LawRows rows);
 
   /// nullptr if the request is allowed, else what is wrong. `merged`: the gains as they would be
   /// after it, see merge_gains(). May be called in the cycle.

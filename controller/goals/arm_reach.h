@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "controller/refusal.h"
+#include "controller/kinds/refusal.h"
 #include "robots/loader/load_robot.h"
 
 namespace limber::controller {

@@ -3,10 +3,10 @@
 
 #include <limber/compliance_goal_t.hpp>
 
-#include "controller/goals/goal.h"
 #include "controller/goals/goal_limits.h"
 #include "controller/goals/interpolation.h"
-#include "controller/goals/smooth_motion.h"
+#include "controller/kinds/goal.h"
+#include "controller/kinds/smooth_motion.h"
 
 namespace limber::controller {
 

@@ -3,9 +3,9 @@
 
 #include <limber/compliance_goal_t.hpp>
 
-#include "controller/laws/law.h"
-#include "controller/model/pose.h"
-#include "controller/refusal.h"
+#include "controller/kinds/law_entry.h"
+#include "controller/kinds/pose.h"
+#include "controller/kinds/refusal.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/types.h"
-#include "controller/model/pose.h"
+#include "controller/kinds/pose.h"
 
 namespace limber::controller {
 

@@ -1,8 +1,8 @@
 // Joint goal for a goal at the tip.
 #pragma once
 
-#include "controller/gains/nullspace.h"
-#include "controller/goals/goal.h"
+#include "controller/impedance/nullspace.h"
+#include "controller/kinds/goal.h"
 #include "controller/model/arm_terms.h"
 
 namespace limber::controller {

@@ -5,8 +5,8 @@
 // not replace it. Sampled at T with a filter p = exp(-T / tau_a), a mass m allows
 // -m < M_x < m (1 + p) / (1 - p), about 2 m tau_a / T. D_x as for cartesian_impedance,
 // without the floor.
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/damping_design.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/damping_design.h"
 #include "controller/laws/law.h"
 #include "controller/model/pose_error.h"
 

@@ -7,10 +7,10 @@
 // inertia where the law started. D_x for (M_x, K_x), or as given. Without delay and without K_x and
 // D_x this is stable only if M_x is heavier than the arm; a stiff contact raises the least K_x: see
 // docs/control_laws.md.
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/damping_design.h"
-#include "controller/gains/nullspace.h"
 #include "controller/goals/inverse_kinematics.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/damping_design.h"
+#include "controller/impedance/nullspace.h"
 #include "controller/laws/law.h"
 #include "controller/observers/admittance_filter.h"
 

@@ -9,12 +9,12 @@
 // such a row this is hybrid control of force and impedance, without force feedback.
 #include <limber/controller_status_t.hpp>
 
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/damping_design.h"
-#include "controller/gains/nullspace.h"
-#include "controller/gains/spring_limit.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/damping_design.h"
+#include "controller/impedance/nullspace.h"
 #include "controller/laws/law.h"
 #include "controller/model/pose_error.h"
+#include "controller/model/spring_limit.h"
 
 namespace limber::controller {
 namespace {

@@ -5,8 +5,8 @@
 // K_G the tip then presents J^-T (K_q - K_G) J^-1 instead of K_x. `stiffness_terms: first` leaves
 // it out. A constant spring, hence conservative; exact for small deviations. K_v by the joint
 // damping design; it does not act in the null space, which is left to K_null and D_null.
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

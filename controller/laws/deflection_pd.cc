@@ -4,7 +4,7 @@
 // falls under its weight: torque feedback around nothing. D_q for (B, K_q), or as given. q by the
 // link encoders, or from the torque sensors' K_J^-1 tau_J.
 #include "controller/elastic/joint_springs.h"
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/registry.h"
 #include "controller/observers/filtered_difference.h"
 

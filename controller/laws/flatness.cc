@@ -6,7 +6,7 @@
 // from rest move along a polynomial of degree nine, which has all that; other goals are followed
 // with what they have.
 #include "controller/elastic/joint_springs.h"
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

@@ -7,7 +7,7 @@
 // the weight alone bends the springs to.
 #include "controller/elastic/full_state_feedback.h"
 #include "controller/elastic/joint_springs.h"
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 #include "controller/observers/filtered_difference.h"
 

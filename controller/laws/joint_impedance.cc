@@ -7,7 +7,7 @@
 // M_d as given, or the diagonal of M where the law started; D_q for (M_d, K_q), or as given.
 #include <Eigen/Cholesky>
 
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

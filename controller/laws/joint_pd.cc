@@ -3,7 +3,7 @@
 // D_q by the joint damping design, from M with rotors at this pose, plus a floor where K_q is zero;
 // or as given. Coriolis torque is not compensated unless asked for: for a goal at rest the energy
 // v^T M v / 2 + (q - q_d)^T K_q (q - q_d) / 2 then never rises by itself.
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

@@ -1,6 +1,6 @@
 // What every control law is. A law is one file in this folder and one line in registry.cc.
 //
-// The file defines `LawEntry NAME_law()` (see the end of this header), the parameters that belong
+// The file defines `LawEntry NAME_law()` (kinds/law_entry.h), the parameters that belong
 // to the law alone, and a class derived from Law that nobody else includes. The cycle composes
 //
 //   tau = law + [null space] + [gravity] + [Coriolis] + friction      (what the entry wants)
@@ -9,81 +9,18 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "common/types.h"
 #include "controller/elastic/joint_elasticity.h"
-#include "controller/gains/gains.h"
-#include "controller/goals/goal.h"
+#include "controller/kinds/estimates.h"
+#include "controller/kinds/gains.h"
+#include "controller/kinds/goal.h"
+#include "controller/kinds/law_entry.h"
+#include "controller/kinds/sensors.h"
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
-#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
-
-/// What a law may need of an arm, to be combined with |.
-namespace sensors {
-inline constexpr unsigned kLinkEncoder = 1;   ///< q, v: on a rigid joint the motor's encoder does
-inline constexpr unsigned kMotorEncoder = 2;  ///< theta, theta_dot
-inline constexpr unsigned kTorqueSensor = 4;  ///< tau_measured from a sensor, not from the current
-inline constexpr unsigned kTipForceSensor = 8;
-inline constexpr unsigned kElasticJoints = 16;  ///< a spring between motor and link everywhere
-inline constexpr unsigned kTwoMotors = 32;      ///< that pull against each other, everywhere
-inline constexpr unsigned kDeflection = 64;  ///< of the springs, by link encoder or torque sensor
-inline constexpr unsigned kSprings = 128;    ///< some joint is not rigid
-}  // namespace sensors
-
-/// The goal that a law follows. Laws for the joints take goals at the tip too: the cycle solves the
-/// inverse kinematics.
-enum class GoalType : std::uint8_t {
-  kNone,
-  kPose,
-  kJoints,           ///< no feed-forward wrench
-  kJointsAndWrench,  ///< and adds Goal::F_ff
-  kSmoothJoints,     ///< no wrench; from rest along SmoothMotion
-};
-
-inline bool follows_joints(GoalType type) noexcept {
-  return type == GoalType::kJoints || type == GoalType::kJointsAndWrench ||
-         type == GoalType::kSmoothJoints;
-}
-
-/// The potential whose gradient a law's torque at rest is, as a function of the link's position:
-/// what it takes to evaluate the law at q_bar (PositionFeedback::kStatic, see qbar.h).
-enum class Potential : std::uint8_t {
-  kNone,         ///< its torque at rest is no gradient, or not one that q_bar is solved for
-  kGravity,      ///< the weight alone: carried, or what the springs bend under
-  kJointSpring,  ///< and -K_q (q - q_d)
-  kTipSpring,    ///< and J^T (F_ff - h A^T K_x e)
-};
-
-/// Which spring's designed damping reckons with springs in the joints (elastic_design.h).
-enum class DampedAt : std::uint8_t { kNothing, kJoints, kTip };
-
-/// Estimates of this instant; zero where LawSettings::contact names no source.
-struct Estimates {
-  explicit Estimates(int joints) : tau_ext(VectorJ::Zero(joints)) {}
-
-  VectorJ tau_ext;                  ///< torque of the world on the joints, N m
-  Vector6 F_ext = Vector6::Zero();  ///< wrench of the world on the tip, base axes, N and N m
-  Vector6 A_BT = Vector6::Zero();   ///< dV_BT/dt, filtered, m/s^2 and rad/s^2
-};
-
-/// What the cycle adds to the law's torque.
-struct Compensation {
-  bool gravity = true;      ///< + g
-  bool coriolis = false;    ///< + C v
-  bool null_space = false;  ///< + N (-K_null (q - q_null) - D_null v)
-};
-
-/// The compensation with the user's choice of the model terms.
-inline Compensation chosen_compensation(Compensation of_law, ModelCompensation choice) noexcept {
-  if (choice == ModelCompensation::kLawDefault) return of_law;
-  of_law.gravity = choice != ModelCompensation::kNone;
-  of_law.coriolis = choice == ModelCompensation::kGravityCoriolis;
-  return of_law;
-}
 
 /// Everything a law receives, of the same instant. The references outlive the call only.
 struct LawInputs {
@@ -135,14 +72,6 @@ struct LawOutput {
   std::int32_t limits = 0;            ///< controller_status_t LIMIT_* bits
 };
 
-/// A quantity that a law reports besides its torque, in controller_status_t::law_outputs.
-struct LawReport {
-  const char* key;
-  const char* unit;
-  const char* meaning;
-  bool per_joint = false;
-};
-
 class Law {
  public:
   virtual ~Law() = default;
@@ -160,24 +89,6 @@ class Law {
   /// Writes the values of LawEntry::reports, in their order, to at most 24 places; a joint quantity
   /// takes one place a joint. In the cycle.
   virtual void report(float* values) const noexcept { static_cast<void>(values); }
-};
-
-/// One line of the registry.
-struct LawEntry {
-  const char* name;
-  const char* summary;  ///< one line for --list-laws, with the lecture's equation if it has one
-  unsigned needs;       ///< sensors::*
-  GoalType goal_type;
-  Compensation compensation;
-  Potential potential = Potential::kNone;
-  DampedAt damped = DampedAt::kNothing;
-  /// Shows a mistake found in print; refused unless every bus is simulated.
-  bool demonstration = false;
-  /// Numbers of this law alone; rows at namespace scope in its file.
-  std::vector<GainRow*> parameters = {};
-  std::vector<LawReport> reports = {};
-  /// Makes the law for an arm that has what it needs. May throw ConfigError.
-  std::unique_ptr<Law> (*make)(const LoadedRobot& robot) = nullptr;
 };
 
 }  // namespace limber::controller

@@ -8,8 +8,8 @@
 // is second order better and conservative; cartesian_impedance is exact. `damping_partials` shows
 // what the derivative of the damping torque does, in the stiffness, where it belongs, or in the
 // damping, as one finds it printed.
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

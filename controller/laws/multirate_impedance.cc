@@ -4,8 +4,8 @@
 //   every cycle:  tau = tau_k - K_k (q - q_k) - K_v v + g,  K_v = J^T D_x J
 // The error since the last evaluation is of second order in the motion with the full tangent, of
 // first order with the first term. V_d enters through K_v at the slow rate.
-#include "controller/gains/chosen_damping.h"
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/chosen_damping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

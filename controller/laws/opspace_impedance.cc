@@ -7,8 +7,8 @@
 // how light the tip can be made against a stiff world: see docs/control_laws.md.
 #include <Eigen/Cholesky>
 
-#include "controller/gains/damping_design.h"
-#include "controller/gains/nullspace.h"
+#include "controller/impedance/damping_design.h"
+#include "controller/impedance/nullspace.h"
 #include "controller/laws/law.h"
 #include "controller/model/pose_error.h"
 

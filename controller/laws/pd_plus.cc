@@ -3,7 +3,7 @@
 // Exact tracking on an exact model, and the stiffness at the joints is K_q itself. C is the matrix
 // of the Christoffel symbols, bilinear in its velocities: with c(x) = C(q, x) x,
 //   C(q, v) v_d = (c(v + v_d) - c(v - v_d)) / 4.
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

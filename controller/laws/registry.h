@@ -19,9 +19,6 @@ const LawCatalog& law_catalog() noexcept;
 /// Index of a name, -1 if there is none. May be called in the cycle.
 int find_law(const std::string& name) noexcept;
 
-/// What this arm has, sensors::*. A rigidly geared joint's encoder serves both sides.
-unsigned sensors_of(const Robot& robot) noexcept;
-
 /// nullptr if an arm with these sensors can run the law, else why not. May be called in the cycle.
 const char* check_law(const LawEntry& law, unsigned available) noexcept;
 

@@ -3,7 +3,7 @@
 // J at the present pose, K_v constant: as given, or the joint damping design for J^T K_x J at the
 // pose where the law started. Holds for small deviations; not conservative, since J turns with the
 // arm. Without K_null and D_null a redundant arm's null space has neither stiffness nor damping.
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "controller/elastic/joint_springs.h"
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/laws/law.h"
 
 namespace limber::controller {

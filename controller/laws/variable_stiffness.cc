@@ -13,8 +13,8 @@
 
 #include "controller/elastic/pair_inverse.h"
 #include "controller/elastic/vsa_stiffness.h"
-#include "controller/gains/nullspace.h"
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/nullspace.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/laws/registry.h"
 #include "controller/observers/filtered_difference.h"
 

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "common/types.h"
-#include "controller/model/pose.h"
+#include "controller/kinds/pose.h"
 #include "controller/model/singularity.h"
 #include "dynamics/arm_kernel.h"
 #include "robots/loader/load_robot.h"

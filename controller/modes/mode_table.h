@@ -5,6 +5,8 @@
 #include <limber/controller_status_t.hpp>
 #include <span>
 
+#include "controller/kinds/activity.h"
+
 namespace limber::controller {
 
 /// Numbers of controller_status_t.
@@ -19,9 +21,6 @@ enum class Mode : std::int8_t {
   kEstop = controller_status_t::MODE_ESTOP,         ///< latched; a hardware stop is pressed
 };
 inline constexpr int kModes = 8;
-
-/// Time in SOFT_STOP, in which the goal comes to rest.
-inline constexpr std::int64_t kSoftStop_ns = 300'000'000;
 
 enum class Event : std::uint8_t {
   // what a client asks

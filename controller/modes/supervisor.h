@@ -7,10 +7,10 @@
 #include <limber/mode_request_t.hpp>
 #include <optional>
 
+#include "controller/kinds/refusal.h"
 #include "controller/modes/mode_table.h"
-#include "controller/modes/preload_watch.h"
 #include "controller/modes/state_judge.h"
-#include "controller/refusal.h"
+#include "controller/watches/preload_watch.h"
 
 namespace limber::controller {
 

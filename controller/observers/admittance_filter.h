@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "common/types.h"
-#include "controller/model/pose.h"
+#include "controller/kinds/pose.h"
 
 namespace limber::controller {
 

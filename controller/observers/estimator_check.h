@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/types.h"
-#include "controller/gains/law_settings.h"
+#include "controller/kinds/law_settings.h"
 #include "controller/model/arm_terms.h"
 #include "robots/loader/robot.h"
 

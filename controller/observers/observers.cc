@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "controller/laws/registry.h"
+#include "controller/kinds/sensors.h"
 #include "controller/model/singularity.h"
 
 namespace limber::controller {
@@ -178,11 +178,18 @@ void Observers::observe_joint_torque(const ArmState& state, const ArmTerms& term
   estimates_.F_ext = damped_pseudo_inverse(rows.of(terms.J)).transpose() * estimates_.tau_ext;
 }
 
-VectorJ Observers::friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept {
+VectorJ Observers::friction(const Goal& goal, GoalType type, const VectorJ& v,
+                            const ArmTerms& terms) noexcept {
   if (settings_.friction_compensation == FrictionCompensation::kDither)
     return dither_.next(terms.M_total.diagonal(), T_);
   if (settings_.friction_compensation == FrictionCompensation::kObserver && friction_observer_) {
     return settings_.friction_share * friction_observer_->friction();
+  }
+  VectorJ v_d = VectorJ::Zero(v.size());
+  if (follows_joints(type)) {
+    v_d = goal.v_d;
+  } else if (!goal.V_BD.isZero(0.0)) {
+    v_d = damped_pseudo_inverse(terms.J) * goal.V_BD;
   }
   return friction_.torque(v_d, v);
 }

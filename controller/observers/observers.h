@@ -5,8 +5,10 @@
 #include <limber/joint_state_t.hpp>
 #include <optional>
 
-#include "controller/gains/nullspace.h"
-#include "controller/laws/law.h"
+#include "controller/impedance/nullspace.h"
+#include "controller/kinds/estimates.h"
+#include "controller/kinds/goal.h"
+#include "controller/kinds/law_entry.h"
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 #include "controller/observers/alpha_beta.h"
@@ -35,9 +37,10 @@ class Observers {
   void estimate_velocity(ArmState* state) noexcept;
   /// Contact and tip acceleration, from the terms at this state. In the cycle.
   void observe(const ArmState& state, const ArmTerms& terms, const TaskRows& rows) noexcept;
-  /// Torque of this cycle that compensates the gear's friction, N m. v_d, v: wanted and present
-  /// joint velocity, n; from the terms: the inertia. Once a cycle, in the cycle.
-  VectorJ friction(const VectorJ& v_d, const VectorJ& v, const ArmTerms& terms) noexcept;
+  /// Torque of this cycle that compensates the gear's friction, N m, at the velocity that the goal
+  /// wants of a law of this type; v: present joint velocity, n. Once a cycle, in the cycle.
+  VectorJ friction(const Goal& goal, GoalType type, const VectorJ& v,
+                   const ArmTerms& terms) noexcept;
 
   const Estimates& estimates() const noexcept { return estimates_; }
 

@@ -1,8 +1,8 @@
 // Keeps the sampled law from putting energy into the arm at the tip.
 #pragma once
 
-#include "controller/goals/goal.h"
-#include "controller/laws/law.h"
+#include "controller/kinds/goal.h"
+#include "controller/kinds/law_entry.h"
 #include "controller/observers/passivity_observer.h"
 
 namespace limber::controller {

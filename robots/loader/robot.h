@@ -143,7 +143,8 @@ struct Robot {
   double rate_hz = 1000.0;
   /// Net power the motors may put into the arm; infinite: no limit.
   double power_limit_W = std::numeric_limits<double>::infinity();
-  /// Kinetic energy that may come from elsewhere than the motors: controller/modes/energy_watch.h.
+  /// Kinetic energy that may come from elsewhere than the motors:
+  /// controller/watches/energy_watch.h.
   double energy_limit_J = 2.0;
   std::vector<BusConfig> buses;
   std::vector<JointConfig> joints;

@@ -1,5 +1,8 @@
 #include "tests/controller/law_bench.h"
 
+#include "controller/gains/read_gains.h"
+#include "controller/laws/registry.h"
+
 namespace limber::testing {
 
 using controller::LawInputs;
@@ -11,7 +14,7 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
       point(model.size()),
       state(model.size()),
       goal(model.size()),
-      gains(controller::default_gains(robot.robot)),
+      gains(controller::default_gains(robot.robot, controller::law_catalog().parameters)),
       estimates(model.size()),
       output(model.size()),
       entry(controller::laws()[static_cast<std::size_t>(controller::find_law(name))]),

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "controller/gains/read_gains.h"
 #include "controller/laws/registry.h"
 #include "tests/controller/rig.h"
 
@@ -231,7 +232,7 @@ TEST_F(Switching, SettingsNeverJump) {
     for (const Change& change : kChanges) {
       Gains gains = gains_of(law);
       change.make(&gains);
-      controller::Gains parsed(7);
+      controller::Gains parsed(7, controller::law_catalog().parameters);
       read_gains(gains, &parsed);
       if (entry(law).make(rig.robot)->check(parsed) != nullptr) continue;
       ASSERT_EQ(rig.controller.on_gains(gains), nullptr) << law << ", " << change.name;

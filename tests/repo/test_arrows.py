@@ -40,11 +40,13 @@ def includes(path: Path) -> Iterator[tuple[int, str]]:
                 yield number, target
 
 
-def inside(file: str, pattern: str) -> bool:
-    """`pattern` is a folder, the beginning of a file's path, or has a * for one part of a path."""
-    if "*" in pattern:
-        return PurePosixPath(f"/{file}").match(f"/{pattern}")
-    return file.startswith((pattern + "/", pattern + ".")) or file == pattern
+def inside(file: str, name: str) -> bool:
+    """`name` is a folder, with a slash at its end one without its subfolders, or the beginning of
+    a file's path.
+    """
+    if name.endswith("/"):
+        return PurePosixPath(file).parent == PurePosixPath(name)
+    return file.startswith((name + "/", name + ".")) or file == name
 
 
 def sources() -> Iterator[Path]:

@@ -6,7 +6,8 @@
 #include <span>
 #include <variant>
 
-#include "controller/gains/gains.h"
+#include "controller/gains/read_gains.h"
+#include "controller/kinds/gains.h"
 #include "controller/model/arm_terms.h"
 #include "lcmtypes/gains_merge.h"
 #include "robots/loader/default_gains.h"
@@ -31,7 +32,7 @@ class StartPose {
   }
 
   StiffnessReport report(double at_s, const compliance_gains_t& fields) const {
-    controller::Gains gains(robot_.size());
+    controller::Gains gains(robot_.size(), {});
     controller::read_gains(fields, &gains);
     const double T = 1.0 / robot_.rate_hz;
     const StiffnessModes null_space = null_modes(gains, terms_, T);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/gains/stability.h"
+#include "controller/impedance/stability.h"
 #include "robots/loader/load_robot.h"
 #include "scenarios/loader/scenario.h"
 

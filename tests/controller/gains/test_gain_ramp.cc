@@ -15,7 +15,7 @@ namespace {
 // The stiffness stays symmetric positive semidefinite on the way; no step of the ramp is large.
 TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
   std::mt19937 generator(1);
-  Gains from(2);
+  Gains from(2, {});
   from.K_x = limber::testing::random_stiffness(300.0, 10.0, generator);
   Gains to = from;
   to.K_x = limber::testing::random_stiffness(900.0, 40.0, generator);
@@ -42,7 +42,7 @@ TEST(GainRamp, GoesFromOneToTheOtherWithoutAStep) {
 }
 
 TEST(GainRamp, ANewRampStartsWhereTheOldOneIs) {
-  Gains gains(1);
+  Gains gains(1, law_catalog().parameters);
   GainRamp ramp(gains);
   gains.K_q.diagonal().setConstant(100.0);
   ramp.start(gains, 0.0);  // at least a tenth of a second
@@ -58,7 +58,7 @@ TEST(GainRamp, ANewRampStartsWhereTheOldOneIs) {
 
 /// Every part that is ramped has `value`, whatever its unit.
 Gains all(double value) {
-  Gains gains(1);
+  Gains gains(1, law_catalog().parameters);
   gains.K_x.diagonal().setConstant(value);
   gains.D_x.diagonal().setConstant(value);
   gains.damping_ratio = gains.joint_damping_ratio = value;
@@ -140,12 +140,12 @@ TEST(GainRamp, DampingThatWasDesignedBeforeIsGivenAtOnce) {
 TEST(GainRamp, SettingsInertiaAndParametersThatDoNotRampChangeAtOnce) {
   const GainRow& M_q = *find_row(law_catalog().parameters, "M_q_kgm2");
   const GainRow& torque_gain = *find_row(law_catalog().parameters, "torque_gain");
-  Gains to(1);
+  Gains to(1, law_catalog().parameters);
   to.settings.orientation = Orientation::kQuat;
   to.M_x.setIdentity();
   to.parameters.set(M_q, MatrixJ(MatrixJ::Constant(1, 1, 3.0)));
   to.parameters.set(torque_gain, 4.0);
-  GainRamp ramp{Gains(1)};
+  GainRamp ramp{Gains(1, law_catalog().parameters)};
   ramp.start(to, 1.0);
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(ramp.now().settings.orientation, Orientation::kQuat);

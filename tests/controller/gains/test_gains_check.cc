@@ -7,6 +7,7 @@
 #include <string>
 
 #include "controller/gains/gains_check.h"
+#include "controller/laws/registry.h"
 
 namespace limber::controller::test_gains_check {
 namespace {
@@ -26,7 +27,7 @@ std::string why(const Change& change, bool simulated = false) {
   Message message = standard_gains();
   message.num_joints = kJoints;
   change(message);
-  const GainsCheck checker(kJoints, simulated);
+  const GainsCheck checker(kJoints, simulated, law_catalog().parameters);
   const char* reason = checker.check(message, message);
   return reason == nullptr ? "" : reason;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "controller/gains/read_gains.h"
 #include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
 #include "tests/controller/rig.h"
@@ -98,7 +99,7 @@ TEST_F(KeptGains, ParametersOfSingleLaws) {
   const auto parameters = controller::law_catalog().parameters;
   const GainRow& M_q = *find_row(parameters, "M_q_kgm2");
   const GainRow& torque_gain = *find_row(parameters, "torque_gain");
-  controller::LawParameters kept(7);
+  controller::LawParameters kept(7, parameters);
   Message request = named({});
   set_parameter("M_q_kgm2", std::vector<float>(7, 0.5F), &request);
   read_parameters(request, &kept, 7);
@@ -109,7 +110,7 @@ TEST_F(KeptGains, ParametersOfSingleLaws) {
   EXPECT_EQ(kept.number(torque_gain), 0.25);
   request.scope = Message::SCOPE_ALL;
   read_parameters(request, &kept, 7);
-  EXPECT_EQ(kept.matrix(M_q)(6, 6), controller::LawParameters(7).matrix(M_q)(6, 6));
+  EXPECT_EQ(kept.matrix(M_q)(6, 6), controller::LawParameters(7, parameters).matrix(M_q)(6, 6));
   EXPECT_EQ(kept.number(torque_gain), 0.25) << "listed";
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "controller/model/pose_error.h"
 #include "tests/controller/law_bench.h"
 

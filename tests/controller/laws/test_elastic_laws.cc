@@ -6,7 +6,7 @@
 
 #include "controller/elastic/pair_inverse.h"
 #include "controller/elastic/spring_law.h"
-#include "controller/goals/smooth_motion.h"
+#include "controller/kinds/smooth_motion.h"
 #include "tests/controller/law_bench.h"
 #include "tests/controller/one_joint.h"
 #include "tests/controller/rig.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "controller/gains/chosen_damping.h"
+#include "controller/impedance/chosen_damping.h"
 #include "controller/output/joint_limits.h"
 #include "tests/controller/law_bench.h"
 #include "tests/support/allocation_counter.h"

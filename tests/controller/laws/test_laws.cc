@@ -5,10 +5,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "controller/gains/nullspace.h"
-#include "controller/gains/spring_limit.h"
+#include "controller/impedance/nullspace.h"
 #include "controller/model/pose_error.h"
 #include "controller/model/rotation.h"
+#include "controller/model/spring_limit.h"
 #include "robots/loader/load_robot.h"
 #include "tests/controller/law_bench.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "controller/gains/stiffness_mapping.h"
+#include "controller/impedance/stiffness_mapping.h"
 #include "tests/controller/arms.h"
 
 namespace limber::controller::test_mapped_joint_impedance {
@@ -35,7 +35,8 @@ constexpr Row kRows[] = {
 
 class MappedGainsTest : public ::testing::Test {
  protected:
-  MappedGainsTest() : robot(limber::testing::planar_arm(kArm)), model(robot), gains(2), goal(2) {
+  MappedGainsTest()
+      : robot(limber::testing::planar_arm(kArm)), model(robot), gains(2, {}), goal(2) {
     gains.K_x.topLeftCorner<2, 2>().diagonal().setConstant(300.0);
     goal.q_d = (VectorJ(2) << 20.0 * kDegree, 80.0 * kDegree).finished();
     goal.X_BD = model.tip_pose(goal.q_d);

@@ -66,7 +66,7 @@ def docs() -> None:
         console.print(f"{table.path}: {'written' if table.write() else 'up to date'}")
 
 
-@app.command(epilog="Example: limber mutation controller/modes/load_watch.cc")
+@app.command(epilog="Example: limber mutation controller/watches/load_watch.cc")
 def mutation(
     where: Annotated[
         list[str] | None,

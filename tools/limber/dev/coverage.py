@@ -23,7 +23,7 @@ _HEAD = """\
 """
 # Of these folders and files, as regular expressions.
 _SOURCES = (r".*/drivers/gate/", r".*/drivers/drive/", r".*/drivers/controller_watch",
-            r".*/controller/modes/")  # fmt: skip
+            r".*/controller/modes/", r".*/controller/watches/")  # fmt: skip
 _FULL = (100.0, 100.0)
 
 

@@ -1,0 +1,264 @@
+// A stopped encoder: what counts as friction, as a change of the reading, and as motion elsewhere.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "controller/watches/encoder_watch.h"
+
+namespace limber::controller::test_encoder_watch_edges {
+namespace {
+
+constexpr int kJoints = 3;
+constexpr double kLimit_Nm = 40.0;
+constexpr double kInertia = 2.0;
+constexpr double kLong_s = 1.0;
+
+/// The watch of joint 1: a first state at rest without torque, then others of kLong_s each.
+class Bench {
+ public:
+  explicit Bench(const std::function<void(JointConfig&)>& change = [](JointConfig&) {})
+      : watch_(robot(change)) {
+    state_.num_joints = kJoints;
+    next();
+  }
+  /// The joint that is found in a state `dt_s` later; `gravity`: of joint 1, N m.
+  int next(double dt_s = kLong_s, double gravity = 0.0) {
+    const MatrixJ M = MatrixJ::Identity(kJoints, kJoints) * kInertia;
+    const VectorJ g = VectorJ::Unit(kJoints, 1) * gravity;
+    return watch_.stopped(state_, {g, VectorJ::Zero(kJoints), M}, dt_s);
+  }
+  joint_state_t& state() { return state_; }
+
+ private:
+  static Robot robot(const std::function<void(JointConfig&)>& change) {
+    Robot robot;
+    robot.joints.resize(kJoints);
+    for (JointConfig& joint : robot.joints) joint.torque_limit_Nm = kLimit_Nm;
+    change(robot.joints[1]);
+    return robot;
+  }
+
+  EncoderWatch watch_;
+  joint_state_t state_{};
+};
+
+/// Friction that hides a torque of `holds` but not one a little greater.
+void expect_friction(double holds, const std::function<void(JointConfig&)>& change) {
+  for (const double sign : {1.0, -1.0}) {
+    Bench bench(change);
+    bench.state().theta[0] = 1.0;
+    bench.state().tau_applied[1] = sign * (holds - 0.01);
+    EXPECT_EQ(bench.next(1e3), -1) << holds;
+    bench.state().tau_applied[1] = sign * (holds + 0.01);
+    EXPECT_EQ(bench.next(1e3), 1) << holds;  // 0.01 N m / 2 kg m^2 (1000 s)^2
+  }
+}
+
+TEST(EncoderWatchEdges, FrictionIsTheGreaterOfBothKindsPlusTheLinks) {
+  expect_friction(7.0, [](JointConfig& joint) {
+    joint.friction.coulomb_Nm = 4.0;
+    joint.friction.static_Nm = 3.0;
+    joint.link_friction.coulomb_Nm = 1.0;
+    joint.link_friction.static_Nm = 3.0;
+  });
+  expect_friction(7.0, [](JointConfig& joint) {
+    joint.friction.coulomb_Nm = 1.0;
+    joint.friction.static_Nm = 5.0;
+    joint.link_friction.coulomb_Nm = 2.0;
+  });
+}
+
+TEST(EncoderWatchEdges, ATorqueThatCarriesTheWeightMovesNothing) {
+  Bench bench;
+  bench.state().theta[0] = 1.0;
+  bench.state().tau_applied[1] = 8.0;
+  EXPECT_EQ(bench.next(1.0, 8.0), -1);
+  EXPECT_EQ(bench.next(1.0, -1.0), 1) << "it would rise now";
+}
+
+TEST(EncoderWatchEdges, TwoMotorsHaveItTwice) {
+  expect_friction(9.0, [](JointConfig& joint) {
+    joint.has_antagonist = true;
+    joint.friction.coulomb_Nm = 4.0;
+    joint.link_friction.coulomb_Nm = 1.0;
+  });
+}
+
+TEST(EncoderWatchEdges, ATwentiethOfTheTorqueLimitAtLeast) {
+  expect_friction(2.0, [](JointConfig& joint) { joint.friction.coulomb_Nm = 1.9; });
+  expect_friction(2.1, [](JointConfig& joint) { joint.friction.coulomb_Nm = 2.1; });
+}
+
+// Half a radian is expected at once; each reading of a drive's four shows that the encoder counts.
+TEST(EncoderWatchEdges, AnyReadingThatChangesBeginsAfresh) {
+  const auto found_after = [](const std::function<void(joint_state_t&)>& change) {
+    Bench bench;
+    bench.state().tau_applied[1] = 3.0;  // 1 N m beyond friction: 0.5 rad in 1 s
+    bench.state().theta[0] = 1.0;
+    change(bench.state());
+    return bench.next();
+  };
+  EXPECT_EQ(found_after([](joint_state_t&) {}), 1);
+  constexpr double kBit = 1e-300;
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.theta[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.q[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.theta_dot[1] = kBit; }), -1);
+  EXPECT_EQ(found_after([](joint_state_t& state) { state.v[1] = kBit; }), -1);
+}
+
+TEST(EncoderWatchEdges, AfreshMeansFromTheNewReadingAndItsLoad) {
+  Bench bench;
+  joint_state_t& state = bench.state();
+  state.tau_applied[1] = 3.0;
+  state.theta[0] = 0.011;
+  EXPECT_EQ(bench.next(0.2), -1);  // 0.5 rad/s^2 (0.2 s)^2 = 0.02 rad
+  state.theta[1] = state.q[1] = state.theta_dot[1] = state.v[1] = 1e-6;
+  EXPECT_EQ(bench.next(0.3), -1);
+  EXPECT_EQ(bench.next(1e3), -1) << "3 N m are balanced since then";
+  state.tau_applied[1] = 6.0;  // 1 N m beyond load and friction
+  EXPECT_EQ(bench.next(0.2), -1) << "neither angle nor speed is left from before";
+  EXPECT_EQ(bench.next(0.2), -1) << "0.06 rad are expected, but no other joint has moved since";
+  state.theta[2] = -0.011;
+  EXPECT_EQ(bench.next(1e-6), 1);
+}
+
+// What was held may be held no longer, in both directions; more than it, or the other way, is not.
+TEST(EncoderWatchEdges, BetweenNoLoadAndThatOfBeforeNothingMoves) {
+  for (const double sign : {1.0, -1.0}) {
+    const auto found_at = [sign](double load) {
+      Bench bench;
+      bench.state().theta[1] = 1e-6;
+      bench.state().tau_applied[1] = sign * 8.0;
+      bench.next(1e-3);
+      bench.state().theta[0] = 1.0;
+      bench.state().tau_applied[1] = sign * load;
+      return bench.next(1e3);
+    };
+    for (const double load : {8.0, 4.0, 0.0, -1.99, 9.99}) EXPECT_EQ(found_at(load), -1) << load;
+    for (const double load : {-2.01, 10.01}) EXPECT_EQ(found_at(load), 1) << load;
+  }
+}
+
+TEST(EncoderWatchEdges, AnotherJointMovesByMoreThanAHundredth) {
+  for (const int other : {0, 2}) {
+    for (const double sign : {1.0, -1.0}) {
+      Bench bench;
+      bench.state().tau_applied[1] = 3.0;
+      bench.state().theta[other] = sign * 0.01;
+      EXPECT_EQ(bench.next(), -1);
+      bench.state().theta[other] = sign * std::nextafter(0.01, 1.0);
+      EXPECT_EQ(bench.next(), 1);
+    }
+  }
+}
+
+TEST(EncoderWatchEdges, ThreeHundredthsAreExpectedAtLeast) {
+  Bench exact([](JointConfig& joint) { joint.torque_limit_Nm = 0.0; });
+  exact.state().theta[0] = 1.0;
+  exact.state().tau_applied[1] = kInertia * 0.03;
+  EXPECT_EQ(exact.next(), 1) << "0.03 rad in a second";
+  for (const double sign : {1.0, -1.0}) {
+    Bench bench;
+    bench.state().theta[0] = 1.0;
+    bench.state().tau_applied[1] = sign * (2.0 + 2.0 * kInertia);  // 2 rad/s^2
+    EXPECT_EQ(bench.next(0.1224), -1);                             // 0.02996 rad
+    Bench later;
+    later.state().theta[0] = 1.0;
+    later.state().tau_applied[1] = sign * (2.0 + 2.0 * kInertia);
+    EXPECT_EQ(later.next(0.1226), 1);  // 0.03006 rad
+  }
+}
+
+/// Cycles of `dt_s` that a joint stands still after `speed` before it is found; -1: not in 10,000.
+/// No other joint moves. Friction: 2 N m; with the limit of 40 N m it brakes by 21 rad/s^2.
+int cycles_after(double speed, double dt_s = 1e-3) {
+  Bench bench;
+  bench.state().theta_dot[1] = speed;
+  bench.next(dt_s);
+  bench.state().theta_dot[1] = 0.0;
+  for (int k = 0; k <= 10'000; ++k)
+    if (bench.next(dt_s) == 1) return k;
+  return -1;
+}
+
+TEST(EncoderWatchEdges, ASuddenStopIsFoundAfterAHundredthOfARadian) {
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(cycles_after(sign * 0.41), 25);
+    EXPECT_EQ(cycles_after(sign * 0.0625), 160);
+    EXPECT_NEAR(cycles_after(sign * 0.05), 200, 1);
+    EXPECT_EQ(cycles_after(sign, 0.01), 1);
+    EXPECT_EQ(cycles_after(sign * std::nextafter(0.05, 0.0)), -1) << "friction may have stopped it";
+  }
+}
+
+TEST(EncoderWatchEdges, AFastJointThatMovesOnIsLeftAlone) {
+  Bench bench;
+  for (int k = 0; k < 1000; ++k) {
+    bench.state().theta_dot[1] = 50.0;
+    bench.state().theta[1] = 0.05 * k;
+    ASSERT_EQ(bench.next(1e-3), -1) << k;
+  }
+}
+
+TEST(EncoderWatchEdges, AFastReadingMayStandFor10Ms) {
+  // 8 rad/s: a hundredth of a radian in less than two cycles. Dyadic steps: 1/128 s, 1/64 s.
+  Bench bench;
+  bench.state().theta_dot[1] = 8.0;
+  bench.next(1.0 / 128.0);
+  bench.state().theta_dot[1] = 0.0;
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(bench.next(1.0 / 128.0), -1);
+  EXPECT_EQ(bench.next(1.0 / 128.0), 1);
+  EXPECT_NEAR(cycles_after(8.0), 10, 1);
+  Bench exact;
+  exact.state().theta_dot[1] = 8.0;
+  exact.next(0.005);
+  exact.state().theta_dot[1] = 0.0;
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(exact.next(0.005), -1);
+  EXPECT_EQ(exact.next(0.005), 1);
+}
+
+TEST(EncoderWatchEdges, AStopThatMotorAndFrictionCanMakeIsNotSudden) {
+  // Within 10 ms: 21 rad/s^2 10 ms = 0.21 rad/s.
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(cycles_after(sign * 0.2099, 0.01), -1);
+    EXPECT_EQ(cycles_after(sign * 0.2101, 0.01), 5);
+  }
+}
+
+TEST(EncoderWatchEdges, AfterASuddenStopTheTorqueGoesOnToo) {
+  Bench bench;
+  bench.state().theta_dot[1] = 0.1;
+  bench.next(1e-3);
+  bench.state().theta_dot[1] = 0.0;
+  bench.next(1e-3);                     // 0.0001 rad
+  bench.state().tau_applied[1] = 60.0;  // 30 rad/s^2, whatever friction holds
+  EXPECT_EQ(bench.next(0.01), -1);      // 0.0001 + 0.4 rad/s 0.01 s
+  EXPECT_EQ(bench.next(0.01), 1);       // and 0.7 rad/s 0.01 s
+}
+
+// v_0 = 0.04 rad/s, 1 rad/s^2 of friction: at rest after 40 cycles, 0.8 mrad on.
+TEST(EncoderWatchEdges, FrictionEndsWhatIsNotSudden) {
+  Bench bench;
+  bench.state().theta_dot[1] = 0.04;
+  bench.next(1e-3);
+  bench.state().theta_dot[1] = 0.0;
+  bench.state().theta[0] = 1.0;
+  for (int k = 0; k < 10'000; ++k) ASSERT_EQ(bench.next(1e-3), -1) << k;
+}
+
+TEST(EncoderWatchEdges, CyclesWithoutAnAnswerDoNotCount) {
+  Bench bench;
+  bench.state().theta_dot[1] = 0.41;
+  bench.next(1e-3);
+  bench.state().theta_dot[1] = 0.0;
+  for (int k = 0; k < 10; ++k) ASSERT_EQ(bench.next(1e-3), -1) << k;
+  bench.state().age_cycles[1] = 1;
+  for (int k = 0; k < 1000; ++k) ASSERT_EQ(bench.next(1e-3), -1) << "the last answer again";
+  bench.state().age_cycles[1] = 0;
+  for (int k = 10; k < 25; ++k) ASSERT_EQ(bench.next(1e-3), -1) << k;
+  EXPECT_EQ(bench.next(1e-3), 1);
+}
+
+}  // namespace
+}  // namespace limber::controller::test_encoder_watch_edges
