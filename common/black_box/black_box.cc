@@ -157,7 +157,7 @@ void BlackBox::keep(const std::string& code) {
 fs::path BlackBox::announce(const std::string& code) const {
   try {
     const fs::path incident = incident_path(path_.filename(), code);
-    spdlog::info("what happened is kept for `limber incident`: {}", incident.string());
+    spdlog::info("what happened is kept for `limber log black-box`: {}", incident.string());
     return incident;
   } catch (const std::exception& error) {
     spdlog::warn("the black box cannot be kept: {}", error.what());

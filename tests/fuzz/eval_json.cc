@@ -1,6 +1,6 @@
 // Cases of limber-eval: an answer without NaN that can be written as JSON, or a refusal.
 #include "common/config_error.h"
-#include "eval/evaluate.h"
+#include "lecture/eval/evaluate.h"
 #include "tests/fuzz/support/fuzz_input.h"
 #include "tests/fuzz/support/require.h"
 

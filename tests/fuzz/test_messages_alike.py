@@ -104,4 +104,4 @@ def test_garbled_inputs_have_one_verdict(kept, seed):
 
 
 def test_the_decoder_is_there():
-    assert Path(DECODER).exists(), "run: ./limber fuzz"
+    assert Path(DECODER).exists(), "run: ./limber dev fuzz"

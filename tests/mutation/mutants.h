@@ -1,4 +1,4 @@
-// Faults made on purpose, all compiled in, one chosen at run time. `limber mutation` copies the
+// Faults made on purpose, all compiled in, one chosen at run time. `limber dev mutation` copies the
 // sources and writes each expression that it may change as a call of one of these functions; N is
 // the number of its first mutant.
 //

@@ -10,6 +10,7 @@ from limber.paths import ROOT
 
 TABLE = ROOT / "docs" / "architecture.md"
 CXX = re.compile(r'^#include ["<]([^">]+)[">]')
+PACKAGES = {"limber": "tools", "limber_qa": "qa", "limber_lecture": "lecture"}  # and their folders
 PYTHON = re.compile(r"^\s*(?:from (limber[\w.]*) import (\w+)|import (limber[\w.]*))")
 
 
@@ -28,11 +29,12 @@ def includes(path: Path) -> Iterator[tuple[int, str]]:
     """Line number and path, from the root, of every file of this repository that is included."""
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if path.suffix == ".py" and (match := PYTHON.match(line)):
-            module = (match[1] or match[3]).replace(".", "/")
-            files = (f"tools/{module}/{match[2]}.py", f"tools/{module}.py")
+            package, _, rest = (match[1] or match[3]).partition(".")
+            module = "/".join((PACKAGES[package], package, *rest.split("."))).rstrip("/")
+            files = (f"{module}/{match[2]}.py", f"{module}.py")
             yield (
                 number,
-                next((f for f in files if (ROOT / f).exists()), "tools/limber/__init__.py"),
+                next((f for f in files if (ROOT / f).exists()), f"{module}/__init__.py"),
             )
         elif path.suffix != ".py" and (match := CXX.match(line)):
             target = re.sub("^limber/", "lcmtypes/", match[1])  # generated headers

@@ -2,8 +2,8 @@
 
 import pytest
 
-from limber.dev import faults_doc
 from limber.messages import constants
+from limber_qa import faults_doc
 
 
 @pytest.fixture(scope="module")
@@ -35,4 +35,4 @@ def test_every_family_is_tried(rows):
 def test_bus_md_has_the_table(rows, monkeypatch):
     monkeypatch.setattr(faults_doc, "reactions", lambda: rows)
     text = faults_doc.TABLE.path.read_text(encoding="utf-8")
-    assert faults_doc.TABLE.updated(text) == text, "run: ./limber docs"
+    assert faults_doc.TABLE.updated(text) == text, "run: ./limber dev docs"

@@ -1,11 +1,11 @@
 """The tables of gains in scenarios/README.md, against what the controller lists."""
 
-from limber.dev import gains_doc
+from limber_qa import gains_doc
 
 
 def test_the_readme_has_the_tables_of_the_controller():
     text = gains_doc.TABLE.path.read_text(encoding="utf-8")
-    assert gains_doc.TABLE.updated(text) == text, "run: ./limber docs"
+    assert gains_doc.TABLE.updated(text) == text, "run: ./limber dev docs"
 
 
 def test_a_laws_own_number_is_listed_with_its_law():

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from limber.dev import troubleshooting_doc
 from limber.messages import constants, table_file
 from limber.paths import ROOT
 from limber.problems import groups
+from limber_qa import troubleshooting_doc
 
 DOC = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
 
@@ -42,7 +42,7 @@ def test_every_entry_is_whole():
 
 
 def test_the_doc_has_the_table():
-    assert troubleshooting_doc.TABLE.updated(DOC) == DOC, "run: ./limber docs"
+    assert troubleshooting_doc.TABLE.updated(DOC) == DOC, "run: ./limber dev docs"
 
 
 def test_every_link_within_the_doc_leads_to_a_code():

@@ -7,12 +7,12 @@ import sys
 import pytest
 
 import limber
-from limber.dev import python_doc
+from limber_qa import python_doc
 
 
 def test_the_page_is_that_of_the_docstrings():
     text = python_doc.TABLE.path.read_text(encoding="utf-8")
-    assert python_doc.TABLE.updated(text) == text, "run: ./limber docs"
+    assert python_doc.TABLE.updated(text) == text, "run: ./limber dev docs"
 
 
 def test_every_public_call_has_a_docstring():

@@ -1,8 +1,8 @@
 """The required keys in docs/own_arm.md are the loader's."""
 
-from limber.dev import robot_keys_doc
+from limber_qa import robot_keys_doc
 
 
 def test_the_table_is_the_loaders():
     text = robot_keys_doc.TABLE.path.read_text(encoding="utf-8")
-    assert robot_keys_doc.TABLE.updated(text) == text, "run: ./limber docs"
+    assert robot_keys_doc.TABLE.updated(text) == text, "run: ./limber dev docs"

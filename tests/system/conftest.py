@@ -6,9 +6,9 @@ import subprocess
 
 import pytest
 
-from limber.faults.matrix import read_matrix
-from limber.referee.judge import judge_file
-from limber.referee.stops import Expectation
+from limber_qa.faults.matrix import read_matrix
+from limber_qa.referee.judge import judge_file
+from limber_qa.referee.stops import Expectation
 from stack import BIN, Stack, slow_arm
 
 PAUSE_CYCLES = 60  # the frames' stamps are the clock's: what the machine adds

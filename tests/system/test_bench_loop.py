@@ -1,4 +1,4 @@
-"""The programs of `limber bench` do what they measure."""
+"""The programs of `limber dev bench` do what they measure."""
 
 import json
 import subprocess
@@ -57,6 +57,6 @@ def test_the_publisher_sends_what_is_due():
 
 
 def test_the_three_processes_are_timed():
-    scenario = str(ROOT / "bench" / "whole_loop.yaml")
+    scenario = str(ROOT / "qa" / "bench" / "whole_loop.yaml")
     options = ("--bin", str(BIN), "--scenario", scenario, "--turns", "1")
     assert run("limber-bench-whole-loop", *options)["ratio"] > 0

@@ -76,7 +76,7 @@ def play(tmp_path, end_s: float, fault_s: float | None) -> subprocess.CompletedP
 def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     """The driver and the simulator saw nothing wrong themselves."""
     told = play(tmp_path, 6.0, 1.5).stdout
-    assert "kept: limber incident show" in " ".join(told.split())
+    assert "kept: limber log black-box show" in " ".join(told.split())
     assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
     out = tmp_path / "told"
     done = subprocess.run(

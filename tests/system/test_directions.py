@@ -1,4 +1,4 @@
-"""`limber directions` with the real driver: a hand turns each joint of a simulated arm.
+"""`limber identify joints` with the real driver: a hand turns each joint of a simulated arm.
 
 The simulator has one robot.yaml, the driver another: what is wrong in it has to be named.
 """

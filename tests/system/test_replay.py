@@ -1,4 +1,4 @@
-"""`limber replay` on the wire: what is sent and when, and what stops it."""
+"""`limber log replay` on the wire: what is sent and when, and what stops it."""
 
 import subprocess
 import sys

@@ -6,7 +6,7 @@ import sys
 
 import yaml
 
-from conftest import ROOT
+from limber.paths import ROOT
 
 SECONDS = 2.5
 FAULT = {"at_s": 2.0, "fault": {"joint": "joint2", "kind": "drive_error", "for_s": 0.1}}

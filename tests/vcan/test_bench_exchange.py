@@ -1,4 +1,4 @@
-"""The exchange that `limber bench` measures, over the kernel's CAN."""
+"""The exchange that `limber dev bench` measures, over the kernel's CAN."""
 
 import json
 import subprocess

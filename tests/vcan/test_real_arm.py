@@ -131,7 +131,7 @@ STILL = {
 
 
 class Services:
-    """What systemd makes of the units that `limber service` has written, without its sandbox."""
+    """What systemd makes of the units of `limber export service`, without its sandbox."""
 
     def __init__(self, folder: Path) -> None:
         self.units = {path.name: path.read_text() for path in folder.glob("*.service")}

@@ -8,7 +8,7 @@ from typing import Any
 from limber.errors import InputError, RunError
 
 ROOT = Path(__file__).resolve().parents[2]
-RELEASE = ROOT / "build" / "release" / "bin"  # what `limber bench` builds
+RELEASE = ROOT / "build" / "release" / "bin"  # what `limber dev bench` builds
 LEFT_BY_RUNS = ("run.lcmlog", "run.lcmlog.zst", "run.can.log", "summary.json")
 ASSETS = Path(__file__).resolve().parent / "assets"
 

@@ -7,7 +7,7 @@
 
 #include "controller/elastic/nnls.h"
 #include "controller/elastic/vsa_stiffness.h"
-#include "eval/vsa_pair.h"
+#include "lecture/eval/vsa_pair.h"
 #include "tests/controller/arms.h"
 #include "tests/support/allocation_counter.h"
 

@@ -7,9 +7,9 @@
 
 #include "controller/elastic/full_state_feedback.h"
 #include "controller/elastic/tomei.h"
-#include "eval/deflection_pd.h"
-#include "eval/elastic_arm.h"
-#include "eval/torque_feedback.h"
+#include "lecture/eval/deflection_pd.h"
+#include "lecture/eval/elastic_arm.h"
+#include "lecture/eval/torque_feedback.h"
 #include "tests/controller/arms.h"
 #include "tests/support/allocation_counter.h"
 

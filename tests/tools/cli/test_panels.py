@@ -2,15 +2,26 @@
 
 import re
 
+import pytest
 from typer.main import get_command
 
-from limber.cli.main import app
-from limber.cli.panels import PANELS, PLACES
+from limber.cli.main import IN_A_CLONE, app
+from limber.cli.panels import ELSEWHERE, PANELS, PLACES
 
 
 def test_every_command_has_its_panel_and_no_panel_a_ghost():
-    assert set(get_command(app).commands) == set(PLACES)
+    assert set(get_command(app).commands) == set(PLACES) | set(IN_A_CLONE)
     assert len(PLACES) == sum(map(len, PANELS.values())), "none stands in two"
+    assert len(PLACES) <= 15
+
+
+@pytest.mark.parametrize(("before", "now"), ELSEWHERE.items())
+def test_the_words_before_still_work(before, now):
+    """They reach the very command that has another place now."""
+    commands = get_command(app)
+    group, _, inside = now.partition(" ")
+    assert commands.get_command(None, before) is commands.commands[group].commands[inside]
+    assert before not in commands.list_commands(None)
 
 
 def test_the_panels_stand_in_the_order_of_a_persons_way(limber):

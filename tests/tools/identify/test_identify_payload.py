@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from made_logs import records, write_log
 
-from conftest import records, write_log
 from limber import messages
 from limber.errors import InputError
 from limber.identify.arm import load_arm

@@ -11,8 +11,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from made_logs import records, write_log
 
-from conftest import records, write_log
 from limber import messages
 
 STEP_S = 1.0 / 5000.0

@@ -5,8 +5,8 @@ import subprocess
 import numpy as np
 import pytest
 import yaml
+from made_logs import records, write_log
 
-from conftest import records, write_log
 from limber.incident.reproduce import reproduction
 from limber.log.reader import Log
 from limber.messages import message_class

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from made_logs import records
 
-from conftest import records
 from limber import messages
 from limber.errors import InputError
 from limber.live.arm_state import Pose, State

@@ -4,8 +4,8 @@ import threading
 
 import numpy as np
 import pytest
+from made_logs import records
 
-from conftest import records
 from limber import messages
 from limber.live.receiver import ChannelState, Stream
 

@@ -1,4 +1,4 @@
-"""The jar of `limber spy`, by the class through which lcm-spy finds and decodes types."""
+"""The jar of `limber log spy`, by the class through which lcm-spy finds and decodes types."""
 
 import shutil
 import subprocess

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_logs import records
 from rich.console import Console
 
-from conftest import records
 from limber import messages
 from limber.lcmtypes.robot_info_t import robot_info_t as RobotInfo
 from limber.live import watch

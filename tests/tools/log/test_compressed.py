@@ -5,9 +5,9 @@ import io
 import numpy as np
 import pytest
 import zstandard
+from made_logs import event_bytes, records
 from rich.console import Console
 
-from conftest import event_bytes, records
 from limber.errors import InputError, RunError
 from limber.log import compressed
 from limber.log.convert import conversion

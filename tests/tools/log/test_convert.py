@@ -8,11 +8,11 @@ import sys
 
 import numpy as np
 import pytest
+from made_logs import event_bytes, records, write_log
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from rich.console import Console
 
-from conftest import event_bytes, records, write_log
 from limber import messages
 from limber.errors import InputError, RunError
 from limber.log import event_file

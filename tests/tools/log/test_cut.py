@@ -3,9 +3,9 @@
 import io
 
 import pytest
+from made_logs import event_bytes, records
 from rich.console import Console
 
-from conftest import event_bytes, records
 from limber.errors import InputError
 from limber.log.cut import Part, cut
 from limber.log.reader import Log

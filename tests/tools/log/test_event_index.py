@@ -4,8 +4,8 @@ import mmap
 
 import numpy as np
 import pytest
+from made_logs import event_bytes
 
-from conftest import event_bytes
 from limber.log import event_index
 from limber.log.event_file import SYNC, Damage
 

@@ -1,8 +1,8 @@
 """The list of what happened, from messages whose story is known."""
 
 import numpy as np
+from made_logs import event_bytes, records, write_log
 
-from conftest import event_bytes, records, write_log
 from limber.log.events import Names, events
 from limber.log.reader import Log
 from limber.messages import SCENARIO_CLIENT, message_class

@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 import zstandard
+from made_logs import event_bytes, records, write_log
 
-from conftest import event_bytes, records, write_log
 from limber.log import compressed
 from limber.log.reader import Log, count_gaps, count_jumps
 from limber.messages import message_class

@@ -3,8 +3,8 @@
 import lcm
 import numpy as np
 import pytest
+from made_logs import event_bytes, records, write_log
 
-from conftest import event_bytes, records, write_log
 from limber import messages
 from limber.errors import InputError
 from limber.log.reader import Log, count_gaps

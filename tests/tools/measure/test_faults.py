@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from made_logs import event_bytes, records, write_log
 
-from conftest import event_bytes, records, write_log
 from limber.log.reader import Log
 from limber.measure.faults import find_faults
 from limber.measure.summarize import measure

@@ -5,10 +5,10 @@ The logs are made from statics: the tip is where the spring K_true lets the push
 
 import numpy as np
 import pytest
+from made_logs import RATE_HZ, records, write_log
 from scipy.optimize import fsolve, linprog
 from scipy.spatial.transform import Rotation
 
-from conftest import RATE_HZ, records, write_log
 from limber.log.reader import Log
 from limber.measure import statics
 from limber.measure.pushes import measure_pushes, stiffness_matrix

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from limber.experiments.evaluate import case, evaluate
 from limber.model.dynamics import ArmDynamics
 from limber.model.robot import load_robot
 from limber.model.urdf import Chain
+from limber_lecture.evaluate import case, evaluate
 
 
 def dynamics_of(name: str) -> ArmDynamics:

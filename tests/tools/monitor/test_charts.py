@@ -1,8 +1,8 @@
 """Charts fed batch by batch."""
 
 import numpy as np
+from made_logs import records
 
-from conftest import records
 from limber import messages
 from limber.monitor.charts import ChartPanel, Keeper
 from limber.monitor.feed import Batch

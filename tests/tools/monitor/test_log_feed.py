@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from made_logs import event_bytes, records, write_log
 
-from conftest import event_bytes, records, write_log
 from limber.errors import InputError
 from limber.log.reader import Log
 from limber.messages import message_class

@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 import pytest
+from made_logs import records, write_log
 from rich.console import Console
 
-from conftest import records, write_log
 from limber import messages
 from limber.log.reader import Log
 from limber.messages import message_class

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from conftest import ROOT
 from limber.log.reader import Log
+from limber.paths import ROOT
 
 QUICK = ROOT / "scenarios" / "quick.yaml"
 LONG = "format: limber-scenario/1\nrobot: desktop2r\nmode: realtime\nduration_s: 100\n"

@@ -5,12 +5,11 @@ from typing import Annotated
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import Bus, Private, Robot, console
 
-app = typer.Typer()
 
-
-@app.command(epilog="Example: limber directions my_arm --json directions.json")
+@groups.identify.command("joints", epilog="Example: limber identify joints my_arm --json out.json")
 def directions(
     robot: Robot,
     bus: Bus = None,

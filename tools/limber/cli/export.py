@@ -5,14 +5,10 @@ from typing import Annotated
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import console
 
-app = typer.Typer(help="Write a robot for other simulators.", no_args_is_help=True)
-
-
-@app.callback()
-def _group() -> None:
-    """Keeps the command's name with only one of them."""
+app = groups.export
 
 
 @app.command(epilog="Example: limber export mjcf my_arm --out my_arm.xml")

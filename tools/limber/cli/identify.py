@@ -5,9 +5,10 @@ from typing import Annotated
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import console
 
-app = typer.Typer(help="Identify parameters of the arm from recorded runs.", no_args_is_help=True)
+app = groups.identify
 
 Runs = Annotated[list[Path], typer.Argument(help="Logs, or folders of runs.")]
 RunsOrCsv = Annotated[

@@ -1,4 +1,4 @@
-"""Commands that read black boxes: `limber incident ...`."""
+"""Commands that read black boxes: `limber log black-box ...`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,7 @@ from limber.cli.options import Out, console
 app = typer.Typer(help="What the processes kept around a fault.", no_args_is_help=True)
 
 
-@app.command("list", epilog="Example: limber incident list")
+@app.command("list", epilog="Example: limber log black-box list")
 def list_() -> None:
     """List the incidents that are kept, the oldest first."""
     from limber.incident import commands
@@ -18,7 +18,7 @@ def list_() -> None:
     commands.show_all(console)
 
 
-@app.command(epilog="Example: limber incident show")
+@app.command(epilog="Example: limber log black-box show")
 def show(
     box: Annotated[
         Path | None, typer.Argument(help="A .box file; default: the newest incident.")
@@ -31,7 +31,7 @@ def show(
     commands.show(box, out, console)
 
 
-@app.command(epilog="Example: limber incident reproduce out/push")
+@app.command(epilog="Example: limber log black-box reproduce out/push")
 def reproduce(
     log: Annotated[Path, typer.Argument(help="A log, or the folder of a run or an incident.")],
     robot: Annotated[

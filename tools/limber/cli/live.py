@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import become, console
 from limber.errors import InputError
 
@@ -63,7 +64,7 @@ def watch(
     module.watch(law_names(), once, console)
 
 
-@app.command(epilog="Example: limber spy")
+@groups.log.command(epilog="Example: limber log spy")
 def spy() -> None:
     """Start lcm-spy with limber's message types: every channel, its rate, its fields."""
     from limber.live import spy as module
@@ -71,7 +72,7 @@ def spy() -> None:
     module.start()
 
 
-@app.command(epilog="Example: limber record --out push.lcmlog.zst --duration 10")
+@groups.log.command(epilog="Example: limber log record --out push.lcmlog.zst --duration 10")
 def record(
     out: Annotated[
         Path, typer.Option("--out", help="Log file to write; compressed if it ends in .zst.")

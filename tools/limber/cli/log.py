@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import LogPath, Out, console, names_of
 
 JOINTS_OF = "For the joints' names; default: the robot.yaml beside the log."
@@ -20,11 +21,9 @@ Run = Annotated[
 ]
 
 app = typer.Typer()
-log_app = typer.Typer(help="Inspect and convert recorded logs.", no_args_is_help=True)
-app.add_typer(log_app, name="log")
 
 
-@log_app.command(epilog="Example: limber log info out/demo-1")
+@groups.log.command(epilog="Example: limber log info out/demo-1")
 def info(path: LogPath) -> None:
     """List the channels of a log, lost messages and damage."""
     from limber.log import commands
@@ -32,7 +31,7 @@ def info(path: LogPath) -> None:
     commands.info(path, console)
 
 
-@log_app.command(epilog="Example: limber log rate out/demo-1")
+@groups.log.command(epilog="Example: limber log rate out/demo-1")
 def rate(path: LogPath, run: Run = None) -> None:
     """Show rate and jitter of each channel, run by run."""
     from limber.log import commands
@@ -40,7 +39,7 @@ def rate(path: LogPath, run: Run = None) -> None:
     commands.rate(path, run, console)
 
 
-@log_app.command(epilog="Example: limber log events out/demo-1")
+@groups.log.command(epilog="Example: limber log events out/demo-1")
 def events(
     path: LogPath,
     robot: Annotated[str | None, typer.Option(help=JOINTS_OF)] = None,
@@ -52,7 +51,7 @@ def events(
     commands.show_events(path, run, names_of(_robot_of(path, robot)), console)
 
 
-@log_app.command(epilog="Example: limber log echo out/demo-1 JOINT_STATE --field q --at 2.5")
+@groups.log.command(epilog="Example: limber log echo out/demo-1 JOINT_STATE --field q --at 2.5")
 def echo(
     path: LogPath,
     channel: Annotated[str, typer.Argument(help="Such as JOINT_STATE.")],
@@ -66,7 +65,7 @@ def echo(
     commands.echo(path, channel, field, count, at)
 
 
-@log_app.command(epilog="Example: limber log convert out/demo-1 --to mcap")
+@groups.log.command(epilog="Example: limber log convert out/demo-1 --to mcap")
 def convert(
     path: LogPath,
     to: Annotated[
@@ -88,7 +87,7 @@ def convert(
     conversion.convert(path, to, out, _names(channels), names, console, run)
 
 
-@log_app.command(epilog="Example: limber log cut out/demo-1 --from 3 --to 8 --out push.lcmlog.zst")
+@groups.log.command(epilog="Example: limber log cut out/demo-1 --to 8 --out push.lcmlog.zst")
 def cut(
     path: LogPath,
     out: Annotated[
@@ -113,7 +112,7 @@ def _robot_of(path: Path, robot: str | None) -> str | None:
     return robot or beside
 
 
-@app.command(epilog="Example: limber replay out/demo-1 --speed 0.5 --from 3 --to 8")
+@groups.log.command(epilog="Example: limber log replay out/demo-1 --speed 0.5 --from 3 --to 8")
 def replay(
     path: LogPath,
     speed: Annotated[

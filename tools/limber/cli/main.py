@@ -4,49 +4,55 @@ import io
 import os
 import stat
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Annotated, NoReturn
 
 import typer
 from typer.exceptions import TyperException
 
 from limber import __version__
-from limber.cli import (
+from limber.cli import (  # export, identify and directions fill groups
     can,
-    dev,
     directions,
-    experiment,
+    doctor,
     export,
-    faults,
+    groups,
     identify,
     incident,
     live,
     log,
     monitor,
-    referee,
     run,
 )
 from limber.cli.options import console
-from limber.cli.panels import InPanels, put_in_panels
+from limber.cli.panels import Commands, put_in_panels
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
 
 INTERRUPTED = 130
 
 app = typer.Typer(
-    cls=InPanels,
+    cls=Commands,
     help="Compliance control for torque-controlled arms: run, measure, watch, plot.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for group in (run, directions, live, monitor, log, referee, dev):
-    app.add_typer(group.app)
+for module in (run, doctor, live, monitor, log):
+    app.add_typer(module.app)
+FILLED = (directions, export, identify)
+groups.log.add_typer(incident.app, name="black-box")
+app.add_typer(groups.log, name="log")
+app.add_typer(groups.identify, name="identify")
+app.add_typer(groups.export, name="export")
 app.add_typer(can.app, name="can")
-app.add_typer(experiment.app, name="experiment")
-app.add_typer(export.app, name="export")
-app.add_typer(faults.app, name="faults")
-app.add_typer(identify.app, name="identify")
-app.add_typer(incident.app, name="incident")
 put_in_panels(app)
+# What proves limber and what teaches it lies beside a clone's sources, and is not installed.
+IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}
+for name, package in IN_A_CLONE.items():
+    if find_spec(package.partition(".")[0]):
+        app.add_typer(import_module(package).app, name=name, hidden=True)
+        app.info.epilog = "Of this clone, beside these: limber test, limber dev, limber lecture."
 
 
 @app.callback(invoke_without_command=True)

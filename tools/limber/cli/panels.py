@@ -1,27 +1,49 @@
-"""The commands in `limber --help`, by what a person wants."""
+"""The commands in `limber --help`, by what a person wants, and the words that they had before."""
 
 from typing import Any
 
+import click
 import typer
 from typer.core import TyperGroup
 
 PANELS = {
-    "Run an arm": ("demo", "run", "lab", "sim", "service", "doctor"),
-    "See what it does": ("monitor", "watch", "plot", "spy"),
+    "Run an arm": ("demo", "run", "lab", "sim", "doctor"),
+    "See what it does": ("monitor", "watch", "plot"),
     "Ask something of it": ("send",),
-    "Describe an arm": ("new", "check", "directions", "identify", "export"),
-    "Measure and judge": ("measure", "eval", "experiment", "faults", "referee"),
-    "Record and read": ("record", "log", "replay", "can", "incident"),
-    "Develop limber": ("test", "bench", "soak", "fuzz", "coverage", "mutation", "docs"),
+    "Describe an arm and measure it": ("new", "check", "identify", "export"),
+    "Record and read": ("log", "can"),
 }
 PLACES = {name: place for place, name in enumerate(sum(PANELS.values(), ()))}
 
+# Shorter, or as they were called in the version before: they work and are not shown.
+ELSEWHERE = {
+    "record": "log record",
+    "replay": "log replay",
+    "spy": "log spy",
+    "measure": "log measure",
+    "incident": "log black-box",
+    "directions": "identify joints",
+    "service": "export service",
+    "experiment": "lecture experiment",
+    "eval": "lecture eval",
+    "referee": "dev check-trace",
+    **{
+        name: f"dev {name}"
+        for name in ("test", "bench", "soak", "fuzz", "coverage", "mutation", "docs", "faults")
+    },
+}
 
-class InPanels(TyperGroup):
-    """Commands stand in the order of PANELS."""
+
+class Commands(TyperGroup):
+    """Commands stand in the order of PANELS; those that are ELSEWHERE are found here, too."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         return sorted(super().list_commands(ctx), key=lambda name: PLACES.get(name, len(PLACES)))
+
+    def get_command(self, ctx: Any, name: str) -> click.Command | None:
+        group, _, inside = ELSEWHERE.get(name, name).partition(" ")
+        found = super().get_command(ctx, group)
+        return found.get_command(ctx, inside) if inside and isinstance(found, TyperGroup) else found
 
 
 def put_in_panels(app: typer.Typer) -> None:

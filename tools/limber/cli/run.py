@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from limber.cli import groups
 from limber.cli.options import (
     Bus,
     Out,
@@ -179,7 +180,7 @@ def sim(
     become("limber-sim", "--robot", str(folder), *words)
 
 
-@app.command(epilog="Example: limber measure out/push")
+@groups.log.command(epilog="Example: limber log measure out/push")
 def measure(
     folder: Annotated[Path, typer.Argument(help="Folder of a run.")],
     run: Annotated[
@@ -228,7 +229,7 @@ def new(
     raise typer.Exit(module.write(urdf, (base, tip), drives, name, out, console))
 
 
-@app.command(epilog="Example: limber service my_arm")
+@groups.export.command(epilog="Example: limber export service my_arm")
 def service(
     robot: Robot,
     out: Annotated[Path, typer.Option("--out", help="Folder for the files.")] = Path("out/service"),
@@ -251,16 +252,3 @@ def _bus_picture(arguments: list[str], path: Path) -> None:
 
         bus_cycle.draw(json.loads(done.stdout), path)
         console.print(f"{path}  [dim]one cycle on each bus[/]", highlight=False, soft_wrap=True)
-
-
-@app.command(
-    "eval",
-    context_settings={
-        "ignore_unknown_options": True,
-        "allow_extra_args": True,
-        "help_option_names": [],
-    },
-)
-def evaluate(context: typer.Context) -> None:
-    """Evaluate control laws: JSON from a file or standard input in, JSON out (docs/eval.md)."""
-    become("limber-eval", *context.args)

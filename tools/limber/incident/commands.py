@@ -1,5 +1,5 @@
-"""`limber incident`: lists black boxes, and makes one report of those of an incident: the events in
-order, one log, pictures, and a scenario that does the same in simulation.
+"""`limber log black-box`: lists black boxes, and makes one report of those of an incident: the
+events in order, one log, pictures, and a scenario that does the same in simulation.
 """
 
 import os
@@ -47,7 +47,7 @@ def show_all(console: Console) -> None:
         when = f"{box.when:%Y-%m-%d %H:%M:%S}"
         table.add_row(when, box.robot, box.program, box.code, box.path.name)
     console.print(table)
-    console.print(f"in {folder()}; `limber incident show` tells the newest", soft_wrap=True)
+    console.print(f"in {folder()}; `limber log black-box show` tells the newest", soft_wrap=True)
 
 
 def show(path: Path | None, out: Path | None, console: Console) -> None:
@@ -116,7 +116,7 @@ def _robot_of(name: str, target: Path, console: Console) -> Robot | None:
     except InputError:
         console.print(
             f"{name} is no shipped robot: joints are numbered, and there is no scenario; "
-            f"limber incident reproduce {target} --robot FOLDER makes it",
+            f"limber log black-box reproduce {target} --robot FOLDER makes it",
             soft_wrap=True,
         )
         return None

@@ -41,7 +41,7 @@ class Reproduction:
     notes: list[str] = field(default_factory=list)
 
     def text(self) -> str:
-        lines = ["# Made from a log by `limber incident`."]
+        lines = ["# Made from a log by `limber log black-box`."]
         if self.cause:
             lines.append(f"# It led to {self.cause.code}: {self.cause.what}.")
         lines += [f"# {note}." for note in self.notes]

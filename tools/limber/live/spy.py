@@ -1,4 +1,4 @@
-"""`limber spy`: LCM's own viewer, lcm-spy, with limber's message types."""
+"""`limber log spy`: LCM's own viewer, lcm-spy, with limber's message types."""
 
 import os
 import shutil

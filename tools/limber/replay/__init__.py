@@ -1,1 +1,1 @@
-"""`limber replay`: a recorded log, sent again as LCM messages."""
+"""`limber log replay`: a recorded log, sent again as LCM messages."""

@@ -104,7 +104,8 @@ def show_faults(summary: Summary, folder: Path, console: Console) -> None:
     boxes = _boxes(folder) if summary.faults else []
     if boxes:
         console.print(
-            f"The last seconds of {len(boxes)} processes are kept: limber incident show {boxes[0]}",
+            f"The last seconds of {len(boxes)} processes are kept: "
+            f"limber log black-box show {boxes[0]}",
             soft_wrap=True,
         )
 
@@ -113,7 +114,9 @@ def _boxes(folder: Path) -> list[str]:
     """The black boxes that the processes' logs name; none in lock step."""
     logs = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("limber-*.log"))]
     return [
-        name for text in logs for name in re.findall(r"for `limber incident`: (\S+\.box)", text)
+        name
+        for text in logs
+        for name in re.findall(r"for `limber log black-box`: (\S+\.box)", text)
     ]
 
 

@@ -1,4 +1,4 @@
-"""`limber service`: systemd units that run driver and controller of a real arm.
+"""`limber export service`: systemd units that run driver and controller of a real arm.
 
 Each has an account of its own: the driver's alone may open CAN sockets, and the arm plane is a Unix
 socket that only the two accounts' group can reach. A process that dies is started again into INIT:
@@ -21,7 +21,7 @@ RESTART_WINDOW_s = 600
 CONFIGURATION_WRONG = 2  # a restart would not help: see common/program.h
 
 UNIT = """\
-# Written by `limber service {robot}`.
+# Written by `limber export service {robot}`.
 [Unit]
 Description=limber {role} of {robot}
 PartOf=limber-{robot}.target
@@ -51,7 +51,7 @@ WantedBy=limber-{robot}.target
 """
 
 TARGET = """\
-# Written by `limber service {robot}`.
+# Written by `limber export service {robot}`.
 [Unit]
 Description=limber stack of {robot}
 Wants=limber-{robot}-driver.service limber-{robot}-controller.service
@@ -61,14 +61,14 @@ WantedBy=multi-user.target
 """
 
 ACCOUNTS = """\
-# Written by `limber service {robot}`.
+# Written by `limber export service {robot}`.
 g limber - -
 u limber-driver -:limber "limber driver" -
 u limber-controller -:limber "limber controller" -
 """
 
 FOLDER = """\
-# Written by `limber service {robot}`.
+# Written by `limber export service {robot}`.
 d /run/limber-{robot} 0770 limber-driver limber -
 """
 

@@ -1,0 +1,80 @@
+#include "qa/faults/state_change.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/protocols/cia402_pdos.h"
+#include "drivers/protocols/mit.h"
+#include "drivers/protocols/moteus.h"
+#include "drivers/protocols/moteus_frame.h"
+
+namespace limber::faults {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+CanFrame damiao(const CanFrame& reply, const JointConfig& joint, bool fd,
+                const MotionChange& change) {
+  mit::Reply state;
+  if (!mit::decode_reply(reply, joint.drive.range, &state)) return reply;
+  state.position_rad += change.angle_rad;
+  state.velocity_rad_per_s += change.speed_rad_per_s;
+  return mit::encode_reply(state, joint.drive.range, reply.id, fd, mit::Quantiser::kRound);
+}
+
+CanFrame moteus_drive(const CanFrame& reply, const MotionChange& change) {
+  using moteus::Register;
+  using moteus::Type;
+  moteus::State state;
+  if (!moteus::decode_state(reply, &state)) return reply;
+  const std::array measured = {static_cast<double>(state.mode),
+                               state.position_turns + change.angle_rad / kTurn,
+                               state.velocity_turns_per_s + change.speed_rad_per_s / kTurn,
+                               state.torque_Nm, state.current_q_A};
+  const std::array health = {state.temperature_degC, static_cast<double>(state.fault)};
+  moteus::FrameWriter frame(reply.id);
+  return frame.reply(Type::kFloat, static_cast<std::uint16_t>(Register::kMode), measured) &&
+                 frame.reply(Type::kFloat, static_cast<std::uint16_t>(Register::kTemperature),
+                             health)
+             ? frame.frame()
+             : reply;
+}
+
+CanFrame cia402_drive(const CanFrame& reply, const JointConfig& joint, bool fd,
+                      const MotionChange& change) {
+  const cia402::StateLayout layout = cia402::layout_of(joint, fd);
+  const auto k = static_cast<int>((reply.id - joint.drive.reply_id) >> 8U);
+  if (k >= cia402::tpdos_of(layout)) return reply;
+  const auto objects = cia402::state_objects(layout, k);
+  cia402::DriveState state;
+  if (!cia402::decode_state(reply, objects, &state)) return reply;
+  const auto counts = [&](double rad) {
+    return static_cast<std::int32_t>(std::lround(rad / kTurn * joint.drive.counts_per_turn));
+  };
+  state.position_counts += counts(change.angle_rad);
+  state.velocity_counts_per_s += counts(change.speed_rad_per_s);
+  return cia402::encode_state(state, objects, reply.id, fd);
+}
+
+}  // namespace
+
+CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,
+                     const MotionChange& change) {
+  CanFrame changed = reply;
+  switch (joint.drive.protocol) {
+    case DriveProtocol::kDamiaoMit:
+      changed = damiao(reply, joint, fd, change);
+      break;
+    case DriveProtocol::kMoteus:
+      changed = moteus_drive(reply, change);
+      break;
+    case DriveProtocol::kCia402:
+      changed = cia402_drive(reply, joint, fd, change);
+      break;
+  }
+  changed.timestamp_ns = reply.timestamp_ns;
+  return changed;
+}
+
+}  // namespace limber::faults

@@ -1,0 +1,129 @@
+"""`limber dev bench`: builds the release preset, runs its benchmarks, each figure beside its peer.
+
+Only ratios travel between machines. Competitors are interleaved in one run (repetitions in random
+order), and the median of the processor's time counts.
+"""
+
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import OK, RunError
+from limber.live import network
+from limber.paths import ROOT
+from limber_qa import bench_loop_parts, bench_round_trips
+from limber_qa.bench_command import released, run
+from limber_qa.bench_figure import Figure, table
+
+MODULES = ("limber_qa.bench_page", "limber_qa.bench_viewer")
+READ_SCENARIO = Path("scenarios") / "quick.yaml"
+CYCLES = 1_000_000  # watched for calls
+LOADED_s = 10.0  # of the recorder
+LONG_CYCLES, LONG_LOADED_s = 10_000_000, 60.0
+OPTIONS = [
+    "--benchmark_format=json",
+    "--benchmark_repetitions=9",
+    "--benchmark_min_time=0.02",
+    "--benchmark_enable_random_interleaving=true",
+    "--benchmark_report_aggregates_only=true",
+]
+PEER = "impedance/pinocchio/7"
+JOINTS = range(1, 17)
+Medians = dict[str, float]  # ns, by the benchmark's name
+
+
+def figures(medians: Medians) -> list[Figure]:
+    """All figures with a peer, from the medians of one run of limber-bench."""
+
+    def beside(name: str, own: str, peer: str, goal: float | None = None) -> Figure:
+        return Figure(name, medians[own], peer, medians.get(peer), goal)
+
+    found = [
+        beside("terms and Cartesian impedance, 7 joints", "impedance/limber/7", PEER, 0.25),
+        beside("the same", "impedance/limber/7", "impedance/kdl/7"),
+    ]
+    for n in JOINTS:
+        found.append(beside(f"terms, {n} joints", f"terms/limber/{n}", f"terms/pinocchio/{n}"))
+    found.append(beside("terms, 7 joints", "terms/limber/7", "terms/kdl/7"))
+    for name in medians:
+        if name.startswith("BM_ControllerCycle/"):
+            _, kind, law = name.split("/")
+            goal = 0.6 if law == "cartesian_impedance" else 1.0
+            found.append(beside(f"whole controller cycle, {law} ({kind})", name, PEER, goal))
+    step = "simulated step of 1 ms, rigid arm, Runge-Kutta"
+    found.append(beside(step, "plant_step/reference", "plant_step/bare_ode", 0.2))
+    found.append(beside("the same by ODE", "plant_step/ode", "plant_step/bare_ode", 1.1))
+    found.append(
+        beside("the step by Runge-Kutta", "plant_step/reference", "plant_step/mujoco", 0.7)
+    )
+    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
+    lab = medians["lab_cycle/held"]
+    found.append(Figure("lab cycle without a log", lab, "its step and impedance", kernels, 1.5))
+    return found
+
+
+def medians_of(found: dict) -> Medians:
+    """From the JSON of limber-bench. A benchmark that could not run is an error."""
+    for row in found["benchmarks"]:
+        if row.get("error_occurred"):
+            raise RunError(f"limber-bench: {row['name']}: {row.get('error_message', 'failed')}")
+    return {
+        row["run_name"]: row["cpu_time"]
+        for row in found["benchmarks"]
+        if row.get("aggregate_name") == "median"
+    }
+
+
+def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
+    """Runs in a private network where that is permitted, away from other messages."""
+    quiet = Console(stderr=True) if as_json else console
+    for command in (["cmake", "--preset", "release"], ["cmake", "--build", "--preset", "release"]):
+        run(command, quiet, " ".join(command))
+    prefix = network.private_command() or []
+    quiet.rule("limber-bench and its peers: some minutes")
+    medians = medians_of(_kernels())
+    found = figures(medians)
+    found += bench_round_trips.figures(prefix)
+    found.append(bench_loop_parts.exchange(prefix))
+    found += bench_loop_parts.lateness()
+    found += bench_loop_parts.calls(LONG_CYCLES if long else CYCLES)
+    found += _of_module(
+        prefix, "limber_qa.bench_recorder", str(LONG_LOADED_s if long else LOADED_s)
+    )
+    found += _reading()
+    if as_json:
+        print(json.dumps([figure.as_json() for figure in found], indent=1))
+        return OK
+    console.print(table(found))
+    for name, ns in medians.items():
+        if name.startswith(("BM_LabCycle", "term_")):
+            console.print(f"{name:60} {ns / 1000:9.2f} µs")
+    for module in MODULES:
+        run([*prefix, sys.executable, "-m", module], console, module)
+    return OK
+
+
+def _kernels() -> dict:
+    """What limber-bench reports. MuJoCo, if it is there, reads the arm from a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        arm = Path(folder) / "openarm.xml"
+        export = [sys.executable, "-m", "limber", "export", "mjcf", "openarm", "--out", str(arm)]
+        run(export, None, "limber export mjcf")
+        env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm)}
+        return json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+
+
+def _reading() -> list[Figure]:
+    with tempfile.TemporaryDirectory() as folder:
+        log = str(Path(folder) / "run.lcmlog")
+        run([released("limber-lab"), str(ROOT / READ_SCENARIO), "--log", log], None)
+        return _of_module([], "limber_qa.bench_receiver", log)
+
+
+def _of_module(prefix: list[str], module: str, *options: str) -> list[Figure]:
+    rows = json.loads(run([*prefix, sys.executable, "-m", module, *options], None, module))
+    return [Figure(**row) for row in rows]

@@ -1,0 +1,68 @@
+"""Faults on the bus and what the driver makes of them; the table in docs/bus.md."""
+
+import json
+import subprocess
+from typing import Any
+
+from limber.messages import constants
+from limber.paths import ROOT, program
+from limber.problems import problem
+from limber_qa.written_table import WrittenTable
+
+FAMILIES = {"damiao_mit": "Damiao", "moteus": "moteus", "cia402": "CiA 402"}
+COUNTERS = ("lost", "late", "invalid", "foreign")
+
+
+def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]:
+    """Injects the faults of the bus, or one of any place: a row each, as limber-faults prints."""
+    command = [str(program("limber-faults")), "--phases", str(phases)]
+    command += ["--place", "bus"] if fault is None else [fault]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["faults"]
+
+
+def reaction_text(cell: dict[str, Any] | None) -> str:
+    """ "FALLBACK +3, FAULT +20", "bridged: 1 lost"."""
+    if cell is None:
+        return ""
+    least, most = cell["cycles"]
+    if most < 0:
+        counted = [f"{cell[key]} {key}" for key in COUNTERS if cell[key]]
+        return "bridged: " + ", ".join(counted)
+    state = constants("joint_state_t", "DRIVE_")[cell["state"]].replace("HOLD", "FALLBACK")
+    cycles = f"+{most}" if least == most else f"+{least} to {most}"
+    text = f"{state} {cycles}"
+    if state != "FAULT" and cell["fault_cycles"] >= 0:
+        text += f", FAULT +{cell['fault_cycles']}"
+    return text
+
+
+def cause_text(row: dict[str, Any]) -> str:
+    """The code of JOINT_STATE.fault and the words behind it, of each family where they differ."""
+    found: list[str] = []
+    for cell in row["families"].values():
+        if cell["cycles"][1] < 0:
+            continue
+        words = cell["text"].replace(cell["bus"], "NAME").replace(cell["joint_name"], "JOINT")
+        cause = problem("driver", cell["cause"])
+        text = (cause.code if cause else "none") + (f": {words}" if words else "")
+        if text not in found:
+            found.append(text)
+    return "; ".join(found)
+
+
+def cells(row: dict[str, Any]) -> list[str]:
+    """Fault, its reaction in each family, cause."""
+    families = [reaction_text(row["families"].get(word)) for word in FAMILIES]
+    return [row["name"], *families, cause_text(row)]
+
+
+HEAD = ["fault", *FAMILIES.values(), "code: words"]
+
+
+def _lines() -> list[str]:
+    rows = [HEAD, ["---"] * len(HEAD), *(cells(row) for row in reactions())]
+    return ["| " + " | ".join(row) + " |" for row in rows]
+
+
+TABLE = WrittenTable(ROOT / "docs" / "bus.md", "faults", _lines)

@@ -1,0 +1,180 @@
+"""`limber dev fuzz`: bytes of unknown origin for everything that reads some (tests/fuzz).
+
+Two ways to run the same targets: `replay` tries the kept inputs and seeded mutations of them,
+`search` lets libFuzzer look for new ones. How many inputs each has tried is kept in TRIED.
+"""
+
+import json
+import os
+import re
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from limber import tables
+from limber.errors import InputError, RunError
+from limber.paths import ROOT
+from limber_qa.written_table import WrittenTable
+
+FOLDER = ROOT / "tests" / "fuzz"
+CORPUS = FOLDER / "corpus"
+TRIED = FOLDER / "tried.json"
+OUT = ROOT / "out" / "fuzz"
+# Mutations that `limber test` tries; files go through a folder and a whole loader.
+MUTATIONS = 20_000
+FILE_MUTATIONS = 2_000
+TEXTS = ("robot_yaml", "scenario", "urdf")
+SLOW = ("joint_command", "joint_state", *TEXTS)
+# libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
+SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory")
+LONGEST = dict.fromkeys(SHORT, 256) | dict.fromkeys(TEXTS, 1024)
+WHAT = {
+    "black_box": "messages of any length in a black box of any size",
+    "candump_log": "lines and files of a candump log",
+    "canopen_sdo": "SDO frames, both ways, there and back",
+    "drive_cia402": "what a CiA 402 drive says, as the driver reads it",
+    "drive_damiao": "what a Damiao drive says, as the driver reads it",
+    "drive_moteus": "what a moteus drive says, as the driver reads it",
+    "eval_json": "cases of limber-eval",
+    "joint_command": "bytes of JOINT_TORQUE: the driver's verdict, and what then leaves on the bus",
+    "joint_state": "bytes of JOINT_STATE and of requests: what the controller answers",
+    "lcm_fragments": "fragments of long LCM messages",
+    "lockstep_frame": "TICK and TOCK",
+    "messages": "every type of message",
+    "node_cia402": "frames that an emulated CiA 402 drive receives",
+    "node_damiao": "frames that an emulated Damiao drive receives",
+    "node_moteus": "frames that an emulated moteus drive receives",
+    "robot_yaml": "robot.yaml",
+    "scenario": "scenario files",
+    "shared_memory": "the arm plane's shared memory, into which the other end writes anything",
+    "tip_sensor": "both protocols of the tip sensor, both ways",
+    "torque_gate": "sequences of commands at the gate, against an oracle",
+    "urdf": "URDF files",
+    "virtual_frame": "datagrams of the virtual bus, there and back",
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    target: str
+    inputs: int
+    failure: str = ""
+
+
+def targets(names: list[str]) -> list[str]:
+    """Those with these names; all if there are none."""
+    for name in names:
+        if name not in WHAT:
+            raise InputError(f"no fuzz target '{name}'; there are {', '.join(WHAT)}")
+    return names or list(WHAT)
+
+
+def mutations_of(target: str) -> int:
+    return FILE_MUTATIONS if target in SLOW else MUTATIONS
+
+
+def _build(preset: str, names: list[str]) -> Path:
+    """Returns the folder of the targets' programs."""
+    programs = ["fuzz_targets"] if names == list(WHAT) else [f"fuzz_{name}" for name in names]
+    commands = (
+        ["cmake", "--preset", preset],
+        ["cmake", "--build", "--preset", preset, "--target", *programs],
+    )
+    for command in commands:
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise RunError(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}")
+    return ROOT / "build" / preset / "fuzz"
+
+
+def replay(names: list[str], console: Console, mutations: int | None = None, seed: int = 1) -> bool:
+    """Kept inputs and mutations of them, under sanitizers; True if nothing was found."""
+    folder = _build("asan", names)
+    OUT.mkdir(parents=True, exist_ok=True)
+
+    def one(target: str) -> Outcome:
+        count = mutations_of(target) if mutations is None else mutations
+        failure = OUT / f"{target}-failed"
+        command = [folder / f"fuzz_{target}", CORPUS / target, "--mutations", count]
+        command += ["--seed", seed, "--failure", failure]
+        done = _run(command)
+        if done.returncode != 0:
+            return Outcome(target, 0, f"{done.stderr}\nkept as {failure}")
+        tried = json.loads(done.stdout)
+        return Outcome(target, tried["kept"] + tried["mutations"])
+
+    return _report(_several(one, names), console)
+
+
+def search(names: list[str], console: Console, inputs: int, minutes: float) -> bool:
+    """libFuzzer, until so many inputs or minutes a target; 0: no such bound."""
+    folder = _build("fuzz", names)
+
+    def one(target: str) -> Outcome:
+        found = OUT / target
+        found.mkdir(parents=True, exist_ok=True)
+        command = [folder / f"fuzz_{target}", found, CORPUS / target, "-print_final_stats=1"]
+        command += ["-seed=1", "-timeout=10", f"-artifact_prefix={OUT}/{target}-"]
+        command += [f"-runs={inputs}"] if inputs else []
+        command += [f"-max_total_time={round(60 * minutes)}"] if minutes else []
+        command += [f"-max_len={LONGEST[target]}"] if target in LONGEST else []
+        done = _run(command)
+        executed = re.search(r"number_of_executed_units: (\d+)", done.stderr)
+        count = int(executed[1]) if executed else 0
+        return Outcome(target, count, "" if done.returncode == 0 else done.stderr[-4000:])
+
+    outcomes = _several(one, names)
+    remember({outcome.target: outcome.inputs for outcome in outcomes if not outcome.failure})
+    return _report(outcomes, console)
+
+
+def _run(command: list) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+
+
+def _several(one, names: list[str]) -> list[Outcome]:
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(one, names))
+
+
+def _report(outcomes: list[Outcome], console: Console) -> bool:
+    table = tables.table("<target", ">inputs", "~")
+    for outcome in outcomes:
+        table.add_row(outcome.target, f"{outcome.inputs:,}", tables.verdict(not outcome.failure))
+    console.print(table)
+    for outcome in outcomes:
+        if outcome.failure:
+            console.print(f"{outcome.target}: {outcome.failure}", markup=False, soft_wrap=True)
+    return not any(outcome.failure for outcome in outcomes)
+
+
+def tried() -> dict[str, int]:
+    """Inputs of the longest run of libFuzzer that found nothing, by target."""
+    return json.loads(TRIED.read_text(encoding="utf-8")) if TRIED.exists() else {}
+
+
+def remember(counts: dict[str, int]) -> None:
+    known = tried()
+    for target, count in counts.items():
+        known[target] = max(count, known.get(target, 0))
+    TRIED.write_text(json.dumps(known, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def _lines() -> list[str]:
+    lines = ["| target | what it reads | kept | in `limber test` | longest search |"]
+    lines.append("|---|---|---|---|---|")
+    for target, what in WHAT.items():
+        kept = len(list((CORPUS / target).iterdir()))
+        searched = tried().get(target, 0)
+        lines.append(
+            f"| `{target}` | {what} | {kept} | {kept + mutations_of(target):,} | {searched:,} |"
+        )
+    return lines
+
+
+TABLE = WrittenTable(ROOT / "docs" / "testing.md", "fuzz targets", _lines)

@@ -1,0 +1,195 @@
+"""`limber test`: everything that CI runs, in three lanes beside one another, and one after them."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from rich.console import Console
+
+from limber.errors import InputError, RunError
+from limber.live import network
+from limber.paths import ROOT
+
+JOBS = os.cpu_count() or 1
+PYTEST = [sys.executable, "-m", "pytest"]
+CTEST = ["ctest", "--test-dir", str(ROOT / "build" / "dev"), "--output-on-failure"]
+
+
+def parts(name: str | None = None) -> list[str]:
+    """All parts, or the one with this name."""
+    if name is not None and name not in PARTS:
+        raise InputError(f"no part '{name}'; there are {', '.join(PARTS)}")
+    return list(PARTS) if name is None else [name]
+
+
+def _private() -> list[str]:
+    prefix = [] if network.is_private() else network.private_command()
+    if prefix is None:
+        raise RunError(
+            "the system tests need a private network, which this machine does not permit: "
+            "run as root, or allow unprivileged user namespaces"
+        )
+    return prefix
+
+
+def _threads() -> list[str]:
+    """Driver and recorder under thread sanitizer, beside the plain controller and arm."""
+    return [*_private(), *PYTEST, "tests/threads"]
+
+
+def _system(which: str) -> list[str]:
+    return [*_private(), *PYTEST, "tests/system", "-m", which]
+
+
+def _limber(*words: str) -> list[str]:
+    return [sys.executable, "-m", "limber", *words]
+
+
+def _format() -> list[str]:
+    clang_format = str(Path(sys.executable).parent / "clang-format")
+    return [clang_format, "--dry-run", "-Werror", *map(str, cxx_files())]
+
+
+class Lane(Enum):
+    """Parts of a lane run in order. What is not in real time has the lowest priority."""
+
+    REAL_TIME = "real time"  # the processors are theirs when they need them
+    BUILDS = "builds"  # another build of the C++ code each
+    SIMULATED = "simulated time"
+    LAST = "last"  # alone: drawing without a graphics card takes both processors
+
+
+AT_ONCE = (Lane.REAL_TIME, Lane.LAST)  # their output comes as they run
+
+
+@dataclass(frozen=True)
+class Part:
+    command: Callable[[], list[str]]
+    lane: Lane
+
+
+PARTS: dict[str, Part] = {
+    "ctest": Part(
+        lambda: [*CTEST, "-L", "plain", "--no-tests=error", "-j", str(JOBS)], Lane.REAL_TIME
+    ),
+    "system": Part(lambda: _system("not lockstep and not browser"), Lane.REAL_TIME),
+    # SocketCAN in a guest kernel that has vcan; one guest at a time
+    "vcan": Part(lambda: [*CTEST, "-L", "vcan", "--no-tests=error"], Lane.REAL_TIME),
+    # The other C++ unit tests, built with sanitizers only
+    "sanitizers": Part(
+        lambda: [
+            "env",
+            f"CTEST_PARALLEL_LEVEL={JOBS}",
+            "cmake",
+            "--workflow",
+            "--preset",
+            "asan",
+        ],
+        Lane.BUILDS,
+    ),
+    "threads": Part(_threads, Lane.BUILDS),
+    "fuzz": Part(lambda: _limber("fuzz"), Lane.BUILDS),
+    # By clang and libFuzzer, in which these two bring most of the C++ code
+    "search": Part(
+        lambda: _limber("fuzz", "joint_state", "joint_command", "--inputs", "2000"), Lane.BUILDS
+    ),
+    "messages": Part(lambda: [*PYTEST, "tests/fuzz"], Lane.BUILDS),  # with a program of `fuzz`
+    # What decides whether the arm moves; the other areas take longer
+    "mutation": Part(
+        lambda: _limber("mutation", "gate", "tables", "supervisors", "watches", "--seconds", "90"),
+        Lane.BUILDS,
+    ),
+    "coverage": Part(lambda: _limber("coverage"), Lane.BUILDS),
+    "format": Part(_format, Lane.SIMULATED),
+    "lint": Part(lambda: [sys.executable, "-m", "ruff", "check", "."], Lane.SIMULATED),
+    "repo": Part(lambda: [*PYTEST, "tests/repo"], Lane.SIMULATED),
+    "lockstep": Part(lambda: _system("lockstep"), Lane.SIMULATED),
+    "pytest": Part(
+        lambda: [*PYTEST, "tests/tools", "tests/qa", "tests/lecture/experiments"], Lane.SIMULATED
+    ),
+    "eval": Part(lambda: [*PYTEST, "tests/lecture/eval"], Lane.SIMULATED),
+    "soak": Part(lambda: _limber("soak", "--hours", "0.12"), Lane.SIMULATED),
+    "requests": Part(
+        lambda: _limber("soak", "--robot", "iiwa14", "--any-request", "--hours", "0.05"),
+        Lane.SIMULATED,
+    ),
+    "tutorial": Part(lambda: [*PYTEST, "tests/tutorial"], Lane.SIMULATED),
+    "browser": Part(lambda: _system("browser"), Lane.LAST),
+}
+
+
+def cxx_folders() -> list[Path]:
+    return sorted(path.parent for path in ROOT.glob("*/CMakeLists.txt"))
+
+
+def cxx_files() -> list[Path]:
+    return sorted(
+        path.relative_to(ROOT)
+        for folder in cxx_folders()
+        for pattern in ("*.h", "*.cc")
+        for path in folder.rglob(pattern)
+    )
+
+
+@dataclass(frozen=True)
+class Verdict:
+    name: str
+    passed: bool
+    seconds: float
+
+
+def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
+    """The output comes when the part has ended; of those in real time, at once."""
+    at_once = PARTS[name].lane in AT_ONCE
+    command = [*([] if at_once else ["nice", "-n", "19"]), *command]
+    start = time.monotonic()
+    try:
+        done = subprocess.run(
+            command,
+            cwd=ROOT,
+            check=False,
+            stdout=None if at_once else subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+    except FileNotFoundError as error:
+        raise RunError(f"{command[0]} is missing: start with ./limber test") from error
+    return Verdict(name, done.returncode == 0, time.monotonic() - start), done.stdout or ""
+
+
+def run(names: list[str], console: Console) -> bool:
+    """Runs all parts, also after one has failed; True if all passed."""
+    commands = {name: PARTS[name].command() for name in names}
+    os.environ["LIMBER_INCIDENTS"] = str(ROOT / "out" / "incidents")  # tests crash a lot
+    begun = time.monotonic()
+    verdicts: list[Verdict] = []
+
+    def run_lane(lane: Lane) -> None:
+        for name in names:
+            if PARTS[name].lane is not lane:
+                continue
+            if lane in AT_ONCE:
+                console.rule(name)
+            verdict, output = _run_part(name, commands[name])
+            if output:
+                console.rule(name)
+                print(output, end="", flush=True)
+            verdicts.append(verdict)
+
+    beside = [lane for lane in Lane if lane is not Lane.LAST]
+    with ThreadPoolExecutor(len(beside)) as pool:
+        for lane in [pool.submit(run_lane, lane) for lane in beside]:
+            lane.result()
+    run_lane(Lane.LAST)
+    console.rule("summary")
+    for verdict in sorted(verdicts, key=lambda verdict: names.index(verdict.name)):
+        text = "[green]passed[/]" if verdict.passed else "[bold red]FAILED[/]"
+        console.print(f"{verdict.name:10} {text} {verdict.seconds:6.1f} s")
+    console.print(f"{'all':10} {'':6} {time.monotonic() - begun:6.1f} s")
+    return all(verdict.passed for verdict in verdicts)

@@ -1,0 +1,86 @@
+"""`limber test`: what runs in order, what beside others, and that nothing is lost."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from rich.console import Console
+
+from limber_qa import selftest
+from limber_qa.selftest import Lane, Part
+
+
+def part(code: str, lane: Lane = Lane.REAL_TIME) -> Part:
+    return Part(lambda: [sys.executable, "-c", code], lane)
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    def replace(**chosen: Part) -> None:
+        monkeypatch.setattr(selftest, "PARTS", chosen)
+
+    return replace
+
+
+def test_lanes_run_beside_one_another_and_each_in_order(parts, tmp_path):
+    """`first` waits for what only another lane writes."""
+    wait = "import pathlib, time; p = pathlib.Path({!r})\nwhile not p.exists(): time.sleep(0.01)"
+    one, two = str(tmp_path / "one"), str(tmp_path / "two")
+    parts(
+        first=part(wait.format(one)),
+        second=part(f"open({two!r}, 'x')"),
+        other=part(f"open({one!r}, 'x')", Lane.BUILDS),
+        then=part(wait.format(two), Lane.BUILDS),
+    )
+    assert selftest.run(["first", "second", "other", "then"], Console(width=100))
+
+
+def test_the_last_lane_waits_for_all_others(parts, tmp_path):
+    done = tmp_path / "done"
+    parts(
+        last=part(f"import pathlib; assert pathlib.Path({str(done)!r}).exists()", Lane.LAST),
+        slow=part(f"import time; time.sleep(0.3); open({str(done)!r}, 'x')", Lane.SIMULATED),
+    )
+    assert selftest.run(["last", "slow"], Console(width=100))
+
+
+def test_only_real_time_has_the_usual_priority(parts, tmp_path):
+    note = "import os; open({!r}, 'w').write(str(os.nice(0)))"
+    files = {lane: tmp_path / lane.name for lane in Lane}
+    parts(**{lane.name: part(note.format(str(files[lane])), lane) for lane in Lane})
+    assert selftest.run([lane.name for lane in Lane], Console(width=100))
+    usual = os.nice(0)
+    assert files[Lane.REAL_TIME].read_text() == str(usual)
+    assert files[Lane.BUILDS].read_text() == files[Lane.SIMULATED].read_text() == "19"
+
+
+def test_one_failure_fails_all_and_stops_nothing(parts, tmp_path, capfd):
+    ran = tmp_path / "ran"
+    note = f"open({str(ran)!r}, 'a').write('x'); print('seen')"
+    failing = "import sys; print('bad news'); sys.exit(1)"
+    parts(
+        a=part(note),
+        b=part(failing, Lane.BUILDS),
+        c=part(note, Lane.BUILDS),
+        d=part(note, Lane.SIMULATED),
+    )
+    assert not selftest.run(list("abcd"), Console(width=100))
+    assert ran.read_text() == "xxx"
+    output = capfd.readouterr().out
+    assert output.count("seen") == 3
+    assert "bad news" in output
+    summary = output[output.index("summary") :]
+    assert summary.count("passed") == 3
+    assert summary.count("FAILED") == 1
+
+
+def test_all_good_is_good(parts):
+    parts(a=part(""), b=part("", Lane.BUILDS), c=part("", Lane.SIMULATED))
+    assert selftest.run(list("abc"), Console(width=100))
+
+
+def test_every_part_is_a_command_that_exists():
+    for name, made in selftest.PARTS.items():
+        command = made.command()
+        assert subprocess.run(["which", command[0]], capture_output=True).returncode == 0, name

@@ -1,1 +1,0 @@
-"""`limber mutation`: do the tests notice a fault that was put into the code on purpose?"""
