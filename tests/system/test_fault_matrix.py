@@ -1,4 +1,5 @@
-"""Faults of processes, planes and the start (faults/matrix.yaml), injected into the real processes.
+"""Faults of processes, planes and the start, injected into the real processes: the rows of
+qa/faults/matrix.yaml that name these tests.
 
 The referee judges what was on the bus meanwhile: every test here takes `refereed`.
 """
