@@ -20,5 +20,5 @@ app.add_typer(commands.app, name="experiment")
     },
 )
 def evaluate(context: typer.Context) -> None:
-    """Evaluate control laws: JSON from a file or standard input in, JSON out (docs/eval.md)."""
+    """Evaluate control laws: JSON from a file or standard input in, JSON out (lecture/eval.md)."""
     become("limber-eval", *context.args)

@@ -177,4 +177,4 @@ def _lines() -> list[str]:
     return lines
 
 
-TABLE = WrittenTable(ROOT / "docs" / "testing.md", "fuzz targets", _lines)
+TABLE = WrittenTable(ROOT / "qa" / "README.md", "fuzz targets", _lines)

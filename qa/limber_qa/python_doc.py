@@ -1,4 +1,4 @@
-"""The page of `from limber import Arm`, docs/python.md, written from its docstrings."""
+"""The page of `from limber import Arm`, docs/client.md, written from its docstrings."""
 
 import inspect
 from collections.abc import Callable
@@ -58,19 +58,19 @@ def _errors() -> list[str]:
     found = [e for e in vars(arm_errors).values() if inspect.isclass(e)]
     own = [error for error in found if error.__module__ == arm_errors.__name__]
     rows = [f"| `{e.__name__}` | {' '.join(inspect.getdoc(e).split())} |" for e in own]
-    return ["## Errors", "", "| error | |", "|---|---|", *rows]
+    return ["### Errors", "", "| error | |", "|---|---|", *rows]
 
 
 def _lines() -> list[str]:
-    lines = ["## Arm", "", *inspect.getdoc(Arm).splitlines(), ""]
-    lines += ["### Quantities", "", *inspect.getdoc(Quantities).splitlines(), ""]
+    lines = ["### Arm", "", *inspect.getdoc(Arm).splitlines(), ""]
+    lines += ["#### Quantities", "", *inspect.getdoc(Quantities).splitlines(), ""]
     lines += _properties(Quantities)
     for title, owner in CALLS.items():
-        lines += [f"### {title}", "", *_properties(owner), *_calls(owner)]
+        lines += [f"#### {title}", "", *_properties(owner), *_calls(owner)]
     for owner in OTHERS:
-        lines += [f"## {owner.__name__}", "", *inspect.getdoc(owner).splitlines(), ""]
+        lines += [f"### {owner.__name__}", "", *inspect.getdoc(owner).splitlines(), ""]
         lines += [*_properties(owner), *_calls(owner)]
     return lines + _errors()
 
 
-TABLE = WrittenTable(ROOT / "docs" / "python.md", "python", _lines)
+TABLE = WrittenTable(ROOT / "docs" / "client.md", "python", _lines)

@@ -1,4 +1,4 @@
-"""docs/python.md against the docstrings, and what `import limber` costs."""
+"""docs/client.md against the docstrings, and what `import limber` costs."""
 
 import inspect
 import subprocess

@@ -67,7 +67,7 @@ def _word(passed: bool, known_failing: str) -> str:
 
 @app.command(epilog="Example: limber dev faults report")
 def report(phases: Phases = 20) -> None:
-    """Run the whole matrix in lock step and write docs/fault_matrix.md."""
+    """Run the whole matrix in lock step and write qa/fault_matrix.md."""
     from limber_qa.faults import report as module
 
     path, failed = module.write(phases)

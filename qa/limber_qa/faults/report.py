@@ -1,4 +1,4 @@
-"""Writes the page of the fault matrix, docs/fault_matrix.md: every row with its worst number."""
+"""Writes the page of the fault matrix, qa/fault_matrix.md: every row with its worst number."""
 
 from pathlib import Path
 
@@ -6,16 +6,16 @@ from limber.paths import ROOT
 from limber_qa.faults.lockstep import RunResult, run_row
 from limber_qa.faults.matrix import TESTS, Row, read_matrix
 
-PAGE = ROOT / "docs" / "fault_matrix.md"
+PAGE = ROOT / "qa" / "fault_matrix.md"
 
 HEAD = """# The fault matrix
 
 What may fail, what limber has to make of it, and whether it does. The rows, and what they expect,
-are in [qa/faults/matrix.yaml](../qa/faults/matrix.yaml); `limber dev faults report` runs them and
-writes this page, `limber dev faults run ROW` runs one. *Safe frame*: the first frame on the bus
-that no longer has a drive follow the controller, counted from the injection to the slowest drive,
-the worst of all phases, as [the referee](referee.md) reads it from the CAN trace. A *failing* row
-is wrong today.
+are in [faults/matrix.yaml](faults/matrix.yaml); `limber dev faults report` runs them and writes
+this page, `limber dev faults run ROW` runs one. *Safe frame*: the first frame on the bus that no
+longer has a drive follow the controller, counted from the injection to the slowest drive, the worst
+of all phases, as [`limber dev check-trace`](check_trace.md) reads it from the CAN trace. A
+*failing* row is wrong today.
 """
 
 
