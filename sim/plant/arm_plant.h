@@ -14,9 +14,9 @@
 #include <memory>
 
 #include "scenarios/loader/scenario.h"
+#include "sim/model/link_dynamics.h"
 #include "sim/plant/arm_state.h"
 #include "sim/plant/force_model.h"
-#include "sim/plant/link_dynamics.h"
 
 namespace limber::sim {
 

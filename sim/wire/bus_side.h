@@ -7,7 +7,7 @@
 
 #include "drivers/can/can_bus.h"
 #include "robots/loader/adapter.h"
-#include "sim/nodes/inbox.h"
+#include "sim/wire/inbox.h"
 #include "sim/wire/wire.h"
 
 namespace limber::sim {

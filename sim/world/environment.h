@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/plant/link_dynamics.h"
+#include "sim/model/link_dynamics.h"
 #include "sim/world/push.h"
 #include "sim/world/wall.h"
 

@@ -4,7 +4,7 @@
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
 
-#include "sim/plant/arm_model.h"
+#include "sim/model/arm_model.h"
 #include "sim/world/push.h"
 #include "sim/world/wall.h"
 

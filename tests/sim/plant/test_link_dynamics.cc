@@ -8,7 +8,7 @@
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
-#include "sim/plant/link_dynamics.h"
+#include "sim/model/link_dynamics.h"
 #include "tests/sim/test_arms.h"
 
 namespace limber::sim::test_link_dynamics {

@@ -1,4 +1,4 @@
-#include "sim/plant/arm_model.h"
+#include "sim/model/arm_model.h"
 
 namespace limber::sim {
 namespace {

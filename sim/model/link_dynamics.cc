@@ -1,4 +1,4 @@
-#include "sim/plant/link_dynamics.h"
+#include "sim/model/link_dynamics.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include <array>
 
 #include "dynamics/arm_kernel.h"
-#include "sim/plant/arm_model.h"
+#include "sim/model/arm_model.h"
 
 namespace limber::sim {
 
