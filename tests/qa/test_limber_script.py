@@ -82,6 +82,21 @@ def test_two_at_once_take_turns(tree):
     assert steps(tree) == ["start", "end", "start", "end"]
 
 
+@pytest.mark.parametrize(
+    ("words", "built"),
+    [
+        (("test", "lint"), False),
+        (("dev", "test", "lint"), False),
+        (("test", "--quick"), False),
+        (("test", "eval"), True),
+        (("dev", "test", "eval"), True),
+    ],
+)
+def test_a_part_of_the_tests_builds_only_what_it_needs(tree, words, built):
+    assert start(tree, *words).communicate(timeout=20) == (f"hand over: {' '.join(words)}\n", "")
+    assert steps(tree) == (["start", "end"] if built else [])
+
+
 def test_nobody_waits_for_the_program(tree):
     """The turn is over when ./limber hands over; children of the program do not keep it either."""
     long = start(tree, "run", LIMBER_S="20")

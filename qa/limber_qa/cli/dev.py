@@ -13,14 +13,22 @@ from limber_qa import selftest
 app = typer.Typer(help="Test limber itself; only in a clone.", no_args_is_help=True)
 
 
-@app.command(epilog="Example: limber dev test pytest")
+@app.command(epilog="Example: limber dev test --quick")
 def test(
     part: Annotated[
         str | None,
         typer.Argument(help=f"One part: {', '.join(selftest.PARTS)}."),
     ] = None,
+    quick: Annotated[
+        bool,
+        typer.Option("--quick", help="Format, lint, and the unit tests of what changed."),
+    ] = False,
 ) -> None:
     """Run all the tests, as CI does."""
+    if quick:
+        from limber_qa import quick as module
+
+        raise typer.Exit(OK if module.run() else OUT_OF_TOLERANCE)
     passed = selftest.run(selftest.parts(part), console)
     raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
 
