@@ -1,8 +1,16 @@
 # Everything limber is built from. LCM comes from the Python environment that ./limber makes (the wheel carries headers,
 # library and lcm-gen: one version for C++ and Python), the rest from the distribution.
-set(LIMBER_VENV ${CMAKE_SOURCE_DIR}/.venv CACHE PATH "Python environment made by ./limber")
+set(environment ${CMAKE_SOURCE_DIR}/.venv)
+if(NOT EXISTS ${environment}/bin/lcm-gen)
+  set(environment ${CMAKE_BINARY_DIR}/python)
+endif()
+set(LIMBER_VENV ${environment} CACHE PATH "Python environment: ./limber's, else one with what the build alone needs")
 if(NOT EXISTS ${LIMBER_VENV}/bin/lcm-gen)
-  message(FATAL_ERROR "There is no Python environment in ${LIMBER_VENV}: run ./limber once; it makes it and builds. Then cmake works as usual.")
+  message(STATUS "Making a Python environment in ${LIMBER_VENV}")
+  file(STRINGS ${CMAKE_SOURCE_DIR}/pyproject.toml needed REGEX "^  \"(lcm|pyyaml)[=>]")
+  list(TRANSFORM needed REPLACE "^  \"([^\"]+)\".*" "\\1")
+  execute_process(COMMAND python3 -m venv ${LIMBER_VENV} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${LIMBER_VENV}/bin/python -m pip install --quiet --disable-pip-version-check ${needed} COMMAND_ERROR_IS_FATAL ANY)
 endif()
 find_program(LIMBER_PYTHON python HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)
 find_program(LIMBER_LCM_GEN lcm-gen HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)

@@ -119,6 +119,14 @@ def test_a_copied_tree_is_configured_for_its_new_place(tree):
     assert steps(copy) == ["configure", "start", "end"]
 
 
+def test_a_build_without_limbers_environment_is_configured_for_it(tree):
+    """`cmake --preset dev` alone makes an environment with what the build needs, and no more."""
+    cache = tree / "build" / "dev" / "CMakeCache.txt"
+    with open(cache, "a", encoding="utf-8") as file:
+        file.write(f"LIMBER_VENV:PATH={tree}/build/dev/python\n")
+    assert start(tree, "lab").communicate(timeout=20)[1] == "limber: configuring the build\n"
+
+
 def test_through_a_link_and_from_elsewhere(tree, tmp_path, monkeypatch):
     (tmp_path / "link").symlink_to(tree)
     monkeypatch.chdir("/")
