@@ -13,8 +13,6 @@
 namespace limber {
 namespace {
 
-constexpr std::array kModeNames = {"BOOT",   "INIT",      "IDLE",  "HOLD",
-                                   "ACTIVE", "SOFT_STOP", "FAULT", "ESTOP"};
 constexpr std::array kKindNames = {"mode", "goal", "gains"};
 
 template <typename Names>
@@ -54,7 +52,7 @@ void ControllerLog::note(const controller_status_t& status, std::int8_t driver_f
   const std::string where = joint < joints_.size() ? joints_[joint] : "";
   mode_ = status.mode;
   reason_ = status.reason;
-  const std::string mode = std::string("mode ") + name_in(kModeNames, mode_);
+  const std::string mode = std::string("mode ") + name_in(controller::kModeNames, mode_);
   if (!caused) return spdlog::info(mode);
   const Problem* problem = find_problem(problems::kController, reason_);
   const bool wanted = reason_ == controller_status_t::REASON_DRIVER_FAULT &&

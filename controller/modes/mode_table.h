@@ -1,6 +1,7 @@
 // The controller's modes and what makes them change: one table, nothing else decides.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limber/controller_status_t.hpp>
 #include <span>
@@ -21,6 +22,9 @@ enum class Mode : std::int8_t {
   kEstop = controller_status_t::MODE_ESTOP,         ///< latched; a hardware stop is pressed
 };
 inline constexpr int kModes = 8;
+/// As users read them, by Mode.
+inline constexpr std::array<const char*, kModes> kModeNames = {
+    "BOOT", "INIT", "IDLE", "HOLD", "ACTIVE", "SOFT_STOP", "FAULT", "ESTOP"};
 
 enum class Event : std::uint8_t {
   // what a client asks

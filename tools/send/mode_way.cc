@@ -26,8 +26,6 @@ constexpr std::array<Request, 4> kRequests{{
     {mode_request_t::REQUEST_ACTIVE, Event::kRequestActive},
     {mode_request_t::REQUEST_ACKNOWLEDGE, Event::kRequestAcknowledge},
 }};
-constexpr std::array<const char*, controller::kModes> kModes{
-    "BOOT", "INIT", "IDLE", "HOLD", "ACTIVE", "SOFT STOP", "FAULT", "ESTOP"};
 
 // The fewest requests whose last is `wanted`; empty if none leads there.
 std::string way_to(const Request& wanted, Mode mode) {
@@ -58,7 +56,8 @@ std::string not_in_mode(std::int8_t mode, const request_answer_t& answer) {
     if (request.number == number) wanted = &request;
   if (wanted == nullptr || mode < 0 || mode >= controller::kModes) return answer.reason;
   const std::string word = of_mode ? wanted->word() : "goal";
-  const std::string refused = word + " is not taken in " + kModes[static_cast<std::size_t>(mode)];
+  const std::string refused =
+      word + " is not taken in " + controller::kModeNames[static_cast<std::size_t>(mode)];
   switch (const Mode now{mode}; now) {
     case Mode::kBoot:
     case Mode::kInit:
