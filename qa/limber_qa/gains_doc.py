@@ -55,7 +55,12 @@ def _lines() -> list[str]:
     lines += [_row(row) for row in numbers]
     lines += ["", "| choice | what | words | default |", "|---|---|---|---|"]
     lines += [_row(row) for row in choices]
-    lines += ["", "Of single laws:", "", "| key | law | what | range or words | default |"]
+    lines += [
+        "",
+        "Parameters of single laws:",
+        "",
+        "| key | law | what | range or words | default |",
+    ]
     lines += ["|---|---|---|---|---|"]
     lines += [_row(row, law["name"]) for law in found["laws"] for row in law["parameters"]]
     lines += ["", "*: demonstrates a mistake; refused unless every bus is simulated."]
