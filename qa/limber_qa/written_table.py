@@ -34,7 +34,7 @@ COLUMNS = 118
 
 
 def _wrapped(line: str) -> list[str]:
-    """Prose within COLUMNS, code between backquotes in one piece; tables and headings as they are."""
+    """Prose within COLUMNS, code between backquotes in one piece; tables and headings stay."""
     if len(line) <= COLUMNS or line.startswith(("|", "#", "**")):
         return [line]
     kept = re.sub("`[^`]*`", lambda code: code[0].replace(" ", "\0"), line)
