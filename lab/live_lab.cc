@@ -78,6 +78,7 @@ void LiveLab::cycle() {
   told_.note(*lab_);
   if (frames_ != nullptr) frames_->write_cycle(lab_->state().time_ns);
   user_.handle_waiting(kRequestsAtOnce);
+  lab_->controller().count_undecodable(user_.undecodable());
 }
 
 void LiveLab::wait_until_due() {

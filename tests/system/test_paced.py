@@ -10,6 +10,7 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
+import lcm
 import numpy as np
 import pytest
 import yaml
@@ -18,7 +19,7 @@ from limber import Arm
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from same_bytes import expect_equal, of_the_lab, of_three_processes, payloads
-from stack import BIN, ROOT
+from stack import BIN, ROOT, USER_URL
 
 LIMBER = str(ROOT / ".venv" / "bin" / "limber")
 LOOP = "while True: pass"
@@ -159,6 +160,8 @@ def test_one_process_is_a_running_arm(tmp_path):
             assert arm.simulated
             arm.wait(until=lambda state: state.time_s > 1.7)  # the scenario's own lease is over
             arm.activate()
+            for garbage in (b"", b"\xff" * 40):
+                lcm.LCM(USER_URL).publish("MODE_REQUEST", garbage)
             start = arm.goal
             there = arm.move([0, 0, 0.03], duration_s=0.5)
             np.testing.assert_allclose(there.goal.p, np.add(start.p, [0, 0, 0.03]), atol=1e-9)
@@ -174,9 +177,9 @@ def test_one_process_is_a_running_arm(tmp_path):
         shown, _ = running.communicate(timeout=300)
     assert running.returncode == 0, shown
     assert "stopped" in shown
-    assert len(payloads(folder / "run.lcmlog")["JOINT_STATE"]) > 1000
-    import lcm
-
+    recorded = payloads(folder / "run.lcmlog")
+    assert len(recorded["JOINT_STATE"]) > 1000
+    assert Status.decode(recorded["CONTROLLER_STATUS"][-1]).messages_undecodable == 2
     channels = {event.channel for event in lcm.EventLog(str(folder / "run.lcmlog"))}
     assert {"COMPLIANCE_GOAL", "MODE_REQUEST", "PUSH", "REQUEST_ANSWER"} <= channels
 
