@@ -253,7 +253,11 @@ void ArmDrives::close_cycle(std::int64_t cycle, double time_s) noexcept {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     ArmJoint& joint = joints_[i];
     joint.close_cycle(machine_.state(), cycle, time_s);
-    if (in(DriveState::kOn)) rest_torque_[i].add(torque_[i].tau, joint.theta_dot());
+    if (in(DriveState::kOn)) {
+      rest_torque_[i].add(torque_[i].tau, joint.theta_dot());
+    } else {
+      rest_torque_[i].forget();
+    }
   }
 }
 

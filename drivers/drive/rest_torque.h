@@ -26,6 +26,9 @@ class RestTorque {
     mean_ += (torque - mean_) / static_cast<double>(count_);
   }
 
+  /// The controller's torque is not followed: what was before is another load's.
+  void forget() noexcept { count_ = 0; }
+
   bool known() const noexcept { return count_ == cycles_; }
   double mean() const noexcept { return mean_; }
 
