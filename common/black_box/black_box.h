@@ -23,8 +23,8 @@ namespace limber {
 /// writing to it is no system call. After a fault a copy is kept as an incident: a file with what
 /// came before and kAfter_s of what came after. What a process that was killed has left is kept by
 /// the next one of its name. Incidents lie in $LIMBER_INCIDENTS, else in limber/incidents of
-/// $XDG_STATE_HOME or ~/.local/state; the oldest beyond kIncidents are deleted. `limber log black-box`
-/// reads them.
+/// $XDG_STATE_HOME or ~/.local/state; the oldest beyond kIncidents are deleted. `limber log
+/// black-box` reads them.
 ///
 /// File: kHeaderBytes of text ("limber-black-box/1", then key: value lines, zeros), then the
 /// EventRing, whose times are CLOCK_MONOTONIC.

@@ -30,23 +30,23 @@ class InitWatch {
       return {};
     }
     if (states_++ == 0) begun_ns_ = state.time_ns;
-    for (int i = 0; i < state.num_joints && i < kMaxJoints; ++i)
-      late_[static_cast<std::size_t>(i)] +=
-          (state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0;
+    Finding worst{};
+    int joint = 0;
+    for (std::int64_t& late : late_) {
+      if (joint == state.num_joints) break;
+      late += (state.joint_flags[joint] & joint_state_t::JOINT_FRESH) == 0;
+      const double share = static_cast<double>(late) / static_cast<double>(states_);
+      if (share > worst.share) worst = {joint, share};
+      ++joint;
+    }
     if (told_ || state.time_ns - begun_ns_ < kPatience_ns) return {};
     told_ = true;
-    Finding worst{0, 0.0};
-    for (int i = 0; i < state.num_joints && i < kMaxJoints; ++i) {
-      const double share =
-          static_cast<double>(late_[static_cast<std::size_t>(i)]) / static_cast<double>(states_);
-      if (share > worst.share) worst = {i, share};
-    }
     return worst;
   }
 
  private:
   std::int64_t states_ = 0;
-  std::int64_t begun_ns_ = 0;
+  std::int64_t begun_ns_{};
   std::array<std::int64_t, kMaxJoints> late_{};
   bool told_ = false;
 };

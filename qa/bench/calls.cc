@@ -22,8 +22,8 @@
 #include <string>
 #include <string_view>
 
-#include "qa/bench/held_arm.h"
 #include "common/program.h"
+#include "qa/bench/held_arm.h"
 #include "tests/support/allocation_counter.h"
 
 using namespace limber;

@@ -5,11 +5,11 @@
 
 #include <string>
 
-#include "qa/bench/held_arm.h"
 #include "controller/arm_controller.h"
 #include "controller/laws/registry.h"
 #include "controller/modes/state_judge.h"
 #include "lab/lab.h"
+#include "qa/bench/held_arm.h"
 #include "robots/loader/default_gains.h"
 
 namespace {

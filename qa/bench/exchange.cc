@@ -19,7 +19,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "qa/bench/child_process.h"
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "common/latency_histogram.h"
@@ -31,6 +30,7 @@
 #include "drivers/can/virtual_bus.h"
 #include "drivers/can/virtual_frame.h"
 #include "drivers/processes/wait_for_replies.h"
+#include "qa/bench/child_process.h"
 #include "sim/simulator.h"
 
 using namespace limber;

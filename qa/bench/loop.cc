@@ -16,7 +16,6 @@
 #include <limber/mode_request_t.hpp>
 #include <stdexcept>
 
-#include "qa/bench/udp_ping.h"
 #include "common/arm_plane/arm_plane.h"
 #include "common/clock.h"
 #include "common/latency_histogram.h"
@@ -24,6 +23,7 @@
 #include "common/program.h"
 #include "common/realtime.h"
 #include "lcmtypes/channels.h"
+#include "qa/bench/udp_ping.h"
 #include "robots/loader/load_robot.h"
 
 using namespace limber;

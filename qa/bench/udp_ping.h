@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "qa/bench/child_process.h"
 #include "common/clock.h"
 #include "common/file_descriptor.h"
 #include "common/realtime.h"
+#include "qa/bench/child_process.h"
 
 namespace limber::bench {
 

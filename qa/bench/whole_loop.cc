@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "qa/bench/udp_ping.h"
 #include "common/clock.h"
 #include "common/lcm_port.h"
 #include "common/program.h"
 #include "common/realtime.h"
 #include "lcmtypes/channels.h"
+#include "qa/bench/udp_ping.h"
 #include "scenarios/loader/scenario.h"
 
 using namespace limber;

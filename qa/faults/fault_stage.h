@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "drivers/families/drive_family.h"
-#include "qa/faults/tampered_bus.h"
 #include "lab/frame_log.h"
 #include "lab/lab.h"
+#include "qa/faults/tampered_bus.h"
 
 namespace limber::faults {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "robots/loader/load_robot.h"
 #include "qa/soak/any_request.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::soak {
 

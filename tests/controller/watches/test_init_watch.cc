@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <initializer_list>
+
 #include "controller/watches/init_watch.h"
 
 namespace limber::test_init_watch {
@@ -38,6 +40,48 @@ TEST(InitWatch, NamesTheJointThatIsLateAndHowOften) {
   ASSERT_TRUE(told);
   EXPECT_EQ(told->joint, 1);
   EXPECT_NEAR(told->share, 1.0 / 14.0, 0.001);
+}
+
+joint_state_t off_at(std::int64_t time_ns, int joints) {
+  joint_state_t state{};
+  state.time_ns = time_ns;
+  state.num_joints = static_cast<std::int8_t>(joints);
+  state.drive_state = joint_state_t::DRIVE_OFF;
+  for (auto& flags : state.joint_flags) flags = joint_state_t::JOINT_FRESH;
+  return state;
+}
+
+/// What is found two seconds after the first state, in each of which these joints are late.
+InitWatch::Finding found(int joints, std::initializer_list<int> late) {
+  InitWatch watch;
+  std::optional<InitWatch::Finding> told;
+  for (const std::int64_t time_ns : {std::int64_t{5}, 5 + InitWatch::kPatience_ns}) {
+    joint_state_t state = off_at(time_ns, joints);
+    for (const int joint : late) state.joint_flags[joint] = 0;
+    told = watch.note(kInit, state);
+  }
+  EXPECT_TRUE(told);
+  return told.value_or(InitWatch::Finding{-1, -1.0});
+}
+
+TEST(InitWatch, NamesTheFirstOfThoseThatAreLateAlike) {
+  EXPECT_EQ(found(2, {0}).joint, 0);
+  EXPECT_EQ(found(2, {0, 1}).joint, 0);
+  EXPECT_EQ(found(3, {1, 2}).joint, 1);
+  EXPECT_EQ(found(16, {15}).joint, 15);
+  EXPECT_EQ(found(16, {15}).share, 1.0);
+}
+
+TEST(InitWatch, CountsTheArmsJointsAlone) {
+  EXPECT_EQ(found(2, {2, 15}).share, 0.0);
+  EXPECT_EQ(found(2, {}).joint, 0);
+}
+
+TEST(InitWatch, HasPatienceForTwoSeconds) {
+  InitWatch watch;
+  EXPECT_FALSE(watch.note(kInit, off_at(7, 1)));
+  EXPECT_FALSE(watch.note(kInit, off_at(6 + InitWatch::kPatience_ns, 1)));
+  EXPECT_TRUE(watch.note(kInit, off_at(7 + InitWatch::kPatience_ns, 1)));
 }
 
 TEST(InitWatch, WaitsForDrivesThatAreStillBeingSetUp) {
