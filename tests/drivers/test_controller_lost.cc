@@ -111,10 +111,10 @@ TEST(ControllerLostTest, WhatKeptItBeforeTheDrivesHeldIsForgotten) {
   ASSERT_EQ(arm.state->drive_state, kFallback);
   arm.command.tau[0] = 0.4;
   arm.command.tau_gravity[0] = 0.1;
-  for (int i = 0; i < 50 && arm.state->drive_state != +joint_state_t::DRIVE_ON; ++i) {
+  for (int i = 0; i < 50 && arm.state->drive_state != kOn; ++i) {
     arm.cycle_with(i == 0 ? joint_command_t::REQUEST_ACKNOWLEDGE : kRequestOn);
   }
-  ASSERT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
+  ASSERT_EQ(arm.state->drive_state, kOn);
   for (int i = 0; i < 150; ++i) arm.cycle_with(kRequestOn);  // less than a rest takes
   for (int i = 0; i < 90; ++i) arm.half_cycle();
   EXPECT_NEAR(torque_sent(arm, 0), 0.1, 1e-2);
@@ -149,7 +149,7 @@ TEST(ControllerLostTest, AnAnswerInTimeResetsTheCount) {
     arm.half_cycle();
     arm.half_cycle();
     ASSERT_EQ(arm.answer_state(), 0);
-    ASSERT_EQ(arm.state->drive_state, +joint_state_t::DRIVE_ON);
+    ASSERT_EQ(arm.state->drive_state, kOn);
   }
 }
 
