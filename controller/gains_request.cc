@@ -14,19 +14,15 @@ GainsRequest::GainsRequest(const LoadedRobot& robot, CycleParts* parts, Allowed 
       unstable_allowed_(allowed.unstable_gains),
       accepted_fields_(limber::default_gains(robot.robot)),
       accepted_(parts->gains.target()),
-      candidate_(accepted_),
-      law_(parts->laws.selected()) {}
+      candidate_(accepted_) {}
 
 Refusal GainsRequest::take(const compliance_gains_t& message) noexcept {
   compliance_gains_t fields =
       accepted_fields_;  // its strings and lists are empty: nothing is allocated
   merge_gains(message, &fields);
-  const int before = law_;
+  law_ = message.law.empty() ? parts_.laws.selected() : find_law(message.law);
   const Refusal refusal = check(message, fields);
-  if (refusal != nullptr) {
-    law_ = before;
-    return refusal;
-  }
+  if (refusal != nullptr) return refusal;
   accepted_fields_ = fields;
   accepted_ = candidate_;
   return refusal;
@@ -37,7 +33,6 @@ Refusal GainsRequest::check(const compliance_gains_t& message,
   const CycleParts& p = parts_;
   if (const char* reason = gains_check_.check(message, fields))
     return {request_answer_t::REFUSED_GAINS_RANGE, reason};
-  if (!message.law.empty()) law_ = find_law(message.law);
   if (law_ < 0) return {request_answer_t::REFUSED_MALFORMED, "no control law has this name"};
   const LawEntry& wanted = LawBank::entry(law_);
   candidate_ = accepted_;

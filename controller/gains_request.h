@@ -26,7 +26,7 @@ class GainsRequest {
   GainsRequest(const LoadedRobot& robot, CycleParts* parts, Allowed allowed);
 
   /// Nothing: accepted, perhaps with a warning, and gains() and law() are the new ones; else why
-  /// not; then nothing has changed.
+  /// not; then gains() are those of before, and law() is none.
   Refusal take(const compliance_gains_t& message) noexcept;
 
   const Gains& gains() const noexcept { return accepted_; }
@@ -45,7 +45,7 @@ class GainsRequest {
   compliance_gains_t accepted_fields_;  // merged; no parameters
   Gains accepted_;                      // the same, with parameters
   Gains candidate_;
-  int law_;
+  int law_ = 0;
 };
 
 }  // namespace limber::controller

@@ -3,11 +3,11 @@
 import re
 import subprocess
 import sys
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 from limber.errors import RunError
 from limber.paths import ROOT
-from limber_qa.selftest import PYTEST
+from limber_qa.selftest import PARTS, PYTEST, check_format, cxx_files
 
 BUILD = ROOT / "build" / "dev"
 # Sources in Python, and their tests.
@@ -71,12 +71,9 @@ def python_tests(files: list[str]) -> list[str]:
 
 
 def commands(files: list[str]) -> list[list[str]]:
-    python = Path(sys.executable).parent
-    sources = [f for f in files if f.endswith((".h", ".cc")) and (ROOT / f).exists()]
-    made: list[list[str]] = [[str(python / "ruff"), "check", "."]]
-    made += [[str(python / "ruff"), "format", "--check", "."]]
-    if sources:
-        made += [[str(python / "clang-format"), "--dry-run", "-Werror", *sources]]
+    made = [PARTS["lint"].command(), [sys.executable, "-m", "ruff", "format", "--check", "."]]
+    if sources := [path for path in cxx_files() if str(path) in files]:
+        made += [check_format(sources)]
     if programs := unit_tests(files):
         made += [["ninja", "-C", str(BUILD), *programs]]
         made += [[str(BUILD / "tests" / name), "--gtest_brief=1"] for name in programs]

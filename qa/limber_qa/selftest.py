@@ -51,9 +51,10 @@ def _limber(*words: str) -> list[str]:
     return [sys.executable, "-m", "limber", *words]
 
 
-def _format() -> list[str]:
+def check_format(files: list[Path]) -> list[str]:
+    """The command; of files in C++."""
     clang_format = str(Path(sys.executable).parent / "clang-format")
-    return [clang_format, "--dry-run", "-Werror", *map(str, cxx_files())]
+    return [clang_format, "--dry-run", "-Werror", *map(str, files)]
 
 
 class Lane(Enum):
@@ -106,7 +107,7 @@ PARTS: dict[str, Part] = {
         Lane.BUILDS,
     ),
     "coverage": Part(lambda: _limber("coverage"), Lane.BUILDS),
-    "format": Part(_format, Lane.SIMULATED),
+    "format": Part(lambda: check_format(cxx_files()), Lane.SIMULATED),
     "lint": Part(lambda: [sys.executable, "-m", "ruff", "check", "."], Lane.SIMULATED),
     "repo": Part(lambda: [*PYTEST, "tests/repo"], Lane.SIMULATED),
     "lockstep": Part(lambda: _system("lockstep"), Lane.SIMULATED),

@@ -12,13 +12,13 @@ import typer
 from typer.exceptions import TyperException
 
 from limber import __version__
-from limber.cli import (  # export, identify and directions fill groups
+from limber.cli import (
     can,
-    directions,
+    directions,  # noqa: F401 - fills groups.identify
     doctor,
-    export,
+    export,  # noqa: F401 - fills groups.export
     groups,
-    identify,
+    identify,  # noqa: F401 - fills groups.identify
     incident,
     live,
     log,
@@ -40,7 +40,6 @@ app = typer.Typer(
 )
 for module in (run, doctor, live, monitor, log):
     app.add_typer(module.app)
-FILLED = (directions, export, identify)
 groups.log.add_typer(incident.app, name="black-box")
 app.add_typer(groups.log, name="log")
 app.add_typer(groups.identify, name="identify")
