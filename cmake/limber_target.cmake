@@ -1,6 +1,7 @@
 # Options and the functions every folder uses.
 #
 #   limber_sources(RESULT [ONLY folder] [EXCEPT ...])   the sources of a folder
+#   limber_list(SOURCES)                          files that only list what there is
 #   limber_library(NAME SOURCES... [LINK targets...])   static library limber_NAME
 #   limber_program(NAME SOURCES... [LINK targets...])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin
 #   limber_tests(NAME [EXCEPT ...] [LINK targets...] [SHARDS n] [PLAIN])   GoogleTest program of all test_*.cc below, registered with
@@ -93,6 +94,11 @@ function(limber_sources result)
     list(FILTER found INCLUDE REGEX "^${arg_ONLY}")
   endif()
   set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# A file that lists what there is of a kind, and nothing else, in an object file of its own: a test may link another list.
+function(limber_list)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 function(limber_library name)

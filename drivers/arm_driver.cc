@@ -150,7 +150,7 @@ void ArmDriver::route(std::size_t bus, const CanFrame& frame, bool late) noexcep
   } else if (!drives_.receive(bus, frame, late)) {
     buses_[bus].count_foreign();
     // This driver's own frames do not come back to it.
-    const int commanded = drives_.note_foreign(bus, frame);
+    const int commanded = drives_.record_foreign(bus, frame);
     if (commanded >= 0) drives_.apply(DriveEvent::kForeignCommand, commanded);
   }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "drivers/driver_setup.h"
-#include "drivers/protocols/canopen.h"
 #include "drivers/protocols/cycle_frames.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
@@ -16,8 +15,7 @@ constexpr double kSettling_s = 0.1;
 
 std::string line_about(const Drive& motor, const std::string& words) {
   const JointConfig& joint = motor.link().joint();
-  return fmt::format("{} ({}): {}", joint.name,
-                     traits_of(joint.drive.protocol).address(joint.drive), words);
+  return fmt::format("{} ({}): {}", joint.name, joint.drive.protocol->address(joint.drive), words);
 }
 
 std::string out_of_range_line(const ArmJoint& joint) {
@@ -112,9 +110,7 @@ std::string ArmDrives::warning_text(int motor, const DriveWarning& warning) cons
                     warning.temperature_degC, config.warning_temperature_degC));
   }
   if (warning.flagged) add("the drive warns (statusword, bit 7)");
-  if (warning.emergency != 0)
-    add(fmt::format("emergency {:04X}h: {}", warning.emergency,
-                    canopen::emergency_text(warning.emergency)));
+  if (warning.emergency != 0) add(drive.link().emergency_text(warning.emergency));
   return line_about(drive, words.empty() ? "no warning any more" : words);
 }
 
@@ -133,8 +129,7 @@ std::string ArmDrives::error_text(std::size_t joint, std::uint16_t status) const
 std::string ArmDrives::address_text(int joint) const {
   const auto of_motor = [](const ArmJoint& of) {
     const JointConfig& config = of.motors().front().link().joint();
-    return fmt::format("{} ({})", config.name,
-                       traits_of(config.drive.protocol).address(config.drive));
+    return fmt::format("{} ({})", config.name, config.drive.protocol->address(config.drive));
   };
   if (joint >= 0) return of_motor(joints_[static_cast<std::size_t>(joint)]);
   return joints_.size() == 1 ? of_motor(joints_.front())
@@ -226,12 +221,12 @@ Drive* ArmDrives::sender_of(std::size_t bus, const CanFrame& frame) noexcept {
   return nullptr;
 }
 
-int ArmDrives::note_foreign(std::size_t bus, const CanFrame& frame) noexcept {
+int ArmDrives::record_foreign(std::size_t bus, const CanFrame& frame) noexcept {
   int commanded = -1;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     for (Drive& motor : joints_[i].motors()) {
       if (motor.bus() != bus) continue;
-      motor.note_foreign(frame);
+      motor.record_foreign(frame);
       if (motor.link().is_foreign_command(frame)) commanded = static_cast<int>(i);
     }
   }

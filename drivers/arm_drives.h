@@ -73,12 +73,12 @@ class ArmDrives {
 
   // --- from the drives ------------------------------------------------------------------------
 
-  /// What receive() and note_foreign() take of one bus. Allocates: set-up only.
+  /// What receive() and record_foreign() take of one bus. Allocates: set-up only.
   std::vector<CanFilter> receive_filters(std::size_t bus) const;
 
   /// A frame of somebody else. Returns the joint whose drive it commands, or whose settings it
   /// writes; -1: none of this arm.
-  int note_foreign(std::size_t bus, const CanFrame& frame) noexcept;
+  int record_foreign(std::size_t bus, const CanFrame& frame) noexcept;
   /// False if the frame is of no drive of this arm. `late`: it came after its cycle.
   bool receive(std::size_t bus, const CanFrame& frame, bool late) noexcept;
   /// End of the cycle: replies that are missing now are missing.

@@ -15,7 +15,7 @@ constexpr int kSilentCycles = 3;
 double enabling_s(const Robot& robot) {
   double longest_s = 0.0;
   for (const JointConfig& joint : robot.joints)
-    longest_s = std::max(longest_s, traits_of(joint.drive.protocol).enabling_s);
+    longest_s = std::max(longest_s, joint.drive.protocol->enabling_s);
   return longest_s;
 }
 

@@ -11,16 +11,16 @@ void ConfigureDialogue::start() noexcept {
 
 CanFrame ConfigureDialogue::next_frame() noexcept {
   advanced_ = false;  // by an answer that came between the cycles
-  if (done() || (waited_ > 0 && !repeat_)) return family_->state_request();
+  if (done() || (waited_ > 0 && !repeat_)) return codec_->state_request();
   repeat_ = false;
-  return step_ == 0 ? family_->disable() : family_->startup_request(step_index());
+  return step_ == 0 ? codec_->disable() : startup_->request(step_index());
 }
 
 bool ConfigureDialogue::receive(const CanFrame& frame) noexcept {
   // One answer a cycle: a step that was reached in this cycle has no request on its way yet.
   if (expects_state() || failed_ || advanced_) return false;
   double found = 0.0;
-  const Answer answer = family_->check_answer(step_index(), frame, &found);
+  const Answer answer = startup_->check_answer(step_index(), frame, &found);
   if (answer == Answer::kNone) return false;
   failure_.answer = answer;
   failure_.found = found;
@@ -43,8 +43,7 @@ void ConfigureDialogue::note_missing() noexcept {
 
 bool ConfigureDialogue::may_be_unanswered() const noexcept {
   if (done()) return false;
-  return step_ == 0 ? !family_->disable_is_answered()
-                    : !family_->startup_step(step_index()).answered;
+  return step_ == 0 ? !startup_->disable_is_answered() : !startup_->step(step_index()).answered;
 }
 
 void ConfigureDialogue::close_cycle() noexcept {
@@ -53,7 +52,7 @@ void ConfigureDialogue::close_cycle() noexcept {
   if (over) return;
   const bool disabling = step_ == 0;
   if (!disabling && may_be_unanswered()) return go_to(step_ + 1);
-  if (++waited_ < (disabling ? 1 : family_->patience_cycles())) return;
+  if (++waited_ < (disabling ? 1 : startup_->patience_cycles())) return;
   waited_ = 0;
   if (++attempts_ < kAttempts) return;
   if (may_be_unanswered()) return go_to(1);
@@ -72,7 +71,7 @@ void ConfigureDialogue::go_to(int step) noexcept {
   repeat_ = false;
   failure_ = {};
   if (step_ == 0 || done()) return;
-  const StartupStep next = family_->startup_step(step_index());
+  const StartupStep next = startup_->step(step_index());
   failure_.reg = next.reg;
   failure_.expected = next.expected;
 }

@@ -19,8 +19,11 @@ namespace limber {
 
 class ConfigureDialogue {
  public:
-  /// The family outlives the dialogue.
-  explicit ConfigureDialogue(DriveFamily* family) : family_(family) { start(); }
+  /// What the family holds outlives the dialogue.
+  explicit ConfigureDialogue(const DriveFamily& family)
+      : codec_(family.codec.get()), startup_(family.startup.get()) {
+    start();
+  }
 
   void start() noexcept;
 
@@ -38,7 +41,7 @@ class ConfigureDialogue {
   /// times at most.
   void close_cycle() noexcept;
 
-  bool done() const noexcept { return step_ > family_->startup_steps(); }
+  bool done() const noexcept { return step_ > startup_->steps(); }
   bool failed() const noexcept { return failed_; }
 
   const StartupFailure& failure() const noexcept { return failure_; }
@@ -56,7 +59,8 @@ class ConfigureDialogue {
   void note_missing() noexcept;
   void go_to(int step) noexcept;
 
-  DriveFamily* family_;
+  DriveCodec* codec_;
+  StartupDialogue* startup_;
   int step_ = 0;  ///< 0: disabling, i: step i - 1
   int attempts_ = 0;
   std::int64_t waited_ = 0;  ///< cycles since the last attempt

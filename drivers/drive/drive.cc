@@ -12,8 +12,8 @@ constexpr int kHotReplies = 10;
 
 Drive::Drive(const JointConfig& joint, bool fd, double rate_hz, int bridged_cycles)
     : link_(joint, fd, 1.0 / rate_hz, bridged_cycles),
-      configure_(&link_.family()),
-      settings_(std::make_unique<SettingsWatch>(&link_.family())),
+      configure_(link_.family()),
+      settings_(std::make_unique<SettingsWatch>(link_.family().startup.get())),
       fallback_(joint.torque_rate_limit_Nm_per_s / rate_hz),
       watch_(static_cast<int>(std::ceil(rate_hz)), bridged_cycles),
       feedback_(link_),

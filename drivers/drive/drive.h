@@ -32,7 +32,7 @@ class Drive {
   bool ask_for_setting(CanFrame* request) noexcept { return settings_->request(request); }
   void begin_cycle() noexcept;
   /// A frame of somebody else on its bus.
-  void note_foreign(const CanFrame& frame) noexcept { link_.note_foreign(frame); }
+  void record_foreign(const CanFrame& frame) noexcept { link_.record_foreign(frame); }
   /// A frame of this motor's.
   void receive(DriveState state, const CanFrame& frame) noexcept;
   /// One that answers the command of the cycle before: a state is one cycle old.

@@ -45,8 +45,8 @@ class Discovery {
       const std::int64_t now_ns = monotonic_ns();
       if (found_[i] || now_ns < ask_again_ns_[i]) continue;
       const auto bus = static_cast<std::size_t>(motors_[i].drive.bus);
-      buses_[bus]->send(families_[i]->presence_request());
-      ask_again_ns_[i] = now_ns + patience_ns(*families_[i]);
+      buses_[bus]->send(families_[i].startup->presence_request());
+      ask_again_ns_[i] = now_ns + patience_ns(*families_[i].startup);
     }
     // On a simulated wire time stands still until the first cycle.
     for (CanBus* bus : buses_) {
@@ -94,7 +94,7 @@ class Discovery {
   /// Its presence is answered as soon as its commands are, not by a server beside the cycle.
   bool prompt(std::size_t i) const {
     CanFrame frame;
-    return !families_[i]->needs_bus_frame(&frame);
+    return !families_[i].codec->needs_bus_frame(&frame);
   }
 
   /// Sends one motor a request and counts its answers until `listen_ns` after the first one;
@@ -102,13 +102,13 @@ class Discovery {
   int answers(std::size_t i, std::int64_t listen_ns, std::int64_t* first_ns) {
     CanBus* bus = buses_[static_cast<std::size_t>(motors_[i].drive.bus)];
     const std::int64_t start_ns = monotonic_ns();
-    std::int64_t end_ns = start_ns + std::max(kRepeat_ns, patience_ns(*families_[i]));
+    std::int64_t end_ns = start_ns + std::max(kRepeat_ns, patience_ns(*families_[i].startup));
     int count = 0;
-    bus->send(families_[i]->presence_request());
+    bus->send(families_[i].startup->presence_request());
     do {
       CanFrame frame;
       while (bus->receive(std::span(&frame, 1)) == 1) {
-        if (!families_[i]->is_presence(frame)) continue;
+        if (!families_[i].startup->is_presence(frame)) continue;
         if (++count > 1) continue;
         const std::int64_t now_ns = monotonic_ns();
         *first_ns = (frame.timestamp_ns != 0 ? frame.timestamp_ns : now_ns) - start_ns;
@@ -124,11 +124,10 @@ class Discovery {
       if (!found_[i]) list(i, &names);
     }
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (found_[i] || !astray_id_[i]) continue;
-      names += fmt::format(
-          "; {} answers with id 0x{:X} instead of 0x{:X} (Damiao: MST_ID, register "
-          "7)",
-          motors_[i].name, *astray_id_[i], motors_[i].drive.reply_id);
+      if (found_[i] || !wrong_id_[i]) continue;
+      names += fmt::format("; {} answers with id 0x{:X} instead of 0x{:X} ({})", motors_[i].name,
+                           *wrong_id_[i], motors_[i].drive.reply_id,
+                           families_[i].startup->reply_id_setting());
     }
     return names;
   }
@@ -148,14 +147,15 @@ class Discovery {
     const JointConfig& joint = motors_[i];
     const BusConfig& bus = robot_.buses[static_cast<std::size_t>(joint.drive.bus)];
     *names += fmt::format("{}{} ({} on {})", names->empty() ? "" : ", ", joint.name,
-                          traits_of(joint.drive.protocol).address(joint.drive), bus.can);
+                          joint.drive.protocol->address(joint.drive), bus.can);
   }
 
  private:
   std::string commanded_by(int bus, const CanFrame& frame) const {
     std::string names;
     for (std::size_t i = 0; i < motors_.size(); ++i) {
-      if (motors_[i].drive.bus != bus || !families_[i]->is_foreign_command(frame)) continue;
+      if (motors_[i].drive.bus != bus || !families_[i].intruders->is_foreign_command(frame))
+        continue;
       list(i, &names);
       return names + fmt::format(", frame 0x{:X}", frame.id);
     }
@@ -167,15 +167,15 @@ class Discovery {
     motors_.push_back(motor);
   }
   /// A slow drive may still be at work on the last request.
-  std::int64_t patience_ns(const DriveFamily& family) const {
-    const double patience_s = family.patience_cycles() / robot_.rate_hz;
+  std::int64_t patience_ns(const StartupDialogue& startup) const {
+    const double patience_s = startup.patience_cycles() / robot_.rate_hz;
     return std::llround(1e9 * patience_s);
   }
   void mark(int bus, const CanFrame& frame) {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (motors_[i].drive.bus != bus) continue;
-      if (families_[i]->is_mine(frame)) found_[i] = true;
-      if (families_[i]->is_astray(frame)) astray_id_[i] = frame.id;
+      if (families_[i].codec->is_mine(frame)) found_[i] = true;
+      if (families_[i].startup->has_wrong_reply_id(frame)) wrong_id_[i] = frame.id;
     }
   }
 
@@ -183,9 +183,9 @@ class Discovery {
   std::span<CanBus* const> buses_;
   bool lockstep_;
   std::vector<JointConfig> motors_;
-  std::vector<std::unique_ptr<DriveFamily>> families_;
+  std::vector<DriveFamily> families_;
   std::vector<bool> found_;
-  std::vector<std::optional<std::uint32_t>> astray_id_ =
+  std::vector<std::optional<std::uint32_t>> wrong_id_ =
       std::vector<std::optional<std::uint32_t>>(found_.size());
   std::vector<std::int64_t> ask_again_ns_ = std::vector<std::int64_t>(found_.size());
 };

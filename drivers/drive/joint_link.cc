@@ -29,7 +29,7 @@ JointLink::JointLink(const JointConfig& joint, bool fd, double period_s, int bri
       longest_gap_(bridged_cycles + 1),
       jump_per_cycle_(1.5 * (joint.velocity_limit + winding_speed(joint)) * period_s),
       link_jump_per_cycle_(1.5 * joint.velocity_limit * period_s),
-      jump_resolution_(2.0 * family_->angle_resolution()),
+      jump_resolution_(2.0 * family_.codec->angle_resolution()),
       link_jump_resolution_(2.0 * std::ldexp(2.0 * std::numbers::pi, -joint.link_encoder.bits)) {
   seen_.angle_rad = joint.drive.offset_rad;
 }
@@ -40,35 +40,35 @@ CanFrame JointLink::command(const JointCommand& command) noexcept {
   CanFrame frame;
   const DriveCommand wanted{drive_angle(command.theta), 0.0, command.kp, command.kd,
                             sign() * command.tau};
-  commanded_ = family_->command(wanted, memory(), &frame, &sent_);
-  return commanded_ ? frame : family_->state_request();
+  commanded_ = family_.codec->command(wanted, memory(), &frame, &sent_);
+  return commanded_ ? frame : family_.codec->state_request();
 }
 
 CanFrame JointLink::disable() noexcept {
   commanded_ = false;
-  return family_->disable();
+  return family_.codec->disable();
 }
 
 CanFrame JointLink::clear_error() noexcept {
   commanded_ = false;
-  return family_->clear_error();
+  return family_.codec->clear_error();
 }
 
 CanFrame JointLink::enable() noexcept {
   commanded_ = false;
-  return family_->enable(memory());
+  return family_.codec->enable(memory());
 }
 
 CanFrame JointLink::state_request() noexcept {
   commanded_ = false;
-  return family_->state_request();
+  return family_.codec->state_request();
 }
 
 bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept {
   DriveReport report;
   const bool late = age_cycles > 0;
   if (age_cycles_ <= age_cycles) return false;
-  const StateReading reading = family_->read_state(frame, late, &report);
+  const StateReading reading = family_.codec->read_state(frame, late, &report);
   if (reading == StateReading::kPart) return true;
   if (reading == StateReading::kNone) return false;
   if (!plausible(report)) {
@@ -90,7 +90,9 @@ bool JointLink::plausible(const DriveReport& report) const noexcept {
 }
 
 void JointLink::begin_cycle() noexcept {
-  family_->begin_cycle();
+  family_.codec->begin_cycle();
+  family_.startup->begin_cycle();
+  family_.intruders->begin_cycle();
   if (age_cycles_ < kNever - 1) ++age_cycles_;
 }
 

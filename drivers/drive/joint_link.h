@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,22 +46,26 @@ class JointLink {
 
   // --- from the drive -------------------------------------------------------------------------
 
-  bool needs_bus_frame(CanFrame* frame) const noexcept { return family_->needs_bus_frame(frame); }
-  bool is_mine(const CanFrame& frame) const noexcept { return family_->is_mine(frame); }
+  bool needs_bus_frame(CanFrame* frame) const noexcept {
+    return family_.codec->needs_bus_frame(frame);
+  }
+  bool is_mine(const CanFrame& frame) const noexcept { return family_.codec->is_mine(frame); }
   /// Somebody else's frame that commands this drive or writes its settings.
   bool is_foreign_command(const CanFrame& frame) const noexcept {
-    return family_->is_foreign_command(frame);
+    return family_.intruders->is_foreign_command(frame);
   }
-  /// See DriveFamily, likewise the next.
-  void note_foreign(const CanFrame& frame) noexcept { family_->note_foreign(frame); }
-  bool answers_foreign(const CanFrame& frame) noexcept { return family_->answers_foreign(frame); }
-  /// See DriveFamily. Allocates: set-up only.
-  std::vector<CanFilter> receive_filters() const { return family_->receive_filters(); }
+  /// See IntruderRules, likewise the next.
+  void record_foreign(const CanFrame& frame) noexcept { family_.intruders->record_foreign(frame); }
+  bool answers_foreign(const CanFrame& frame) noexcept {
+    return family_.intruders->answers_foreign(frame);
+  }
+  /// See DriveCodec. Allocates: set-up only.
+  std::vector<CanFilter> receive_filters() const { return family_.codec->receive_filters(); }
   /// True if the frame is from this drive, but no reply to a command, and nothing that must be
   /// understood; what it tells is kept.
   bool take_unsolicited(const CanFrame& frame) noexcept {
-    if (!family_->is_unsolicited(frame)) return false;
-    family_->note_unsolicited(frame);
+    if (!family_.codec->is_unsolicited(frame)) return false;
+    family_.codec->record_unsolicited(frame);
     return true;
   }
   /// Stores a state reply; fresh() when all parts of it are there. False, and nothing stored: not
@@ -112,15 +115,21 @@ class JointLink {
   /// The drive's own warning.
   bool warns() const noexcept { return seen_.warns; }
   /// Code of an error that the drive has announced; 0: none.
-  std::uint16_t emergency() const noexcept { return family_->emergency(); }
+  std::uint16_t emergency() const noexcept { return family_.codec->emergency(); }
+  /// Its meaning. Allocates: for messages.
+  std::string emergency_text(std::uint16_t code) const {
+    return family_.codec->emergency_text(code);
+  }
   double angle_resolution() const noexcept { return 0.5 * jump_resolution_; }
   /// Of the last report, in the drive's own numbers.
   std::uint16_t status() const noexcept { return seen_.status; }
   /// The same in words. Allocates: for messages.
-  std::string status_text(std::uint16_t status) const { return family_->status_text(status); }
+  std::string status_text(std::uint16_t status) const { return family_.codec->status_text(status); }
   const JointConfig& joint() const noexcept { return joint_; }
-  DriveFamily& family() noexcept { return *family_; }
-  std::string describe(const StartupFailure& failure) const { return family_->describe(failure); }
+  const DriveFamily& family() const noexcept { return family_; }
+  std::string describe(const StartupFailure& failure) const {
+    return family_.startup->describe(failure);
+  }
 
  private:
   double sign() const noexcept { return joint_.drive.sign; }
@@ -135,7 +144,7 @@ class JointLink {
   DriveMemory memory() const noexcept { return {seen_, age_cycles_ < longest_gap_}; }
 
   JointConfig joint_;
-  std::unique_ptr<DriveFamily> family_;
+  DriveFamily family_;
   int longest_gap_;              ///< cycles
   double jump_per_cycle_;        ///< rad, of the motor
   double link_jump_per_cycle_;   ///< rad

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "drivers/families/drive_family.h"
+#include "drivers/families/startup_dialogue.h"
 
 namespace limber {
 
@@ -13,8 +13,8 @@ namespace limber {
 /// nothing: silent drives are noticed otherwise. Allowed inside the cycle.
 class SettingsWatch {
  public:
-  /// The family outlives the watch.
-  explicit SettingsWatch(DriveFamily* family) noexcept : family_(family) {}
+  /// `startup` outlives the watch.
+  explicit SettingsWatch(StartupDialogue* startup) noexcept : startup_(startup) {}
 
   /// The settings are about to be compared, or written, by the start-up.
   void start() noexcept {
@@ -25,13 +25,13 @@ class SettingsWatch {
   }
   /// The next request; false if the drive has nothing to be read while it is on.
   bool request(CanFrame* frame) noexcept {
-    const int steps = family_->startup_steps();
+    const int steps = startup_->steps();
     if (!waits_ && wrong_ == 0) ++step_;
     for (int tried = 0; tried < steps; ++tried, ++step_) {
       step_ %= steps;
-      if (!family_->may_be_read_again(step_)) continue;
+      if (!startup_->can_be_polled(step_)) continue;
       waits_ = true;
-      *frame = family_->startup_request(step_);
+      *frame = startup_->request(step_);
       return true;
     }
     step_ = kNone;
@@ -41,7 +41,7 @@ class SettingsWatch {
   bool receive(const CanFrame& frame) noexcept {
     if (step_ == kNone) return false;
     double found = 0.0;
-    const Answer answer = family_->check_answer(step_, frame, &found);
+    const Answer answer = startup_->check_answer(step_, frame, &found);
     if (answer == Answer::kNone) return false;
     if (!waits_) return true;
     waits_ = false;
@@ -60,7 +60,7 @@ class SettingsWatch {
   StartupFailure failure() const noexcept {
     const int step = changed_.load(std::memory_order_acquire);
     if (step == kNone) return {};
-    const StartupStep planned = family_->startup_step(step);
+    const StartupStep planned = startup_->step(step);
     return {planned.reg, Answer::kWrong, found_.load(std::memory_order_relaxed), planned.expected};
   }
 
@@ -68,7 +68,7 @@ class SettingsWatch {
   static constexpr int kNone = -1;
   static constexpr int kWrongAnswers = 2;
 
-  DriveFamily* family_;
+  StartupDialogue* startup_;
   int step_ = kNone;  ///< asked for last
   bool waits_ = false;
   int wrong_ = 0;  ///< answers in a row

@@ -1,12 +1,24 @@
-#include "drivers/families/cia402_startup.h"
-
+// The start-up dialogue of a CANopen drive as a table: what is written, what is compared.
+//
+//   NMT pre-operational -> power stage off -> is it the drive that robot.yaml describes ->
+//   mode, limit, watchdog, period, torque loop: written and read back -> PDOs mapped ->
+//   NMT start, answered by the first TPDOs
+//
+// All by SDO (CiA 301), one transfer after the other, each with a second's time. Objects that the
+// profile leaves to the maker may be missing.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
-#include "drivers/protocols/cia402.h"
+#include "drivers/families/cia402_family.h"
+#include "drivers/families/cia402_state.h"
+#include "drivers/protocols/canopen_sdo.h"
+#include "drivers/protocols/cia402_pdos.h"
 
 namespace limber {
 namespace {
@@ -21,7 +33,6 @@ constexpr std::uint32_t kProfile = 402;
 constexpr std::uint32_t kTorqueMode = 1U << (cia402::kCyclicSynchronousTorque - 1);
 constexpr std::uint32_t kPowerBits = 0x07;  // of the statusword: none of them, no torque
 constexpr std::uint32_t kSynchronous = 1;
-constexpr double kMostPermille = 32767.0;
 constexpr std::uint32_t kFaultPowerOff = 0;  // 605Eh
 constexpr std::uint32_t kFaultBrakes = 2;    // by the quick stop's ramp
 constexpr double kCountsAgree = 1e-9;        // of themselves
@@ -70,17 +81,85 @@ CyclePeriod cycle_period(double period_s) noexcept {
   return finest;
 }
 
-}  // namespace
+class Cia402Startup final : public StartupDialogue {
+ public:
+  Cia402Startup(const JointConfig& joint, const cia402::StateLayout& layout, double period_s);
 
-std::uint32_t most_permille(const JointConfig& joint) noexcept {
-  const double limit = std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm);
-  const double permille = 1000.0 * limit / joint.drive.rated_torque_Nm;
-  return whole(std::min(std::floor(permille * (1.0 + 1e-12)), kMostPermille));
-}
+  CanFrame presence_request() const noexcept override {
+    return canopen::encode_sdo_read(canopen::kDeviceType.id, node_);
+  }
+  bool is_presence(const CanFrame& frame) const noexcept override;
+
+  void begin_cycle() noexcept override { first_state_.begin(); }
+  bool disable_is_answered() const noexcept override { return false; }
+  int patience_cycles() const noexcept override { return patience_cycles_; }
+  int steps() const noexcept override { return static_cast<int>(steps_.size()); }
+  StartupStep step(int index) const noexcept override;
+  CanFrame request(int index) const noexcept override;
+  /// What is compared, and the mode in force; of the state the power is awaited to be off.
+  bool can_be_polled(int index) const noexcept override;
+  Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override;
+  std::string describe(const StartupFailure& failure) const override;
+
+ private:
+  enum class Kind : std::uint8_t {
+    kPreOperational,
+    kWrite,
+    kCompare,  ///< the bits of the mask, of what is read, with the value
+    kAwait,    ///< likewise; a drive may take its time
+    kCounts,   ///< one of the numbers that make counts per turn; at the last, that is compared
+    kStart,
+  };
+  /// If the drive has no such object.
+  enum class Absence : std::uint8_t {
+    kRefused,
+    kWarned,
+    kSilent,  ///< nothing to write, or 1
+  };
+  enum class Number : std::uint8_t { kUnsigned, kSigned, kFloat };
+  struct Step {
+    Kind kind;
+    canopen::Object object = {};
+    std::uint32_t value = 0;
+    std::uint32_t mask = 0xFFFFFFFF;
+    Number number = Number::kUnsigned;
+    Absence absence = Absence::kRefused;
+  };
+
+  void plan_identity(const JointConfig& joint);
+  void plan_settings(const JointConfig& joint, double period_s);
+  void plan_torque_loop(const JointConfig& joint);
+  void plan_pdo(std::uint16_t communication, std::uint16_t mapping, std::uint32_t id,
+                std::span<const canopen::Object> objects);
+  void switch_off_tpdo(int k);
+  void write(const canopen::Object& object, std::uint32_t value,
+             Absence absence = Absence::kRefused);
+  void write_and_compare(const canopen::Object& object, std::uint32_t value,
+                         Number number = Number::kUnsigned, Absence absence = Absence::kRefused);
+  void compare(const canopen::Object& object, std::uint32_t value, std::uint32_t mask = 0xFFFFFFFF);
+  void await(const canopen::Object& object, std::uint32_t value, std::uint32_t mask = 0xFFFFFFFF);
+
+  const Step& planned_step(int index) const noexcept {
+    return steps_[static_cast<std::size_t>(index)];
+  }
+  Answer check_first_state(const CanFrame& frame) noexcept;
+  static double value_of(const Step& step, std::uint32_t raw) noexcept;
+  Answer check_absence(const Step& planned, std::uint32_t abort_code, double* found) noexcept;
+  Answer check_counts(const Step& planned, std::uint32_t value, double* found) noexcept;
+
+  std::uint8_t node_;
+  Cia402State first_state_;
+  int tpdos_;
+  double counts_per_turn_;
+  int patience_cycles_;
+  std::vector<Step> steps_;
+  std::array<double, 4> counts_read_{};  ///< in the order of their steps
+};
 
 Cia402Startup::Cia402Startup(const JointConfig& joint, const cia402::StateLayout& layout,
                              double period_s)
     : node_(canopen::node_of(joint.drive.command_id)),
+      first_state_(layout, node_),
       tpdos_(cia402::tpdos_of(layout)),
       counts_per_turn_(joint.drive.counts_per_turn),
       patience_cycles_(static_cast<int>(std::ceil(kPatience_s / period_s))) {
@@ -119,7 +198,7 @@ void Cia402Startup::plan_identity(const JointConfig& joint) {
 void Cia402Startup::plan_settings(const JointConfig& joint, double period_s) {
   write(cia402::kMode, cia402::kCyclicSynchronousTorque);
   await(cia402::kModeInForce, cia402::kCyclicSynchronousTorque);
-  write_and_compare(cia402::kMaxTorque, most_permille(joint));
+  write_and_compare(cia402::kMaxTorque, cia402::most_permille(joint));
   write_and_compare(canopen::pdo_event_timer_ms(canopen::kRpdoCommunication),
                     whole(1000.0 * joint.drive.watchdog_s), Number::kUnsigned, Absence::kWarned);
   write_and_compare(cia402::kConnectionLostOption,
@@ -193,6 +272,12 @@ void Cia402Startup::await(const Object& object, std::uint32_t value, std::uint32
   steps_.push_back({.kind = Kind::kAwait, .object = object, .value = value, .mask = mask});
 }
 
+bool Cia402Startup::is_presence(const CanFrame& frame) const noexcept {
+  canopen::SdoMessage answer;
+  return canopen::decode_sdo_answer(frame, node_, &answer) &&
+         answer.object == canopen::kDeviceType.id;
+}
+
 // --- the dialogue --------------------------------------------------------------------------------
 
 double Cia402Startup::value_of(const Step& step, std::uint32_t raw) noexcept {
@@ -202,15 +287,15 @@ double Cia402Startup::value_of(const Step& step, std::uint32_t raw) noexcept {
   return static_cast<std::int32_t>(raw << unused) >> unused;
 }
 
-StartupStep Cia402Startup::startup_step(int index) const noexcept {
-  const Step& planned = step(index);
+StartupStep Cia402Startup::step(int index) const noexcept {
+  const Step& planned = planned_step(index);
   const double expected =
       planned.kind == Kind::kCounts ? counts_per_turn_ : value_of(planned, planned.value);
   return {planned.object.id.number(), expected, planned.kind != Kind::kPreOperational};
 }
 
-CanFrame Cia402Startup::startup_request(int index) const noexcept {
-  const Step& planned = step(index);
+CanFrame Cia402Startup::request(int index) const noexcept {
+  const Step& planned = planned_step(index);
   switch (planned.kind) {
     case Kind::kPreOperational:
       return canopen::encode_nmt(canopen::NmtCommand::kPreOperational, node_);
@@ -226,14 +311,16 @@ CanFrame Cia402Startup::startup_request(int index) const noexcept {
   return canopen::encode_sdo_read(planned.object.id, node_);
 }
 
-bool Cia402Startup::may_be_read_again(int index) const noexcept {
-  const Step& planned = step(index);
+bool Cia402Startup::can_be_polled(int index) const noexcept {
+  const Step& planned = planned_step(index);
   if (planned.kind == Kind::kAwait) return planned.object.id == cia402::kModeInForce.id;
   return planned.kind == Kind::kCompare || planned.kind == Kind::kCounts;
 }
 
 Answer Cia402Startup::check_answer(int index, const CanFrame& frame, double* found) noexcept {
-  const Step& planned = step(index);
+  const Step& planned = planned_step(index);
+  *found = 0.0;
+  if (planned.kind == Kind::kStart) return check_first_state(frame);
   SdoMessage message;
   if (!canopen::decode_sdo_answer(frame, node_, &message) || message.object != planned.object.id)
     return Answer::kNone;
@@ -246,6 +333,19 @@ Answer Cia402Startup::check_answer(int index, const CanFrame& frame, double* fou
   *found = value_of(planned, raw);
   if (raw == planned.value) return Answer::kRight;
   return planned.kind == Kind::kAwait ? Answer::kNotYet : Answer::kWrong;
+}
+
+/// Only a node that is operational sends PDOs.
+Answer Cia402Startup::check_first_state(const CanFrame& frame) noexcept {
+  switch (first_state_.take(frame)) {
+    case StateReading::kWhole:
+      return Answer::kRight;
+    case StateReading::kPart:
+      return Answer::kNotYet;
+    case StateReading::kNone:
+      break;
+  }
+  return Answer::kNone;
 }
 
 Answer Cia402Startup::check_absence(const Step& planned, std::uint32_t abort_code,
@@ -304,6 +404,13 @@ std::string Cia402Startup::describe(const StartupFailure& failure) const {
       break;
   }
   return fmt::format("{} is {:.10g}, expected {:.10g}", object, failure.found, failure.expected);
+}
+
+}  // namespace
+
+std::unique_ptr<StartupDialogue> cia402_startup(const JointConfig& joint, bool fd,
+                                                double period_s) {
+  return std::make_unique<Cia402Startup>(joint, cia402::layout_of(joint, fd), period_s);
 }
 
 }  // namespace limber

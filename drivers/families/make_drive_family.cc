@@ -1,19 +1,41 @@
+// The list of drive families, and nothing else: docs/adding.md.
+#include <algorithm>
+#include <array>
+
 #include "drivers/families/cia402_family.h"
 #include "drivers/families/damiao_family.h"
 #include "drivers/families/moteus_family.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
+namespace {
 
-std::unique_ptr<DriveFamily> make_drive_family(const JointConfig& joint, bool fd, double period_s) {
-  switch (joint.drive.protocol) {
-    case DriveProtocol::kMoteus:
-      return std::make_unique<MoteusFamily>(joint);
-    case DriveProtocol::kCia402:
-      return std::make_unique<Cia402Family>(joint, fd, period_s);
-    case DriveProtocol::kDamiaoMit:
-      break;
-  }
-  return std::make_unique<DamiaoFamily>(joint, fd);
+struct Row {
+  std::string_view protocol;
+  DriveFamily (*make)(const JointConfig& joint, bool fd, double period_s);
+};
+
+constexpr std::array kFamilies = {
+    Row{"damiao_mit",
+        [](const JointConfig& joint, bool fd, double) -> DriveFamily {
+          return {damiao_codec(joint, fd), damiao_startup(joint, fd), damiao_intruders(joint)};
+        }},
+    Row{"moteus",
+        [](const JointConfig& joint, bool, double) -> DriveFamily {
+          return {moteus_codec(joint), moteus_startup(joint), moteus_intruders(joint)};
+        }},
+    Row{"cia402",
+        [](const JointConfig& joint, bool fd, double period_s) -> DriveFamily {
+          return {cia402_codec(joint, fd), cia402_startup(joint, fd, period_s),
+                  cia402_intruders(joint)};
+        }},
+};
+
+}  // namespace
+
+DriveFamily make_drive_family(const JointConfig& joint, bool fd, double period_s) {
+  return std::ranges::find(kFamilies, joint.drive.protocol->word, &Row::protocol)
+      ->make(joint, fd, period_s);
 }
 
 }  // namespace limber

@@ -122,4 +122,11 @@ bool decode_state(const CanFrame& frame, std::span<const Object> objects,
   return true;
 }
 
+std::uint32_t most_permille(const JointConfig& joint) noexcept {
+  constexpr double kMost = 32767.0;
+  const double limit = std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm);
+  const double permille = 1000.0 * limit / joint.drive.rated_torque_Nm;
+  return static_cast<std::uint32_t>(std::min(std::floor(permille * (1.0 + 1e-12)), kMost));
+}
+
 }  // namespace limber::cia402

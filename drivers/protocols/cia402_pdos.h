@@ -35,6 +35,9 @@ inline StateLayout layout_of(const JointConfig& joint, bool fd) noexcept {
   return {fd, joint.link_encoder.present, joint.torque_sensor.present};
 }
 
+/// Thousandths of the rated torque that the joint's limit allows; more is never commanded.
+std::uint32_t most_permille(const JointConfig& joint) noexcept;
+
 struct DriveCommand {
   std::uint16_t controlword = 0;
   std::int16_t torque_permille = 0;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "drivers/protocols/canopen.h"
-#include "drivers/protocols/mit.h"
 #include "robots/loader/protocols/drive_protocol.h"
 #include "robots/loader/protocols/tip_sensor_protocol.h"
 
@@ -20,25 +18,17 @@ CanFrame empty_frame(std::uint32_t id, int bytes, bool fd) {
 }
 
 std::vector<CanFrame> setting_frames(const DriveConfig& drive, bool fd) {
-  switch (drive.protocol) {
-    case DriveProtocol::kDamiaoMit:
-      return {empty_frame(mit::kRegisterId, 8, fd), empty_frame(drive.reply_id, 8, fd)};
-    case DriveProtocol::kCia402: {
-      const std::uint8_t node = canopen::node_of(drive.command_id);
-      return {empty_frame(canopen::kSdoRequestCode + node, 8, false),
-              empty_frame(canopen::kSdoAnswerCode + node, 8, false)};
-    }
-    case DriveProtocol::kMoteus:
-      break;
-  }
-  return {};
+  if (drive.protocol->setting == nullptr) return {};
+  const SettingFrames setting = drive.protocol->setting(drive);
+  return {empty_frame(setting.request_id, 8, fd && !setting.classic),
+          empty_frame(setting.answer_id, 8, fd && !setting.classic)};
 }
 
 Exchange exchange_with(const std::string& joint, const DriveConfig& drive, bool fd) {
   Exchange out{joint,
                empty_frame(drive.command_id, drive.frames.command, fd),
                {},
-               traits_of(drive.protocol).needs_sync,
+               drive.protocol->needs_sync,
                setting_frames(drive, fd)};
   std::uint32_t reply_id = drive.reply_id;
   for (const int bytes : drive.frames.replies) {

@@ -9,9 +9,6 @@ namespace {
 
 constexpr int kPositionBits = 16;
 constexpr int kBits = 12;  // velocity, kp, kd, torque
-constexpr std::uint8_t kRead = 0x33;
-constexpr std::uint8_t kWrite = 0x55;
-constexpr std::uint8_t kStore = 0xAA;
 constexpr std::uint8_t kStateRequest = 0xCC;
 
 // Torque counts that turn an otherwise saturated command into a special frame, and the first one
@@ -158,12 +155,13 @@ CanFrame encode_special(Special special, std::uint32_t id, bool fd) noexcept {
 }
 
 CanFrame encode_register_read(std::uint16_t id, Register reg, bool fd) noexcept {
-  return register_frame(id, kRead, static_cast<std::uint8_t>(reg), 0, kRegisterId, fd);
+  return register_frame(id, kReadRegister, static_cast<std::uint8_t>(reg), 0, kRegisterId, fd);
 }
 
 CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw_value,
                                bool fd) noexcept {
-  return register_frame(id, kWrite, static_cast<std::uint8_t>(reg), raw_value, kRegisterId, fd);
+  return register_frame(id, kWriteRegister, static_cast<std::uint8_t>(reg), raw_value, kRegisterId,
+                        fd);
 }
 
 CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept {
@@ -190,7 +188,7 @@ bool decode_register(const CanFrame& frame, std::uint16_t id, std::uint8_t opera
                      std::uint32_t* raw_value) noexcept {
   if (!is_plain(frame) || frame.length != 8) return false;
   const auto& d = frame.data;
-  if (operation != kRead && operation != kWrite) return false;
+  if (operation != kReadRegister && operation != kWriteRegister) return false;
   if ((d[0] | d[1] << 8U) != id || d[2] != operation || d[3] != static_cast<std::uint8_t>(reg))
     return false;
   *raw_value = register_value(frame);
@@ -263,9 +261,9 @@ bool decode_register_request(const CanFrame& frame, RegisterRequest* request) no
   if (!is_plain(frame) || frame.extended || frame.id != kRegisterId || frame.length < 4)
     return false;
   const std::uint8_t operation = frame.data[2];
-  const bool known = operation == kRead || operation == kWrite || operation == kStore ||
-                     operation == kStateRequest;
-  if (!known || (operation == kWrite && frame.length != 8)) return false;
+  const bool known = operation == kReadRegister || operation == kWriteRegister ||
+                     operation == kStoreRegister || operation == kStateRequest;
+  if (!known || (operation == kWriteRegister && frame.length != 8)) return false;
   request->id = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
   request->operation = operation;
   request->reg = frame.data[3];

@@ -62,6 +62,9 @@ enum class Register : std::uint8_t {
   kTorqueRange = 23,  ///< float32
 };
 inline constexpr std::uint32_t kRegisterId = 0x7FF;
+inline constexpr std::uint8_t kReadRegister = 0x33;
+inline constexpr std::uint8_t kWriteRegister = 0x55;
+inline constexpr std::uint8_t kStoreRegister = 0xAA;
 
 /// Register kControlMode. Commands of the others than MIT have identifiers of their own.
 enum class ControlMode : std::uint8_t {

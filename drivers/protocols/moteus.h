@@ -7,12 +7,15 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string_view>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/moteus_registers.h"
 
 namespace limber::moteus {
+
+inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 struct Command {
   double position_turns = 0.0;  ///< NaN: where it is

@@ -8,6 +8,7 @@
 #include "drivers/protocols/mit.h"
 #include "qa/faults/fault_table.h"
 #include "qa/faults/state_change.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber::faults {
 namespace {
@@ -81,21 +82,25 @@ void foreign_master(FaultStage* stage) {
   stage->set_each_cycle([stage] {
     CanFrame frame;
     DriveCommand sent;
-    if (stage->family().command({}, {}, &frame, &sent)) stage->send_from_outside(frame);
+    if (stage->family().codec->command({}, {}, &frame, &sent)) stage->send_from_outside(frame);
   });
 }
 
-void foreign_disable(FaultStage* stage) { stage->send_from_outside(stage->family().disable()); }
+void foreign_disable(FaultStage* stage) {
+  stage->send_from_outside(stage->family().codec->disable());
+}
 
 std::uint16_t number_of(const DriveConfig& drive) {
   return static_cast<std::uint16_t>(drive.command_id);
 }
 
+bool is_damiao(const DriveConfig& drive) { return drive.protocol->word == "damiao_mit"; }
+
 /// Damiao: PMAX; CiA 402: the mode, 6060h.
 void foreign_setting(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   stage->send_from_outside(
-      drive.protocol == DriveProtocol::kDamiaoMit
+      is_damiao(drive)
           ? mit::encode_register_write(number_of(drive), mit::Register::kPositionRange,
                                        mit::float_bits(6.0F), false)
           : canopen::encode_sdo_write(cia402::kMode, 1, canopen::node_of(drive.command_id)));
@@ -113,7 +118,7 @@ void watchdog_off_past_the_bus(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   const auto timer = canopen::pdo_event_timer_ms(canopen::kRpdoCommunication);
   stage->simulator().tell_past_the_bus(
-      0, drive.protocol == DriveProtocol::kDamiaoMit
+      0, is_damiao(drive)
              ? mit::encode_register_write(number_of(drive), mit::Register::kTimeout, 0,
                                           stage->bus_config().fd)
              : canopen::encode_sdo_write(timer, 0, canopen::node_of(drive.command_id)));
@@ -144,7 +149,7 @@ void all_silent(FaultStage* stage) {
 }  // namespace
 
 std::vector<Fault> bus_faults() {
-  const std::vector only_damiao = {DriveProtocol::kDamiaoMit};
+  const std::vector<std::string_view> only_damiao = {"damiao_mit"};
   return {
       {.name = "one motor silent", .begin = replies([](auto&, auto*) {}), .most_cycles = 3},
       {.name = "all motors silent", .begin = all_silent, .most_cycles = 3},
@@ -213,14 +218,15 @@ std::vector<Fault> bus_faults() {
        .watched_cycles = 400},
       {.name = "the drive reports an error", .begin = drive_error, .most_cycles = 2},
       {.name = "the drive disables itself",
-       .begin = [](FaultStage* stage) { stage->bus().replace_sent(stage->family().disable()); },
+       .begin =
+           [](FaultStage* stage) { stage->bus().replace_sent(stage->family().codec->disable()); },
        .most_cycles = 2},
       {.name = "another program disables the drive", .begin = foreign_disable, .most_cycles = 1},
       {.name = "another program commands the drive", .begin = foreign_master, .most_cycles = 1},
       {.name = "another program writes the drive's settings",
        .begin = foreign_setting,
        .most_cycles = 1,
-       .protocols = {DriveProtocol::kDamiaoMit, DriveProtocol::kCia402}},
+       .protocols = {"damiao_mit", "cia402"}},
       {.name = "the drive's control mode is changed past the bus",
        .begin = mode_past_the_bus,
        .most_cycles = 240,
@@ -230,7 +236,7 @@ std::vector<Fault> bus_faults() {
        .begin = watchdog_off_past_the_bus,
        .most_cycles = kLastSetting,
        .watched_cycles = kLastSetting + 100,
-       .protocols = {DriveProtocol::kDamiaoMit, DriveProtocol::kCia402}},
+       .protocols = {"damiao_mit", "cia402"}},
       {.name = "frames of other devices", .begin = other_devices},
       {.name = "bus-off",
        .begin = [](FaultStage* stage) { stage->bus().set_bus_off(); },

@@ -8,6 +8,7 @@
 
 #include "common/config_error.h"
 #include "common/suggest.h"
+#include "qa/faults/families.h"
 #include "qa/faults/fault_table.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
@@ -70,7 +71,7 @@ Json row(const Fault& fault, const ReportOptions& options) {
               {"from_start", static_cast<bool>(fault.stored)},
               {"families", Json::object()}};
   for (const Family& family : families()) {
-    const std::string word(traits_of(family.protocol).word);
+    const std::string word(family.protocol);
     if (!applies(fault, family.protocol) || !is_wanted(options.family, word)) continue;
     const LoadedRobot robot = load_robot(family.robot);
     std::vector<Reaction> all;
@@ -121,7 +122,7 @@ std::string list_json() {
   for (const Fault& fault : fault_table()) {
     Json protocols = Json::array();
     for (const Family& family : families()) {
-      if (applies(fault, family.protocol)) protocols.push_back(traits_of(family.protocol).word);
+      if (applies(fault, family.protocol)) protocols.push_back(family.protocol);
     }
     json["faults"].push_back(
         {{"name", fault.name}, {"place", name_of(fault.place)}, {"families", protocols}});

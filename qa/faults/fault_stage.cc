@@ -105,9 +105,9 @@ bool FaultStage::is_mine(const CanFrame& frame) const {
 
 bool FaultStage::tells_setting(const CanFrame& frame) const {
   double found = 0.0;
-  for (int i = 0; i < family_->startup_steps(); ++i) {
-    if (family_->may_be_read_again(i) &&
-        family_->check_answer(i, frame, &found) != limber::Answer::kNone)
+  for (int i = 0; i < family_.startup->steps(); ++i) {
+    if (family_.startup->can_be_polled(i) &&
+        family_.startup->check_answer(i, frame, &found) != limber::Answer::kNone)
       return true;
   }
   return false;

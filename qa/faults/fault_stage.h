@@ -51,7 +51,7 @@ class FaultStage {
   /// Whether the frame is a reply of that drive to a command.
   bool is_mine(const CanFrame& frame) const;
   /// Its family, for frames of others that speak to it.
-  DriveFamily& family() { return *family_; }
+  const DriveFamily& family() const { return family_; }
   /// What arrives in the place of the drive's replies; all other frames pass.
   void change_replies(TamperedBus::Change change);
   /// Somebody else sends a frame on the drive's bus, at the start of a cycle.
@@ -89,7 +89,7 @@ class FaultStage {
   std::vector<TamperedBus*> tampered_;
   std::unique_ptr<Lab> lab_;
   std::vector<std::unique_ptr<CanBus>> outside_;
-  std::unique_ptr<DriveFamily> family_;
+  DriveFamily family_;
   std::function<void()> each_cycle_;
   AnswerChange answer_change_;
   std::unique_ptr<FrameLog> frames_;

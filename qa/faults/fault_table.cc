@@ -1,7 +1,6 @@
 #include "qa/faults/fault_table.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 namespace limber::faults {
@@ -49,14 +48,7 @@ std::span<const Fault> fault_table() {
   return table;
 }
 
-std::span<const Family> families() {
-  static constexpr std::array kFamilies = {Family{DriveProtocol::kDamiaoMit, "desktop2r"},
-                                           Family{DriveProtocol::kMoteus, "planar2r"},
-                                           Family{DriveProtocol::kCia402, "iiwa14"}};
-  return kFamilies;
-}
-
-bool applies(const Fault& fault, DriveProtocol protocol) {
+bool applies(const Fault& fault, std::string_view protocol) {
   return fault.protocols.empty() ||
          std::ranges::find(fault.protocols, protocol) != fault.protocols.end();
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "qa/faults/fault_stage.h"
@@ -25,7 +26,7 @@ struct Fault {
   int most_cycles = 0;
   int watched_cycles = 100;
   /// Words of the protocols that know the fault; empty: all.
-  std::vector<DriveProtocol> protocols = {};
+  std::vector<std::string_view> protocols = {};
   Place place = Place::kBus;
   /// The count of cycles, and arm time with it, passes this number in the 50th cycle after the
   /// beginning; 0: it counts from 0.
@@ -39,13 +40,8 @@ std::vector<Fault> bus_faults();
 std::vector<Fault> controller_faults();
 std::vector<Fault> feedback_faults();
 
-/// An arm of each family of drives.
-struct Family {
-  DriveProtocol protocol;
-  const char* robot;
-};
-std::span<const Family> families();
-bool applies(const Fault& fault, DriveProtocol protocol);
+/// `protocol`: of the drives.
+bool applies(const Fault& fault, std::string_view protocol);
 
 struct Run {
   int phase = 0;      ///< of the motion: 0, 1, 2, ...; all below 1000 differ. Also the seed.

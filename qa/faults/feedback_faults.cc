@@ -140,8 +140,8 @@ constexpr int kFromStart = 2000;  // cycles: enabled, and a second of motion
 }  // namespace
 
 std::vector<Fault> feedback_faults() {
-  const std::vector only_damiao = {DriveProtocol::kDamiaoMit};
-  const std::vector with_thermometer = {DriveProtocol::kDamiaoMit, DriveProtocol::kMoteus};
+  const std::vector<std::string_view> only_damiao = {"damiao_mit"};
+  const std::vector<std::string_view> with_thermometer = {"damiao_mit", "moteus"};
   std::vector<Fault> all = {
       {.name = "the encoder freezes",
        .begin = frozen_encoder,

@@ -8,14 +8,17 @@
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
+#include "qa/faults/families.h"
 
 namespace limber::faults {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-CanFrame damiao(const CanFrame& reply, const JointConfig& joint, bool fd,
-                const MotionChange& change) {
+}  // namespace
+
+CanFrame with_motion_of_damiao(const CanFrame& reply, const JointConfig& joint, bool fd,
+                               const MotionChange& change) {
   mit::Reply state;
   if (!mit::decode_reply(reply, joint.drive.range, &state)) return reply;
   state.position_rad += change.angle_rad;
@@ -23,7 +26,8 @@ CanFrame damiao(const CanFrame& reply, const JointConfig& joint, bool fd,
   return mit::encode_reply(state, joint.drive.range, reply.id, fd, mit::Quantiser::kRound);
 }
 
-CanFrame moteus_drive(const CanFrame& reply, const MotionChange& change) {
+CanFrame with_motion_of_moteus(const CanFrame& reply, const JointConfig& /*joint*/, bool /*fd*/,
+                               const MotionChange& change) {
   using moteus::Register;
   using moteus::Type;
   moteus::State state;
@@ -41,8 +45,8 @@ CanFrame moteus_drive(const CanFrame& reply, const MotionChange& change) {
              : reply;
 }
 
-CanFrame cia402_drive(const CanFrame& reply, const JointConfig& joint, bool fd,
-                      const MotionChange& change) {
+CanFrame with_motion_of_cia402(const CanFrame& reply, const JointConfig& joint, bool fd,
+                               const MotionChange& change) {
   const cia402::StateLayout layout = cia402::layout_of(joint, fd);
   const auto k = static_cast<int>((reply.id - joint.drive.reply_id) >> 8U);
   if (k >= cia402::tpdos_of(layout)) return reply;
@@ -57,22 +61,9 @@ CanFrame cia402_drive(const CanFrame& reply, const JointConfig& joint, bool fd,
   return cia402::encode_state(state, objects, reply.id, fd);
 }
 
-}  // namespace
-
 CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,
                      const MotionChange& change) {
-  CanFrame changed = reply;
-  switch (joint.drive.protocol) {
-    case DriveProtocol::kDamiaoMit:
-      changed = damiao(reply, joint, fd, change);
-      break;
-    case DriveProtocol::kMoteus:
-      changed = moteus_drive(reply, change);
-      break;
-    case DriveProtocol::kCia402:
-      changed = cia402_drive(reply, joint, fd, change);
-      break;
-  }
+  CanFrame changed = family_of(joint.drive).with_motion(reply, joint, fd, change);
   changed.timestamp_ns = reply.timestamp_ns;
   return changed;
 }

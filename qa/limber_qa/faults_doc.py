@@ -5,11 +5,11 @@ import subprocess
 from typing import Any
 
 from limber.messages import constants
+from limber.model.protocols import protocols
 from limber.paths import ROOT, program
 from limber.problems import problem
 from limber_qa.written_table import WrittenTable
 
-FAMILIES = {"damiao_mit": "Damiao", "moteus": "moteus", "cia402": "CiA 402"}
 COUNTERS = ("lost", "late", "invalid", "foreign")
 
 
@@ -53,15 +53,16 @@ def cause_text(row: dict[str, Any]) -> str:
 
 def cells(row: dict[str, Any]) -> list[str]:
     """Fault, its reaction in each family, cause."""
-    families = [reaction_text(row["families"].get(word)) for word in FAMILIES]
+    families = [reaction_text(row["families"].get(entry.word)) for entry in protocols()]
     return [row["name"], *families, cause_text(row)]
 
 
-HEAD = ["fault", *FAMILIES.values(), "code: words"]
+def head() -> list[str]:
+    return ["fault", *(entry.title for entry in protocols()), "code: words"]
 
 
 def _lines() -> list[str]:
-    rows = [HEAD, ["---"] * len(HEAD), *(cells(row) for row in reactions())]
+    rows = [head(), ["---"] * len(head()), *(cells(row) for row in reactions())]
     return ["| " + " | ".join(row) + " |" for row in rows]
 
 

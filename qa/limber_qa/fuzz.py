@@ -10,6 +10,7 @@ import re
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 from rich.console import Console
@@ -31,30 +32,23 @@ SLOW = ("joint_command", "joint_state", *TEXTS)
 # libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
 SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory")
 LONGEST = dict.fromkeys(SHORT, 256) | dict.fromkeys(TEXTS, 1024)
-WHAT = {
-    "black_box": "messages of any length in a black box of any size",
-    "candump_log": "lines and files of a candump log",
-    "canopen_sdo": "SDO frames, both ways, there and back",
-    "drive_cia402": "what a CiA 402 drive says, as the driver reads it",
-    "drive_damiao": "what a Damiao drive says, as the driver reads it",
-    "drive_moteus": "what a moteus drive says, as the driver reads it",
-    "eval_json": "cases of limber-eval",
-    "joint_command": "bytes of JOINT_TORQUE: the driver's verdict, and what then leaves on the bus",
-    "joint_state": "bytes of JOINT_STATE and of requests: what the controller answers",
-    "lcm_fragments": "fragments of long LCM messages",
-    "lockstep_frame": "TICK and TOCK",
-    "messages": "every type of message",
-    "node_cia402": "frames that an emulated CiA 402 drive receives",
-    "node_damiao": "frames that an emulated Damiao drive receives",
-    "node_moteus": "frames that an emulated moteus drive receives",
-    "robot_yaml": "robot.yaml",
-    "scenario": "scenario files",
-    "shared_memory": "the arm plane's shared memory, into which the other end writes anything",
-    "tip_sensor": "both protocols of the tip sensor, both ways",
-    "torque_gate": "sequences of commands at the gate, against an oracle",
-    "urdf": "URDF files",
-    "virtual_frame": "datagrams of the virtual bus, there and back",
-}
+
+
+def _what() -> dict[str, str]:
+    """Targets, and the first sentence of each file's comment."""
+    found = {}
+    for path in sorted(FOLDER.glob("*.cc")):
+        text = path.read_text(encoding="utf-8")
+        if "LLVMFuzzerTestOneInput" in text:
+            comment = " ".join(
+                line.removeprefix("//").strip()
+                for line in takewhile(lambda line: line.startswith("//"), text.splitlines())
+            )
+            found[path.stem] = re.split(r"[.:;] |\.$", comment)[0]
+    return found
+
+
+WHAT = _what()
 
 
 @dataclass(frozen=True)

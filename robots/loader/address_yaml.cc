@@ -10,17 +10,17 @@ namespace limber {
 namespace {
 
 /// Bus and joint must fit the protocol.
-void check_protocol(const YamlMap& yaml, const DriveProtocolTraits& traits, const BusConfig& bus,
+void check_protocol(const YamlMap& yaml, const DriveProtocol& protocol, const BusConfig& bus,
                     JointType type) {
-  if (traits.needs_fd && !bus.fd) {
+  if (protocol.needs_fd && !bus.fd) {
     yaml.refuse("bus", fmt::format("'{}' is classic; {} drives need CAN-FD (fd: true)", bus.name,
-                                   traits.word));
+                                   protocol.word));
   }
-  if (traits.rotary_only && type == JointType::kPrismatic) {
+  if (protocol.rotary_only && type == JointType::kPrismatic) {
     yaml.refuse("motor", fmt::format("{} drives count turns: they can only move rotary joints",
-                                     traits.word));
+                                     protocol.word));
   }
-  refuse_foreign_keys(yaml, traits);
+  refuse_foreign_keys(yaml, protocol);
 }
 
 void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig& other,
@@ -61,10 +61,9 @@ int read_bus(const YamlMap& yaml, const Robot& robot, std::optional<int> otherwi
 void read_address(const YamlMap& yaml, const Robot& robot, std::size_t index, DriveConfig* drive) {
   const bool antagonist = drive == &robot.joints[index].antagonist;
   drive->bus = read_bus(yaml, robot, antagonist ? std::optional(drive->bus) : std::nullopt);
-  const DriveProtocolTraits& traits = traits_of(drive->protocol);
-  check_protocol(yaml, traits, robot.buses[static_cast<std::size_t>(drive->bus)],
+  check_protocol(yaml, *drive->protocol, robot.buses[static_cast<std::size_t>(drive->bus)],
                  robot.joints[index].type);
-  traits.read_ids(yaml, drive);
+  drive->protocol->read_ids(yaml, drive);
   check_free(yaml, robot, index, *drive);
 }
 

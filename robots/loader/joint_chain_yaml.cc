@@ -136,7 +136,7 @@ TorqueSensorConfig read_torque_sensor(const YamlMap& yaml, const JointUnits& uni
 }
 
 TorqueLoopConfig read_torque_loop(const YamlMap& yaml, double rate_hz, const JointConfig& joint) {
-  if (!traits_of(joint.drive.protocol).reports_link)
+  if (!joint.drive.protocol->reports_link)
     yaml.refuse(fmt::format("is for motors with protocol: {} only: the loop runs in the drive",
                             link_protocol_words()));
   if (!joint.torque_sensor.present) yaml.refuse("needs a torque_sensor");
@@ -182,8 +182,8 @@ void read_joint_chain(const YamlMap& yaml, double rate_hz, JointConfig* joint) {
     joint->torque_sensor = read_torque_sensor(yaml.map("torque_sensor"), units);
   if (yaml.has("torque_loop"))
     joint->torque_loop = read_torque_loop(yaml.map("torque_loop"), rate_hz, *joint);
-  const DriveProtocolTraits& traits = traits_of(joint->drive.protocol);
-  if (!traits.reports_link && (joint->link_encoder.present || joint->torque_sensor.present)) {
+  if (!joint->drive.protocol->reports_link &&
+      (joint->link_encoder.present || joint->torque_sensor.present)) {
     yaml.refuse(
         "motor",
         fmt::format("only drives with protocol: {} report a link encoder or a torque sensor",

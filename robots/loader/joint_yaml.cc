@@ -141,7 +141,7 @@ void read_antagonist(const YamlMap& yaml, const std::map<std::string, DriveConfi
 
 FrameSizes frames_of(const JointConfig& joint, const Robot& robot) {
   const bool fd = robot.buses[static_cast<std::size_t>(joint.drive.bus)].fd;
-  return traits_of(joint.drive.protocol).frames(joint, fd);
+  return joint.drive.protocol->frames(joint, fd);
 }
 
 void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,

@@ -12,19 +12,19 @@
 namespace limber {
 namespace {
 
-void read_temperatures(const YamlMap& yaml, const DriveProtocolTraits& traits, DriveConfig* drive) {
+void read_temperatures(const YamlMap& yaml, const DriveProtocol& protocol, DriveConfig* drive) {
   constexpr const char* kWarning = "warning_temperature_degC";
   constexpr const char* kLimit = "limit_temperature_degC";
-  if (!std::isfinite(traits.warning_temperature_degC)) {
+  if (!std::isfinite(protocol.warning_temperature_degC)) {
     for (const char* key : {kWarning, kLimit}) {
       if (yaml.has(key))
         yaml.refuse(key, fmt::format("{} drives report no temperature, but warn by themselves",
-                                     traits.word));
+                                     protocol.word));
     }
     return;
   }
-  const double warning = yaml.number_or(kWarning, {20.0, 200.0}, traits.warning_temperature_degC);
-  const double limit = yaml.number_or(kLimit, {20.0, 200.0}, traits.limit_temperature_degC);
+  const double warning = yaml.number_or(kWarning, {20.0, 200.0}, protocol.warning_temperature_degC);
+  const double limit = yaml.number_or(kLimit, {20.0, 200.0}, protocol.limit_temperature_degC);
   if (!(limit > warning)) {
     yaml.refuse(yaml.has(kLimit) ? kLimit : kWarning,
                 fmt::format("the limit, {:g}, must be above the warning, {:g}", limit, warning));
@@ -37,8 +37,8 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   DriveConfig drive;
   drive.motor = name;
   yaml.text_or("description", "-");
-  const DriveProtocolTraits& traits = traits_of(yaml.word("protocol", protocol_words()));
-  drive.protocol = traits.protocol;
+  const DriveProtocol& protocol = protocol_named(yaml.word("protocol", protocol_words()));
+  drive.protocol = &protocol;
   drive.gear_ratio = yaml.number("gear_ratio", {0.1, 1000.0});
   const double ratio_squared = drive.gear_ratio * drive.gear_ratio;
   drive.rotor_inertia_kgm2 = ratio_squared * yaml.number("rotor_inertia_kgm2", {0.0, 1.0});
@@ -49,9 +49,9 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   drive.peak_torque_Nm = yaml.number("peak_torque_Nm", {0.01, 5e4});
   if (yaml.has("actuator")) drive.actuator = read_actuator(yaml.map("actuator"));
   drive.actuator.resistance_ohm = resistance;
-  refuse_foreign_keys(yaml, traits);
-  read_temperatures(yaml, traits, &drive);
-  traits.read_motor(yaml, &drive);
+  refuse_foreign_keys(yaml, protocol);
+  read_temperatures(yaml, protocol, &drive);
+  protocol.read_motor(yaml, &drive);
   yaml.finish();
   return drive;
 }

@@ -13,7 +13,7 @@
 namespace limber {
 namespace {
 
-constexpr RequiredKey kRequired[] = {
+const RequiredKey kOfEveryRobot[] = {
     {"", "format", "", "`limber-robot/1`"},
     {"", "name", "", "of the arm, for people"},
     {"", "urdf", "", "file beside robot.yaml: `robot.urdf`"},
@@ -31,29 +31,15 @@ constexpr RequiredKey kRequired[] = {
     {"buses[]", "data_bitrate_bps", "fd: true", "bit rate of CAN-FD's data phase"},
     {"watchdog", "timeout_s", "", "without a command for so long, a drive stops by itself"},
     {"watchdog", "reaction", "", "of the simulated drives: `damp` or `off`"},
-    {"motors.*", "protocol", "", "of its drive: `damiao_mit`, `moteus` or `cia402`"},
+    {"motors.*", "protocol", "", "of its drive"},
     {"motors.*", "gear_ratio", "", "rotor turns per turn of the joint"},
     {"motors.*", "rotor_inertia_kgm2", "", "of the rotor itself, before the gear"},
     {"motors.*", "rotor_torque_constant_Nm_per_A", "", "before the gear"},
     {"motors.*", "phase_resistance_ohm", "", "of the winding"},
     {"motors.*", "peak_torque_Nm", "", "largest torque of the drive, at the joint"},
-    {"motors.*", "encoder_bits", "damiao_mit", "encoder counts per turn of the joint, as bits"},
-    {"motors.*", "encoder_bits", "moteus", "encoder counts per turn of the joint, as bits"},
-    {"motors.*", "encoder_bits|counts_per_turn", "cia402", "encoder counts per turn of the joint"},
-    {"motors.*", "mit_range", "damiao_mit", "ranges stored in the drive"},
-    {"motors.*", "pid_position", "moteus", "gains configured in the drive"},
-    {"motors.*", "rated_torque_Nm", "cia402", "object 6076h, at the joint"},
-    {"motors.*.mit_range", "position_rad", "", "PMAX of the drive"},
-    {"motors.*.mit_range", "velocity_rad_per_s", "", "VMAX of the drive"},
-    {"motors.*.mit_range", "torque_Nm", "", "TMAX of the drive"},
-    {"motors.*.mit_range", "kp_Nm_per_rad", "", "500 in Damiao drives"},
-    {"motors.*.mit_range", "kd_Nms_per_rad", "", "5 in Damiao drives"},
-    {"motors.*.pid_position", "kp_Nm_per_turn", "", "servo.pid_position.kp of the drive"},
-    {"motors.*.pid_position", "kd_Nms_per_turn", "", "servo.pid_position.kd of the drive"},
     {"joints.*", "motor", "", "name of one of the motors"},
     {"joints.*", "bus", "", "name of one of the buses"},
     {"joints.*", "id", "", "number of the drive on its bus, as 1 or 0x01"},
-    {"joints.*", "reply_id", "damiao_mit", "identifier of the drive's replies (MST_ID)"},
     {"joints.*", "home_rad|home_m", "", "pose that scenarios and the simulator start from"},
     {"joints.*", "hold", "", "how the driver holds the joint without a controller"},
     {"joints.*.hold", "kp_Nm_per_rad|kp_N_per_m", "", "stiffness of holding"},
@@ -66,6 +52,34 @@ constexpr RequiredKey kRequired[] = {
     {"gains", "K_null_Nm_per_rad", "", "stiffness of the null space; one number or one a joint"},
     {"gains", "D_null_Nms_per_rad", "", "damping of the null space; one number or one a joint"},
 };
+
+/// Those of a section, or of a mapping in it, that motors or joints of one protocol have.
+void add_keys_of_protocols(const std::string& section, std::vector<RequiredKey>* all) {
+  for (const DriveProtocol* protocol : drive_protocols()) {
+    for (const ProtocolKey& key : protocol->required) {
+      if (section == key.section) all->push_back({key.section, key.key, protocol->word, key.what});
+    }
+  }
+  for (const DriveProtocol* protocol : drive_protocols()) {
+    for (const ProtocolKey& key : protocol->required) {
+      if (std::string_view(key.section).starts_with(section + "."))
+        all->push_back({key.section, key.key, "", key.what});
+    }
+  }
+}
+
+std::vector<RequiredKey> all_keys() {
+  std::vector<RequiredKey> all;
+  std::string section;
+  for (const RequiredKey& row : kOfEveryRobot) {
+    if (section != row.section && !section.empty()) add_keys_of_protocols(section, &all);
+    section = row.section;
+    all.push_back(row);
+    if (all.back().key == std::string_view("protocol"))
+      all.back().what += fmt::format(": {}", fmt::join(protocol_words(), ", "));
+  }
+  return all;
+}
 
 std::vector<std::string> alternatives(const std::string& key) {
   const auto bar = key.find('|');
@@ -87,8 +101,8 @@ class Search {
 
   /// Keys of a section; of rows with a condition those whose condition is `only`.
   void check(const YamlMap& map, const std::string& section, const std::string& only = "") {
-    for (const RequiredKey& row : kRequired) {
-      if (section != row.section || (*row.only != '\0' && only != row.only)) continue;
+    for (const RequiredKey& row : required_keys()) {
+      if (section != row.section || (!row.only.empty() && only != row.only)) continue;
       const auto keys = alternatives(row.key);
       if (std::ranges::any_of(keys, [&](const std::string& key) { return map.has(key); })) continue;
       complaints_.collect([&] { map.refuse_missing(keys.front(), row.what); });
@@ -113,8 +127,8 @@ std::map<std::string, std::string> check_motors(const YamlMap& motors, Search* s
     if (motor.has("protocol"))
       if_readable([&] { protocols[name] = motor.word("protocol", protocol_words()); });
     search->check(motor, "motors.*", protocols[name]);
-    for (const char* part : {"mit_range", "pid_position"})
-      search->check_below(motor, part, std::string("motors.*.") + part);
+    for (const std::string& part : motor.keys())
+      search->check_below(motor, part, "motors.*." + part);
   }
   return protocols;
 }
@@ -143,7 +157,10 @@ void check_buses(const YamlMap& yaml, Search* search) {
 
 }  // namespace
 
-std::span<const RequiredKey> required_keys() { return kRequired; }
+const std::vector<RequiredKey>& required_keys() {
+  static const std::vector<RequiredKey> all = all_keys();
+  return all;
+}
 
 void check_required_keys(const YamlMap& yaml) {
   Search search(yaml.file());
@@ -159,12 +176,12 @@ void check_required_keys(const YamlMap& yaml) {
 
 std::string required_keys_table() {
   std::string table = "| where | key | what it is |\n|---|---|---|\n";
-  for (const RequiredKey& row : kRequired) {
+  for (const RequiredKey& row : required_keys()) {
     std::string keys;
     for (const std::string& key : alternatives(row.key))
       keys += fmt::format("{}`{}`", keys.empty() ? "" : " or ", key);
     const std::string where = *row.section == '\0' ? "" : fmt::format("`{}`", row.section);
-    const std::string only = *row.only == '\0' ? "" : fmt::format(" (`{}` only)", row.only);
+    const std::string only = row.only.empty() ? "" : fmt::format(" (`{}` only)", row.only);
     table += fmt::format("| {} | {} | {}{} |\n", where, keys, row.what, only);
   }
   return table;

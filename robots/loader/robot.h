@@ -31,8 +31,7 @@ struct BusConfig {
   double reply_window_s = 0.0;
 };
 
-/// Bytes between driver and drive; what the loaders know of each is in protocols/drive_protocol.h.
-enum class DriveProtocol : std::uint8_t { kDamiaoMit, kMoteus, kCia402 };
+struct DriveProtocol;  // protocols/drive_protocol.h
 
 /// What a drive's command frames can carry. MIT: the ranges both sides of the link must agree on.
 /// moteus: kp and kd are the gains configured in the drive, at scale 1; the others are infinite.
@@ -59,14 +58,14 @@ enum class NodeWatchdogReaction : std::uint8_t {
 
 /// One motor with its drive. Torque, speed and inertia are given at the joint (behind the gear).
 struct DriveConfig {
-  std::string motor;  ///< model name, for messages only
-  DriveProtocol protocol = DriveProtocol::kDamiaoMit;
-  int bus = 0;                   ///< index into Robot::buses
-  std::uint32_t command_id = 0;  ///< on the bus; 29 bits long above 0x7FF
-  std::uint32_t reply_id = 0;    ///< likewise
-  FrameSizes frames;             ///< of a cycle
-  double sign = 1.0;             ///< +1 or -1: joint angle = sign * (drive angle - offset)
-  double offset_rad = 0.0;       ///< drive angle at joint zero
+  std::string motor;                        ///< model name, for messages only
+  const DriveProtocol* protocol = nullptr;  ///< set by the loader
+  int bus = 0;                              ///< index into Robot::buses
+  std::uint32_t command_id = 0;             ///< on the bus; 29 bits long above 0x7FF
+  std::uint32_t reply_id = 0;               ///< likewise
+  FrameSizes frames;                        ///< of a cycle
+  double sign = 1.0;        ///< +1 or -1: joint angle = sign * (drive angle - offset)
+  double offset_rad = 0.0;  ///< drive angle at joint zero
   CommandRange range;
   double gear_ratio = 1.0;
   double rotor_inertia_kgm2 = 0.0;        ///< reflected: rotor inertia times gear ratio squared (B)

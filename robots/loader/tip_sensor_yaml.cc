@@ -115,7 +115,7 @@ void check_free(const YamlMap& yaml, const std::string& key, std::uint32_t id, c
       if (accepts_id(drive, id))
         yaml.refuse(key, fmt::format("{} would reach {} on the same bus: a {} drive accepts more "
                                      "identifiers than its own",
-                                     id, joint.name, traits_of(drive.protocol).word));
+                                     id, joint.name, drive.protocol->word));
     }
   }
 }

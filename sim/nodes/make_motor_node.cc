@@ -1,19 +1,39 @@
+// The list of emulated drives, and nothing else: docs/adding.md.
+#include <algorithm>
+#include <array>
+
+#include "robots/loader/protocols/drive_protocol.h"
 #include "sim/nodes/cia402_node.h"
 #include "sim/nodes/damiao_node.h"
 #include "sim/nodes/moteus_node.h"
 
 namespace limber::sim {
+namespace {
+
+using Node = std::unique_ptr<MotorNode>;
+
+struct Row {
+  std::string_view protocol;
+  Node (*make)(const JointConfig& joint, bool fd);
+};
+
+constexpr std::array kNodes = {
+    Row{"damiao_mit",
+        [](const JointConfig& joint, bool fd) -> Node {
+          return std::make_unique<DamiaoNode>(joint, fd);
+        }},
+    Row{"moteus",
+        [](const JointConfig& joint, bool) -> Node { return std::make_unique<MoteusNode>(joint); }},
+    Row{"cia402",
+        [](const JointConfig& joint, bool fd) -> Node {
+          return std::make_unique<Cia402Node>(joint, fd);
+        }},
+};
+
+}  // namespace
 
 std::unique_ptr<MotorNode> make_motor_node(const JointConfig& joint, bool fd) {
-  switch (joint.drive.protocol) {
-    case DriveProtocol::kMoteus:
-      return std::make_unique<MoteusNode>(joint);
-    case DriveProtocol::kDamiaoMit:
-      break;
-    case DriveProtocol::kCia402:
-      return std::make_unique<Cia402Node>(joint, fd);
-  }
-  return std::make_unique<DamiaoNode>(joint, fd);
+  return std::ranges::find(kNodes, joint.drive.protocol->word, &Row::protocol)->make(joint, fd);
 }
 
 }  // namespace limber::sim

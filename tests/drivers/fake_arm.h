@@ -11,6 +11,7 @@
 #include "common/config_error.h"
 #include "drivers/arm_driver.h"
 #include "drivers/can/memory_bus.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber::testing {
 
@@ -136,6 +137,7 @@ inline Robot test_robot(int n, int num_buses = 1) {
   }
   for (int i = 0; i < n; ++i) {
     JointConfig joint;
+    joint.drive.protocol = &protocol_named("damiao_mit");
     joint.name = "joint" + std::to_string(i + 1);
     joint.position_min = -2.0;
     joint.position_max = 2.0;

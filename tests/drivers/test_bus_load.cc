@@ -25,6 +25,7 @@ Robot seven_joints(bool fd) {
   robot.buses.push_back({"arm", "virtual:default", fd, 1'000'000, 5'000'000});
   robot.joints.resize(7);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    robot.joints[i].drive.protocol = &protocol_named("damiao_mit");
     robot.joints[i].drive.command_id = static_cast<std::uint32_t>(i + 1);
     robot.joints[i].drive.reply_id = static_cast<std::uint32_t>(i + 0x11);
   }
@@ -54,7 +55,7 @@ TEST(BusLoad, ThreeMoteusDrivesFillABusAtOneKilohertz) {
   Robot robot = seven_joints(true);
   robot.joints.resize(3);
   for (JointConfig& joint : robot.joints) {
-    joint.drive.protocol = DriveProtocol::kMoteus;
+    joint.drive.protocol = &protocol_named("moteus");
     joint.drive.command_id |= 0x8000U;
     joint.drive.frames = {48, {32}};
   }
@@ -67,7 +68,7 @@ TEST(BusLoad, CanopenDrivesShareOneSync) {
   Robot robot = seven_joints(true);
   robot.joints.resize(2);
   for (JointConfig& joint : robot.joints) {
-    joint.drive.protocol = DriveProtocol::kCia402;
+    joint.drive.protocol = &protocol_named("cia402");
     joint.drive.command_id = 0x203;
     joint.drive.reply_id = 0x183;
     joint.drive.frames = {4, {24}};
@@ -87,10 +88,10 @@ TEST(BusLoad, CanopenDrivesOnAClassicBusAnswerInSeveralFrames) {
   robot.joints[1].link_encoder.present = true;
   robot.joints[1].torque_sensor.present = true;
   for (JointConfig& joint : robot.joints) {
-    joint.drive.protocol = DriveProtocol::kCia402;
+    joint.drive.protocol = &protocol_named("cia402");
     joint.drive.command_id = 0x203;
     joint.drive.reply_id = 0x183;
-    joint.drive.frames = kCia402Traits.frames(joint, false);
+    joint.drive.frames = protocol_named("cia402").frames(joint, false);
   }
   const double first_s = 95e-6 + 115e-6 + 115e-6;
   const double second_s = 95e-6 + 115e-6 + 135e-6 + 135e-6;
@@ -190,7 +191,7 @@ TEST(BusLoad, BytesOfTheTraitsAreThoseOfTheFrames) {
     JointConfig joint;
     joint.link_encoder.present = layout.link_encoder;
     joint.torque_sensor.present = layout.torque_sensor;
-    const FrameSizes sizes = kCia402Traits.frames(joint, layout.fd);
+    const FrameSizes sizes = protocol_named("cia402").frames(joint, layout.fd);
     EXPECT_EQ(sizes.command, cia402::encode_command({}, 0x201, layout.fd).length);
     std::vector<int> replies;
     for (int k = 0; k < cia402::tpdos_of(layout); ++k) {
@@ -202,8 +203,10 @@ TEST(BusLoad, BytesOfTheTraitsAreThoseOfTheFrames) {
       EXPECT_EQ(canopen::tpdo_id(1, 5), canopen::tpdo_id(0, 5) + sizes.reply_step);
     }
   }
-  EXPECT_EQ(kDamiaoMitTraits.frames({}, true).command, mit::encode_state_request(1, true).length);
-  EXPECT_EQ(kMoteusTraits.frames({}, true).command, moteus::encode_command({}, 0x8001).length);
+  EXPECT_EQ(protocol_named("damiao_mit").frames({}, true).command,
+            mit::encode_state_request(1, true).length);
+  EXPECT_EQ(protocol_named("moteus").frames({}, true).command,
+            moteus::encode_command({}, 0x8001).length);
   EXPECT_EQ(traits_of(TipSensorProtocol::kLimberFt).request_bytes,
             limber_ft::encode_request(1, 0).length);
   EXPECT_EQ(traits_of(TipSensorProtocol::kRobotousRft).request_bytes,

@@ -1,4 +1,4 @@
-// Not a target: reads messages from standard input, each behind its length (four bytes,
+// No fuzz target: reads messages from standard input, each behind its length (four bytes,
 // little-endian) and the number of its type (one byte, in that length), and writes what C++ makes
 // of each in the same form, or the length FFFFFFFF for a refusal. For the comparison with Python.
 #include <cstdio>

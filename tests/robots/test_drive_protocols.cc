@@ -9,9 +9,10 @@
 namespace limber::test_drive_protocols {
 namespace {
 
-DriveConfig drive_with(DriveProtocol protocol, std::uint32_t command_id, std::uint32_t reply_id) {
+DriveConfig drive_with(std::string_view protocol, std::uint32_t command_id,
+                       std::uint32_t reply_id) {
   DriveConfig drive;
-  drive.protocol = protocol;
+  drive.protocol = &protocol_named(protocol);
   drive.command_id = command_id;
   drive.reply_id = reply_id;
   return drive;
@@ -24,20 +25,17 @@ JointConfig with_sensors() {
   return joint;
 }
 
-TEST(DriveProtocols, EveryProtocolIsFoundByItsWordAndItsNumber) {
+TEST(DriveProtocols, EveryProtocolIsFoundByItsWord) {
   const std::vector<std::string> words = protocol_words();
   EXPECT_EQ(words, (std::vector<std::string>{"damiao_mit", "moteus", "cia402"}));
-  std::set<DriveProtocol> protocols;
   for (const std::string& word : words) {
-    const DriveProtocolTraits& traits = traits_of(word);
-    EXPECT_EQ(traits.word, word);
-    EXPECT_EQ(&traits_of(traits.protocol), &traits);
-    EXPECT_TRUE(protocols.insert(traits.protocol).second) << word;
-    ASSERT_TRUE(traits.read_motor && traits.read_ids && traits.frames);
-    if (traits.needs_fd) continue;
+    const DriveProtocol& protocol = protocol_named(word);
+    EXPECT_EQ(protocol.word, word);
+    ASSERT_TRUE(protocol.read_motor && protocol.read_ids && protocol.address && protocol.frames);
+    if (protocol.needs_fd) continue;
     // A classic frame has eight bytes at most.
     for (const JointConfig& joint : {JointConfig(), with_sensors()}) {
-      const FrameSizes sizes = traits.frames(joint, false);
+      const FrameSizes sizes = protocol.frames(joint, false);
       EXPECT_LE(sizes.command, 8) << word;
       for (const int bytes : sizes.replies) EXPECT_LE(bytes, 8) << word;
     }
@@ -45,7 +43,7 @@ TEST(DriveProtocols, EveryProtocolIsFoundByItsWordAndItsNumber) {
 }
 
 TEST(DriveProtocols, ADamiaoDriveUsesItsTwoIdentifiersAlone) {
-  const DriveConfig drive = drive_with(DriveProtocol::kDamiaoMit, 3, 0x13);
+  const DriveConfig drive = drive_with("damiao_mit", 3, 0x13);
   for (std::uint32_t id = 0; id < 0x800; ++id) {
     EXPECT_EQ(uses_id(drive, id), id == 3 || id == 0x13) << id;
     EXPECT_FALSE(accepts_id(drive, id));
@@ -54,7 +52,7 @@ TEST(DriveProtocols, ADamiaoDriveUsesItsTwoIdentifiersAlone) {
 
 // Node 5: bits 6 to 0 of the identifier are the destination, 0x7F is all nodes.
 TEST(DriveProtocols, AMoteusDriveAcceptsWhateverEndsInItsNumber) {
-  const DriveConfig drive = drive_with(DriveProtocol::kMoteus, 0x8005, 0x500);
+  const DriveConfig drive = drive_with("moteus", 0x8005, 0x500);
   EXPECT_TRUE(uses_id(drive, 0x8005) && uses_id(drive, 0x500));
   for (std::uint32_t id = 0; id < 0x800; ++id)
     EXPECT_EQ(accepts_id(drive, id), id % 128 == 5 || id % 128 == 127);
@@ -62,7 +60,7 @@ TEST(DriveProtocols, AMoteusDriveAcceptsWhateverEndsInItsNumber) {
 
 // CiA 301, predefined connection set, node 5.
 TEST(DriveProtocols, ACanopenNodeReservesItsServices) {
-  const DriveConfig drive = drive_with(DriveProtocol::kCia402, 0x205, 0x185);
+  const DriveConfig drive = drive_with("cia402", 0x205, 0x185);
   const std::set<std::uint32_t> used = {0x000, 0x080, 0x085, 0x185, 0x285, 0x385, 0x485,
                                         0x205, 0x305, 0x405, 0x505, 0x585, 0x605, 0x705};
   for (std::uint32_t id = 0; id < 0x800; ++id)
@@ -71,7 +69,7 @@ TEST(DriveProtocols, ACanopenNodeReservesItsServices) {
 
 TEST(DriveProtocols, OnlyCanopenDrivesReportTheLink) {
   EXPECT_EQ(link_protocol_words(), "cia402");
-  EXPECT_FALSE(traits_of(DriveProtocol::kMoteus).reports_link);
+  EXPECT_FALSE(protocol_named("moteus").reports_link);
 }
 
 }  // namespace

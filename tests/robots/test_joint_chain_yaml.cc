@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "robots/loader/load_robot.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/support/mutation.h"
 
 namespace limber::test_joint_chain_yaml {
@@ -25,7 +26,7 @@ class GoodChain : public ::testing::Test {
 };
 
 TEST_F(GoodChain, DriveSpeaksCia402) {
-  EXPECT_EQ(turn_.drive.protocol, DriveProtocol::kCia402);
+  EXPECT_EQ(turn_.drive.protocol, &protocol_named("cia402"));
   EXPECT_EQ(turn_.drive.command_id, 0x203U);
   EXPECT_EQ(turn_.drive.reply_id, 0x183U);
   EXPECT_EQ(turn_.drive.frames.command, 4);

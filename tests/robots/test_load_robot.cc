@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "robots/loader/load_robot.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
 
@@ -143,7 +144,7 @@ TEST(LoadRobot, ShippedHomesAreEasyToHold) {
 TEST(LoadRobot, MoteusDrivesAreRead) {
   const Robot robot = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/moteus").robot;
   const DriveConfig& turn = robot.joints[0].drive;
-  EXPECT_EQ(turn.protocol, DriveProtocol::kMoteus);
+  EXPECT_EQ(turn.protocol, &protocol_named("moteus"));
   EXPECT_EQ(turn.command_id, 0x8003U);
   EXPECT_EQ(turn.reply_id, 0x300U);
   EXPECT_EQ(turn.frames.command, 48);
@@ -156,7 +157,7 @@ TEST(LoadRobot, MoteusDrivesAreRead) {
   EXPECT_EQ(turn.counts_per_turn, 4294967296.0);
   EXPECT_EQ(robot.joints[0].torque_limit_Nm, 15.0);  // peak; the URDF says 20
   EXPECT_EQ(robot.joints[0].velocity_limit, 5.0);    // URDF: frames have no end
-  EXPECT_EQ(robot.joints[1].drive.protocol, DriveProtocol::kDamiaoMit);
+  EXPECT_EQ(robot.joints[1].drive.protocol, &protocol_named("damiao_mit"));
   EXPECT_EQ(robot.joints[1].drive.frames.command, 8);
   EXPECT_EQ(robot.joints[2].drive.command_id, 0x800CU);
   EXPECT_EQ(robot.joints[2].drive.reply_id, 0xC00U);

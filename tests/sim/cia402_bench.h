@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/protocols/cia402_pdos.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "sim/nodes/cia402_node.h"
 #include "tests/sim/test_arms.h"
 #include "tests/support/frame_text.h"
@@ -16,7 +17,7 @@ namespace limber::testing {
 /// Rated torque 28 N m, 2 N m/A, 14 bits, peak 84 N m; elastic, 5000 N m/rad and 2 N m s/rad.
 inline JointConfig cia402_joint() {
   JointConfig joint = joint_config(2, JointType::kRevolute, 0.2);
-  joint.drive.protocol = DriveProtocol::kCia402;
+  joint.drive.protocol = &protocol_named("cia402");
   joint.drive.motor = "bench motor";
   joint.drive.command_id = 0x203;
   joint.drive.reply_id = 0x183;

@@ -8,12 +8,14 @@
 
 #include "common/types.h"
 #include "robots/loader/load_robot.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber::testing {
 
 /// One joint with a drive on bus 0, id i + 1, reply id 0x11 + i.
 inline JointConfig joint_config(int i, JointType type, double rotor_inertia) {
   JointConfig joint;
+  joint.drive.protocol = &protocol_named("damiao_mit");
   joint.name = "joint" + std::to_string(i + 1);
   joint.type = type;
   joint.position_min = -1e9;

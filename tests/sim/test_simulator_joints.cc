@@ -6,6 +6,7 @@
 #include "common/config_error.h"
 #include "drivers/protocols/canopen_sdo.h"
 #include "drivers/protocols/cia402.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/sim/simulator_bench.h"
 #include "tests/sim/test_arms.h"
 #include "tests/support/allocation_counter.h"
@@ -208,7 +209,7 @@ LoadedRobot with_torque_loop(double rate_hz) {
   LoadedRobot robot = elastic_joint();
   robot.robot.buses[0].fd = true;
   JointConfig& joint = robot.robot.joints[0];
-  joint.drive.protocol = DriveProtocol::kCia402;
+  joint.drive.protocol = &protocol_named("cia402");
   joint.drive.command_id = 0x201;
   joint.drive.reply_id = 0x181;
   joint.drive.rated_torque_Nm = 10.0;

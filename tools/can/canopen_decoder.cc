@@ -68,11 +68,11 @@ Value abort_value(const SdoMessage& message) {
 
 CanopenDrive::CanopenDrive(const Motor& motor, bool fd, double period_s)
     : node(canopen::node_of(motor.joint.drive.command_id)), scale(motor, 0.0) {
-  const std::unique_ptr<DriveFamily> family = make_drive_family(motor.joint, fd, period_s);
-  scale.rad_per_count = family->angle_resolution();
-  for (int i = 0; i < family->startup_steps(); ++i) {
+  const DriveFamily family = make_drive_family(motor.joint, fd, period_s);
+  scale.rad_per_count = family.codec->angle_resolution();
+  for (int i = 0; i < family.startup->steps(); ++i) {
     SdoMessage message;
-    if (canopen::decode_sdo_request(family->startup_request(i), node, &message) &&
+    if (canopen::decode_sdo_request(family.startup->request(i), node, &message) &&
         message.kind == SdoKind::kWrite)
       pdos.note_write(message.object, message.value);
   }
@@ -172,6 +172,11 @@ Reading CanopenDecoder::read_answer(const SdoMessage& message) {
       break;
   }
   return reading(Direction::kReply, "SDO unknown answer");
+}
+
+CanopenNetworkDecoder::CanopenNetworkDecoder(const std::vector<Motor>& motors) {
+  for (const Motor& motor : motors)
+    names_[canopen::node_of(motor.joint.drive.command_id)] = motor.name;
 }
 
 std::optional<Reading> CanopenNetworkDecoder::read(const CanFrame& frame) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tools/can/canopen_objects.h"
+#include "tools/can/dbc.h"
 #include "tools/can/motors_on_bus.h"
 #include "tools/can/pdo_map.h"
 #include "tools/can/reading.h"
@@ -45,13 +46,16 @@ class CanopenDecoder final : public FrameDecoder {
 /// Network management and SYNC.
 class CanopenNetworkDecoder final : public FrameDecoder {
  public:
-  /// `names`: of the nodes.
-  explicit CanopenNetworkDecoder(std::map<std::uint8_t, std::string> names)
-      : names_(std::move(names)) {}
+  explicit CanopenNetworkDecoder(const std::vector<Motor>& motors);
   std::optional<Reading> read(const CanFrame& frame) override;
 
  private:
-  std::map<std::uint8_t, std::string> names_;
+  std::map<std::uint8_t, std::string> names_;  ///< of the nodes
 };
+
+void add_canopen_messages(const Motor& motor, const BusFacts& bus,
+                          std::vector<dbc::Message>* messages);
+/// Network management and SYNC.
+void add_canopen_network_messages(const BusFacts& bus, std::vector<dbc::Message>* messages);
 
 }  // namespace limber::bus_tools

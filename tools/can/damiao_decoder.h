@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/protocols/mit.h"
+#include "tools/can/dbc.h"
 #include "tools/can/motors_on_bus.h"
 #include "tools/can/reading.h"
 
@@ -25,5 +26,10 @@ class DamiaoDecoder final : public FrameDecoder {
   /// The request not answered yet: an answer looks like a state, and is one if nobody asked.
   std::optional<mit::RegisterRequest> open_;
 };
+
+void add_damiao_messages(const Motor& motor, const BusFacts& bus,
+                         std::vector<dbc::Message>* messages);
+/// Requests of registers, under an identifier that all drives share.
+void add_damiao_registers(const BusFacts& bus, std::vector<dbc::Message>* messages);
 
 }  // namespace limber::bus_tools

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/protocols/moteus_frame.h"
+#include "tools/can/dbc.h"
 #include "tools/can/motors_on_bus.h"
 #include "tools/can/reading.h"
 
@@ -24,5 +25,8 @@ class MoteusDecoder final : public FrameDecoder {
   std::string name_;
   std::uint8_t id_;
 };
+
+void add_moteus_messages(const Motor& motor, const BusFacts& bus,
+                         std::vector<dbc::Message>* messages);
 
 }  // namespace limber::bus_tools

@@ -15,6 +15,14 @@ struct Motor {
   std::string node = {};  ///< its name in a DBC file, each once on a bus; see dbc_messages()
 };
 
+struct BusFacts {
+  bool fd = false;
+  double period_s = 0.0;  ///< of the commands
+};
+inline BusFacts facts_of(const Robot& robot, int bus) {
+  return {robot.buses[static_cast<std::size_t>(bus)].fd, 1.0 / robot.rate_hz};
+}
+
 inline std::vector<Motor> motors_on_bus(const Robot& robot, int bus) {
   std::vector<Motor> motors;
   for (const JointConfig& joint : robot.joints) {

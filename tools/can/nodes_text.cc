@@ -43,7 +43,7 @@ std::string bus_text(const Robot& robot, int index) {
                       "command", "reply");
   for (const Motor& motor : motors_on_bus(robot, index)) {
     const DriveConfig& drive = motor.joint.drive;
-    text += row(motor.name, drive.motor, traits_of(drive.protocol).word, drive.command_id,
+    text += row(motor.name, drive.motor, drive.protocol->word, drive.command_id,
                 id_text(drive.reply_id));
   }
   if (robot.has_tip_sensor && robot.tip_sensor.bus == index) {

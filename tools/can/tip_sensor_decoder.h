@@ -2,6 +2,7 @@
 #pragma once
 
 #include "robots/loader/robot.h"
+#include "tools/can/dbc.h"
 #include "tools/can/reading.h"
 
 namespace limber::bus_tools {
@@ -18,5 +19,9 @@ class TipSensorDecoder final : public FrameDecoder {
   TipSensorConfig sensor_;
   std::optional<CanFrame> first_half_;  ///< kRobotousRft
 };
+
+/// `node`: its name in the DBC file.
+void add_tip_sensor_messages(const TipSensorConfig& sensor, const std::string& node,
+                             std::vector<dbc::Message>* messages);
 
 }  // namespace limber::bus_tools

@@ -27,6 +27,7 @@ struct Arguments {
   std::string scenario;
   bool as_json = false;
   bool keys = false;
+  bool protocols = false;
 };
 
 /// The arms of a URDF are on standard output already.
@@ -85,6 +86,7 @@ std::string check_urdf_file(Arguments given) {
 
 std::string check(const Arguments& given) {
   if (given.keys) return required_keys_table();
+  if (given.protocols) return protocols_json();
   if (!given.urdf.empty()) return check_urdf_file(given);
   if (given.scenario.empty()) return check_arm(load_robot(given.robot), given.as_json);
   std::string note;
@@ -106,6 +108,8 @@ void define(CommandLine& line, Arguments* given) {
   scenario.text("file", &given->scenario, "scenario file").required();
   auto& keys = line.command("keys", "lists the keys that every robot.yaml needs, in Markdown");
   keys.when_chosen([given] { given->keys = true; });
+  auto& protocols = line.command("protocols", "lists the drive protocols, as JSON");
+  protocols.when_chosen([given] { given->protocols = true; });
   for (auto* command : {&robot, &urdf, &scenario})
     command->flag("--json", &given->as_json, "print one JSON object");
 }

@@ -18,6 +18,8 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot);
 std::string arms_text(const std::string& file, const std::vector<UrdfArm>& arms);
 /// {"ok": false, "complaints": [problem], "chains": [...]}
 std::string arms_json(const std::string& problem, const std::vector<UrdfArm>& arms);
+/// The drive protocols (robots/loader/protocols), for tools in other languages.
+std::string protocols_json();
 /// {"ok": false, "complaints": [...]}, one a line of `what`.
 std::string refusal_json(const std::string& what);
 

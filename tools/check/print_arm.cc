@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "robots/loader/adapter.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "sim/wire/bus_timeline.h"
 #include "tools/check/chain_report.h"
 #include "tools/check/json.h"
@@ -65,7 +66,7 @@ std::string tip_sensor_json(const Robot& robot) {
 // As the makers' tools write them: hexadecimal, or the node numbers of CANopen and moteus, whose
 // frames have more fields.
 std::string as_seen(const DriveConfig& drive, std::uint32_t id) {
-  const bool node = drive.protocol != DriveProtocol::kDamiaoMit && id <= 0xFF;
+  const bool node = !drive.protocol->hex_ids && id <= 0xFF;
   return node ? fmt::format("{}", id) : fmt::format("{:#04x}", id);
 }
 

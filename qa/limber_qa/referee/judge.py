@@ -2,16 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 
 from limber.errors import InputError, RunError
-from limber_qa.referee import cia402, damiao, moteus, stops
+from limber_qa.referee import stops
 from limber_qa.referee.arm import Arm, read_arm
 from limber_qa.referee.candump import Trace, read_trace
+from limber_qa.referee.drives import decoder
 from limber_qa.referee.rules import LIMITS, Breach, Track
 from limber_qa.referee.stops import Expectation
-
-DECODERS: dict[str, ModuleType] = {"damiao_mit": damiao, "moteus": moteus, "cia402": cia402}
 
 
 @dataclass(frozen=True)
@@ -33,17 +31,15 @@ def tracks_of(trace: Trace, arm: Arm) -> list[Track]:
     """Raises InputError for a protocol that the referee cannot read."""
     tracks = []
     for motor in arm.motors:
-        if motor.protocol not in DECODERS:
-            raise InputError(f"{motor.name}: the referee cannot read '{motor.protocol}'")
-        decoder = DECODERS[motor.protocol]
+        drive = decoder(motor.protocol)
         tracks.append(
             Track(
                 motor,
                 arm.period_ns,
-                decoder.resolution_Nm(motor),
-                motor.protocol != "cia402",
-                decoder.commands(motor, trace),
-                decoder.states(motor, trace),
+                drive.resolution_Nm(motor),
+                drive.TELLS_HOLD,
+                drive.commands(motor, trace),
+                drive.states(motor, trace),
             )
         )
     return tracks

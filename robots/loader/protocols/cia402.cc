@@ -11,12 +11,26 @@
 namespace limber {
 namespace {
 
+constexpr ProtocolKey kCia402Required[] = {
+    {"motors.*",
+     "encoder_bits|counts_per_turn",
+     "encoder counts per turn of the joint",
+     {20},
+     "object 608Fh times the gear 6091h, per turn of the joint"},
+    {"motors.*",
+     "rated_torque_Nm",
+     "object 6076h, at the joint",
+     {0.0, Figure::kPeakTorque, 1.0 / 30.0},
+     "object 6076h, at the joint"},
+};
 constexpr const char* kCia402Keys[] = {"rated_torque_Nm", "counts_per_turn"};
 constexpr int kLeastBits = 8;
 constexpr int kMostBits = 28;
 constexpr std::uint32_t kRpdo1 = 0x200;
 constexpr std::uint32_t kTpdo1 = 0x180;
 constexpr std::uint32_t kPdoStep = 0x100;
+constexpr std::uint32_t kSdoRequest = 0x600;
+constexpr std::uint32_t kSdoAnswer = 0x580;
 
 /// Any number per turn of the joint: behind a gear not even a whole one.
 double read_counts(const YamlMap& yaml) {
@@ -72,20 +86,31 @@ std::string node_address(const DriveConfig& drive) {
   return fmt::format("node {}", drive.command_id - kRpdo1);
 }
 
+SettingFrames sdo_frames(const DriveConfig& drive) {
+  const std::uint32_t node = drive.command_id - kRpdo1;
+  return {kSdoRequest + node, kSdoAnswer + node, true};
+}
+
 }  // namespace
 
-const DriveProtocolTraits kCia402Traits = {
-    .protocol = DriveProtocol::kCia402,
+extern const DriveProtocol kCia402;
+const DriveProtocol kCia402 = {
     .word = "cia402",
+    .title = "CiA 402",
     .enabling_s = 2.0,  // some open a brake first
+    .usually_fd = false,
     .reports_link = true,
     .needs_sync = true,
     .rotary_only = true,
+    .usual_gear_ratio = 100.0,
+    .joints_a_bus = 2,
+    .required = kCia402Required,
     .keys = kCia402Keys,
     .read_motor = read_cia402_motor,
     .read_ids = read_cia402_ids,
     .address = node_address,
     .frames = cia402_frames,
+    .setting = sdo_frames,
     .reserves_id = reserves_id,
 };
 

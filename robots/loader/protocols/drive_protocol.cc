@@ -3,55 +3,64 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace limber {
-namespace {
 
-// Every protocol there is.
-constexpr std::array kProtocols = {&kDamiaoMitTraits, &kMoteusTraits, &kCia402Traits};
-
-}  // namespace
-
-const DriveProtocolTraits& traits_of(DriveProtocol protocol) noexcept {
-  return **std::ranges::find(kProtocols, protocol, &DriveProtocolTraits::protocol);
+std::string_view name_of(Figure figure) noexcept {
+  switch (figure) {
+    case Figure::kPeakTorque:
+      return "peak_torque";
+    case Figure::kSpeed:
+      return "speed";
+    case Figure::kHoldKp:
+      return "hold_kp";
+    case Figure::kHoldKd:
+      return "hold_kd";
+    case Figure::kNone:
+      break;
+  }
+  return "";
 }
 
-const DriveProtocolTraits& traits_of(const std::string& word) {
-  return **std::ranges::find(kProtocols, word, &DriveProtocolTraits::word);
+const DriveProtocol& protocol_named(std::string_view word) {
+  return **std::ranges::find(drive_protocols(), word, &DriveProtocol::word);
 }
 
 std::vector<std::string> protocol_words() {
   std::vector<std::string> words;
-  for (const DriveProtocolTraits* traits : kProtocols) words.emplace_back(traits->word);
+  for (const DriveProtocol* protocol : drive_protocols()) words.emplace_back(protocol->word);
   return words;
 }
 
 std::string link_protocol_words() {
   std::string words;
-  for (const DriveProtocolTraits* traits : kProtocols) {
-    if (traits->reports_link) words += (words.empty() ? "" : " or ") + std::string(traits->word);
+  for (const DriveProtocol* protocol : drive_protocols()) {
+    if (protocol->reports_link)
+      words += (words.empty() ? "" : " or ") + std::string(protocol->word);
   }
   return words;
 }
 
-void refuse_foreign_keys(const YamlMap& yaml, const DriveProtocolTraits& traits) {
-  for (const DriveProtocolTraits* other : kProtocols) {
+void refuse_foreign_keys(const YamlMap& yaml, const DriveProtocol& protocol) {
+  for (const DriveProtocol* other : drive_protocols()) {
     for (const char* key : other->keys) {
-      if (other != &traits && yaml.has(key))
+      if (other != &protocol && yaml.has(key))
         yaml.refuse(key, fmt::format("is for motors with protocol: {} only", other->word));
     }
   }
 }
 
+// A joint that was refused has no protocol.
 bool uses_id(const DriveConfig& drive, std::uint32_t id) {
-  const auto reserves_id = traits_of(drive.protocol).reserves_id;
+  if (drive.protocol == nullptr) return false;
+  const auto reserves_id = drive.protocol->reserves_id;
   return id == drive.command_id || id == drive.reply_id ||
          (reserves_id != nullptr && reserves_id(drive, id));
 }
 
 bool accepts_id(const DriveConfig& drive, std::uint32_t id) {
-  const auto accepts = traits_of(drive.protocol).accepts_id;
+  if (drive.protocol == nullptr) return false;
+  const auto accepts = drive.protocol->accepts_id;
   return accepts != nullptr && accepts(drive, id);
 }
 

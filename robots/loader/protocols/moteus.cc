@@ -12,6 +12,25 @@
 namespace limber {
 namespace {
 
+/// A share of the drive's own gains is commanded: a little more than holding needs, per turn.
+constexpr double kFirstGain = 2.0 * std::numbers::pi * 1.01;
+constexpr const char* kGains = "motors.*.pid_position";
+constexpr ProtocolKey kMoteusRequired[] = {
+    {"motors.*", "encoder_bits", "encoder counts per turn of the joint, as bits", {14}},
+    {"motors.*",
+     "pid_position",
+     "gains configured in the drive",
+     {},
+     "servo.pid_position.kp and .kd as moteus_tool reads them"},
+    {kGains,
+     "kp_Nm_per_turn",
+     "servo.pid_position.kp of the drive",
+     {0.0, Figure::kHoldKp, kFirstGain}},
+    {kGains,
+     "kd_Nms_per_turn",
+     "servo.pid_position.kd of the drive",
+     {0.0, Figure::kHoldKd, kFirstGain}},
+};
 constexpr const char* kMoteusKeys[] = {"pid_position", "timeout_torque_Nm"};
 constexpr std::uint32_t kNodeBits = 0x7F;
 constexpr std::uint32_t kBroadcast = 0x7F;
@@ -51,14 +70,19 @@ FrameSizes moteus_frames(const JointConfig& /*joint*/, bool /*fd*/) { return {48
 
 }  // namespace
 
-const DriveProtocolTraits kMoteusTraits = {
-    .protocol = DriveProtocol::kMoteus,
+extern const DriveProtocol kMoteus;
+const DriveProtocol kMoteus = {
     .word = "moteus",
+    .title = "moteus",
     .needs_fd = true,
     .rotary_only = true,
+    .sample_point = 0.666,  // mjbots, moteus reference
+    .usual_gear_ratio = 9.0,
+    .joints_a_bus = 3,
     .warning_temperature_degC =
         50.0,  // its firmware reduces the current from there on, and faults at 75
     .limit_temperature_degC = 65.0,  // guessed: there 40 % of its current are left
+    .required = kMoteusRequired,
     .keys = kMoteusKeys,
     .read_motor = read_moteus_motor,
     .read_ids = read_moteus_ids,

@@ -110,7 +110,7 @@ TEST(ConfigureTest, AMotorThatCannotBeDisabledIsRefused) {
 TEST(ConfigureTest, AnAnswerThatWasNotAskedForYetDoesNotCount) {
   const DriveConfig drive = test_robot(1).joints[0].drive;
   const auto family = make_drive_family(test_robot(1).joints[0], true, 1e-3);
-  ConfigureDialogue dialogue(family.get());
+  ConfigureDialogue dialogue(family);
   testing::FakeMotor motor(drive);
   dialogue.start();
   dialogue.receive_state(false);

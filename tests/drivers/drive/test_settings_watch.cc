@@ -7,37 +7,22 @@ namespace limber::test_settings_watch {
 namespace {
 
 /// Step i asks with identifier i for what is i; an answer is its identifier and its value.
-class FakeFamily final : public DriveFamily {
+class FakeStartup final : public StartupDialogue {
  public:
-  explicit FakeFamily(std::vector<bool> readable) : readable_(std::move(readable)) {}
+  explicit FakeStartup(std::vector<bool> readable) : readable_(std::move(readable)) {}
 
-  bool command(const DriveCommand& /*command*/, const DriveMemory& /*memory*/, CanFrame* /*frame*/,
-               DriveCommand* /*sent*/) noexcept override {
-    return false;
-  }
-  CanFrame disable() noexcept override { return {}; }
-  CanFrame clear_error() noexcept override { return {}; }
-  CanFrame enable(const DriveMemory& /*memory*/) noexcept override { return {}; }
-  CanFrame state_request() const noexcept override { return {}; }
   CanFrame presence_request() const noexcept override { return {}; }
-  bool is_mine(const CanFrame& /*frame*/) const noexcept override { return true; }
-  bool is_foreign_command(const CanFrame& /*frame*/) const noexcept override { return false; }
-  std::vector<CanFilter> receive_filters() const override { return {}; }
-  StateReading read_state(const CanFrame& /*frame*/, bool /*late*/,
-                          DriveReport* /*report*/) noexcept override {
-    return StateReading::kNone;
-  }
-  double angle_resolution() const noexcept override { return 0.0; }
-  int startup_steps() const noexcept override { return static_cast<int>(readable_.size()); }
-  StartupStep startup_step(int index) const noexcept override {
+  bool is_presence(const CanFrame& /*frame*/) const noexcept override { return true; }
+  int steps() const noexcept override { return static_cast<int>(readable_.size()); }
+  StartupStep step(int index) const noexcept override {
     return {100U + static_cast<std::uint32_t>(index), static_cast<double>(index)};
   }
-  CanFrame startup_request(int index) const noexcept override {
+  CanFrame request(int index) const noexcept override {
     CanFrame frame;
     frame.id = static_cast<std::uint32_t>(index);
     return frame;
   }
-  bool may_be_read_again(int index) const noexcept override {
+  bool can_be_polled(int index) const noexcept override {
     return readable_.at(static_cast<std::size_t>(index));
   }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override {
@@ -73,8 +58,8 @@ class Watched : public ::testing::Test {
     }
   }
 
-  FakeFamily family{{false, false, true, false, true, false}};
-  SettingsWatch watch{&family};
+  FakeStartup startup{{false, false, true, false, true, false}};
+  SettingsWatch watch{&startup};
 };
 
 TEST_F(Watched, WhatMayBeReadIsReadInTurn) {
@@ -88,9 +73,9 @@ TEST_F(Watched, WhatMayBeReadIsReadInTurn) {
 }
 
 TEST_F(Watched, AFamilyWithNothingToBeReadIsAskedNothing) {
-  FakeFamily nothing{{false, false}};
-  FakeFamily no_steps{{}};
-  for (FakeFamily* of : {&nothing, &no_steps}) {
+  FakeStartup nothing{{false, false}};
+  FakeStartup no_steps{{}};
+  for (FakeStartup* of : {&nothing, &no_steps}) {
     SettingsWatch empty(of);
     CanFrame frame;
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(empty.request(&frame));
@@ -99,7 +84,7 @@ TEST_F(Watched, AFamilyWithNothingToBeReadIsAskedNothing) {
 }
 
 TEST_F(Watched, OnlySettingsCanBeAsked) {
-  FakeFamily last{{false, false, true}};
+  FakeStartup last{{false, false, true}};
   SettingsWatch other(&last);
   CanFrame frame;
   for (int i = 0; i < 3; ++i) {
@@ -123,7 +108,7 @@ TEST_F(Watched, TwoWrongAnswersInARowAreAChange) {
 
 // A drive that is still on its way to a value that it should have.
 TEST_F(Watched, NotYetIsWrong) {
-  family.otherwise = Answer::kNotYet;
+  startup.otherwise = Answer::kNotYet;
   answer_wrongly(2);
   EXPECT_TRUE(watch.changed());
 }
@@ -141,7 +126,7 @@ TEST_F(Watched, OneWrongAnswerIsForgottenWithTheNextRightOne) {
 
 TEST_F(Watched, WhatTheDriveDoesNotTellSaysNothing) {
   for (Answer none : {Answer::kRefused, Answer::kMissing}) {
-    family.otherwise = none;
+    startup.otherwise = none;
     answer_wrongly(1);
     EXPECT_EQ(ask(), 4) << "the next one";
     watch.receive(answer(4, 4));
@@ -194,7 +179,7 @@ TEST_F(Watched, TheFirstChangeStaysUntilTheStartUpIsRepeated) {
 }
 
 TEST_F(Watched, TheFirstStepMayBeASetting) {
-  FakeFamily first{{true, true}};
+  FakeStartup first{{true, true}};
   SettingsWatch other(&first);
   CanFrame frame;
   for (int time = 0; time < 2; ++time) {

@@ -218,7 +218,7 @@ inline Robot cia402_robot(bool fd = true) {
     JointConfig& joint = robot.joints[i];
     joint.torque_limit_Nm = 14.0;
     joint.torque_rate_limit_Nm_per_s = 14000.0;
-    joint.drive.protocol = DriveProtocol::kCia402;
+    joint.drive.protocol = &protocol_named("cia402");
     joint.drive.command_id = static_cast<std::uint32_t>(0x203 + i);
     joint.drive.reply_id = static_cast<std::uint32_t>(0x183 + i);
     joint.drive.rated_torque_Nm = 28.0;
@@ -234,7 +234,8 @@ inline Robot cia402_robot(bool fd = true) {
   elastic.transmission.kind = TransmissionKind::kElastic;
   elastic.transmission.spring.stiffness_Nm_per_rad = 5000.0;
   elastic.transmission.damping_Nms_per_rad = 2.0;
-  for (JointConfig& joint : robot.joints) joint.drive.frames = kCia402Traits.frames(joint, fd);
+  for (JointConfig& joint : robot.joints)
+    joint.drive.frames = protocol_named("cia402").frames(joint, fd);
   return robot;
 }
 

@@ -24,8 +24,7 @@ constexpr std::uint32_t kNoSuchObject = 0x06020000;
 constexpr std::uint32_t kNoSuchSub = 0x06090011;
 constexpr std::uint32_t kReadOnly = 0x06010002;
 
-std::unique_ptr<DriveFamily> family_of(const JointConfig& joint, bool fd = true,
-                                       double period_s = kPeriod_s) {
+DriveFamily family_of(const JointConfig& joint, bool fd = true, double period_s = kPeriod_s) {
   return make_drive_family(joint, fd, period_s);
 }
 
@@ -38,20 +37,20 @@ class Cia402FamilyTest : public ::testing::Test {
   double sent(double torque_Nm) {
     CanFrame frame;
     DriveCommand sent;
-    EXPECT_TRUE(family_->command({.torque_Nm = torque_Nm}, {}, &frame, &sent));
+    EXPECT_TRUE(family_.codec->command({.torque_Nm = torque_Nm}, {}, &frame, &sent));
     return sent.torque_Nm;
   }
   /// The step that reads an object, or, `writing`, the first that writes it; -1: none.
   int step(std::uint32_t reg, bool writing = false) const {
-    for (int i = 0; i < family_->startup_steps(); ++i) {
-      const bool writes = family_->startup_request(i).data[0] != 0x40;
-      if (family_->startup_step(i).reg == reg && writes == writing) return i;
+    for (int i = 0; i < family_.startup->steps(); ++i) {
+      const bool writes = family_.startup->request(i).data[0] != 0x40;
+      if (family_.startup->step(i).reg == reg && writes == writing) return i;
     }
     return -1;
   }
   /// What the drive answers to step `index`: a value, or that it was written.
   CanFrame reply(int index, std::uint32_t raw) const {
-    CanFrame frame = family_->startup_request(index);
+    CanFrame frame = family_.startup->request(index);
     frame.id -= 0x80;
     const bool writes = frame.data[0] != 0x40;
     frame.data[0] = writes ? 0x60 : 0x43;
@@ -67,14 +66,14 @@ class Cia402FamilyTest : public ::testing::Test {
   }
   Answer check(int index, const CanFrame& frame) {
     found_ = -77.0;
-    return family_->check_answer(index, frame, &found_);
+    return family_.startup->check_answer(index, frame, &found_);
   }
   Answer answered(std::uint32_t reg, std::uint32_t raw) {
     return check(step(reg), reply(step(reg), raw));
   }
-  double expected(std::uint32_t reg) const { return family_->startup_step(step(reg)).expected; }
+  double expected(std::uint32_t reg) const { return family_.startup->step(step(reg)).expected; }
 
-  std::unique_ptr<DriveFamily> family_ = family_of(plain());
+  DriveFamily family_ = family_of(plain());
   double found_ = 0.0;
 };
 
@@ -96,12 +95,12 @@ TEST_F(Cia402FamilyTest, RoundingIsMadeUpForUntilTheDriveIsTakenOff) {
   const double first = sent(wanted);
   for (int k = 0; k < 10; ++k) {
     sent(wanted + 0.37 * k * kCount);
-    static_cast<void>(family_->disable());
+    static_cast<void>(family_.codec->disable());
     EXPECT_EQ(sent(wanted), first) << k;
     sent(wanted + 0.37 * k * kCount);
     CanFrame frame;
     DriveCommand command{.torque_Nm = std::nan("")};
-    EXPECT_FALSE(family_->command(command, {}, &frame, &command));
+    EXPECT_FALSE(family_.codec->command(command, {}, &frame, &command));
     EXPECT_EQ(sent(wanted), first) << k;
   }
 }
@@ -113,58 +112,61 @@ TEST_F(Cia402FamilyTest, SpringAndDamperAreTheDriversOwn) {
   memory.seen.speed_rad_per_s = 0.5;
   CanFrame frame;
   DriveCommand sent;
-  ASSERT_TRUE(family_->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
+  ASSERT_TRUE(family_.codec->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
   EXPECT_NEAR(sent.torque_Nm, 1.0 + 50.0 * 0.1 - 4.0 * 0.5, 0.014);
   EXPECT_EQ(sent.kp_Nm_per_rad, 0.0) << "the drive knows torque alone";
   EXPECT_EQ(sent.kd_Nms_per_rad, 0.0);
   memory.seen.angle_rad = std::nan("");
-  EXPECT_FALSE(family_->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
+  EXPECT_FALSE(family_.codec->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
   memory.recent = false;
-  EXPECT_TRUE(family_->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
+  EXPECT_TRUE(family_.codec->command({0.2, 0.0, 50.0, 4.0, 1.0}, memory, &frame, &sent));
 }
 
 TEST_F(Cia402FamilyTest, AStatesPartsComeOnceAndTogether) {
   family_ = family_of(plain(false), false);
   DriveReport report;
-  family_->begin_cycle();
-  EXPECT_EQ(family_->read_state(parse("583#4300100092010200"), false, &report),
+  family_.codec->begin_cycle();
+  EXPECT_EQ(family_.codec->read_state(parse("583#4300100092010200"), false, &report),
             StateReading::kNone);
-  EXPECT_EQ(family_->read_state(parse("183#371200000100"), false, &report), StateReading::kPart);
-  EXPECT_EQ(family_->read_state(parse("183#371200000100"), false, &report), StateReading::kNone);
-  EXPECT_EQ(family_->read_state(parse("283#000000003200"), false, &report), StateReading::kWhole);
+  EXPECT_EQ(family_.codec->read_state(parse("183#371200000100"), false, &report),
+            StateReading::kPart);
+  EXPECT_EQ(family_.codec->read_state(parse("183#371200000100"), false, &report),
+            StateReading::kNone);
+  EXPECT_EQ(family_.codec->read_state(parse("283#000000003200"), false, &report),
+            StateReading::kWhole);
   EXPECT_EQ(report.status, 0x1237);
   EXPECT_NEAR(report.torque_Nm, 50.0 * 0.028, 1e-12);
 }
 
 TEST_F(Cia402FamilyTest, AnsweringWhatItIsIsPresence) {
-  EXPECT_EQ(text(family_->presence_request()), "603#4000100000000000");
-  EXPECT_TRUE(family_->is_presence(parse("583#4300100092010200")));
-  EXPECT_FALSE(family_->is_presence(parse("583#4B41600050020000"))) << "another object";
-  EXPECT_FALSE(family_->is_presence(parse("584#4300100092010200"))) << "another node";
-  EXPECT_FALSE(family_->is_presence(parse("183#4300100092010200")));
+  EXPECT_EQ(text(family_.startup->presence_request()), "603#4000100000000000");
+  EXPECT_TRUE(family_.startup->is_presence(parse("583#4300100092010200")));
+  EXPECT_FALSE(family_.startup->is_presence(parse("583#4B41600050020000"))) << "another object";
+  EXPECT_FALSE(family_.startup->is_presence(parse("584#4300100092010200"))) << "another node";
+  EXPECT_FALSE(family_.startup->is_presence(parse("183#4300100092010200")));
 }
 
 TEST_F(Cia402FamilyTest, AnEnabledDriveThatIgnoresItsTargetIsTold) {
-  EXPECT_EQ(family_->status_text(0x1237), "operation enabled (statusword 1237h)");
-  EXPECT_EQ(family_->status_text(0x0237),
+  EXPECT_EQ(family_.codec->status_text(0x1237), "operation enabled (statusword 1237h)");
+  EXPECT_EQ(family_.codec->status_text(0x0237),
             "operation enabled (statusword 0237h), but ignores its target (bit 12 is 0): halt, "
             "another mode, or a limit");
-  EXPECT_EQ(family_->status_text(0x0250), "switch on disabled (statusword 0250h)");
+  EXPECT_EQ(family_.codec->status_text(0x0250), "switch on disabled (statusword 0250h)");
 }
 
 // --- start-up: what is expected -----------------------------------------------------------------
 
 TEST_F(Cia402FamilyTest, ASecondForEachAnswer) {
-  EXPECT_EQ(family_->patience_cycles(), 1000);
-  EXPECT_EQ(family_of(plain(), true, 0.3)->patience_cycles(), 4);
-  EXPECT_EQ(family_of(plain(), true, 2.0)->patience_cycles(), 1);
+  EXPECT_EQ(family_.startup->patience_cycles(), 1000);
+  EXPECT_EQ(family_of(plain(), true, 0.3).startup->patience_cycles(), 4);
+  EXPECT_EQ(family_of(plain(), true, 2.0).startup->patience_cycles(), 1);
 }
 
 TEST_F(Cia402FamilyTest, TheFirstAndLastStepAreNoObjects) {
-  for (const int i : {0, family_->startup_steps() - 1}) {
-    EXPECT_EQ(family_->startup_step(i).reg, 0u);
-    EXPECT_EQ(family_->startup_step(i).expected, 0.0);
-    EXPECT_EQ(family_->startup_step(i).answered, i != 0);
+  for (const int i : {0, family_.startup->steps() - 1}) {
+    EXPECT_EQ(family_.startup->step(i).reg, 0u);
+    EXPECT_EQ(family_.startup->step(i).expected, 0.0);
+    EXPECT_EQ(family_.startup->step(i).answered, i != 0);
   }
 }
 
@@ -181,7 +183,7 @@ TEST_F(Cia402FamilyTest, NumbersAsTheObjectsTypesHaveThem) {
   EXPECT_EQ(expected(0x201002), 5000.0);
   EXPECT_EQ(expected(0x201003), 2.0);
   EXPECT_EQ(expected(0x608F01), 65536.0);
-  EXPECT_EQ(family_->startup_step(step(0x140001, true)).expected, 2147484164.0) << "80000204h";
+  EXPECT_EQ(family_.startup->step(step(0x140001, true)).expected, 2147484164.0) << "80000204h";
   family_ = family_of(joint, true, 0.255);
   EXPECT_EQ(expected(0x60C201), 255.0);
 }
@@ -260,7 +262,7 @@ TEST_F(Cia402FamilyTest, BitsThatDoNotMatterAreNotCompared) {
 
 TEST_F(Cia402FamilyTest, StatesAnswerTheStart) {
   family_ = family_of(plain(false), false);
-  const int start = family_->startup_steps() - 1;
+  const int start = family_.startup->steps() - 1;
   EXPECT_EQ(check(start, parse("583#4300100092010200")), Answer::kNone);
   EXPECT_EQ(check(start, parse("183#371200000100")), Answer::kNotYet);
   EXPECT_EQ(check(start, parse("283#000000003200")), Answer::kRight);
@@ -271,8 +273,8 @@ TEST_F(Cia402FamilyTest, WhichObjectsMayBeMissing) {
   family_ = family_of(elastic());
   const std::set<std::uint32_t> warned = {0x140005, 0x600700, 0x605E00, 0x60C201, 0x60C202};
   const std::set<std::uint32_t> silent = {0x608F02, 0x609101, 0x180101, 0x180201, 0x180301};
-  for (int i = 1; i + 1 < family_->startup_steps(); ++i) {
-    const std::uint32_t reg = family_->startup_step(i).reg;
+  for (int i = 1; i + 1 < family_.startup->steps(); ++i) {
+    const std::uint32_t reg = family_.startup->step(i).reg;
     if (reg == 0x609102) continue;  // the last of the counts: all are compared
     for (const std::uint32_t code : {kNoSuchObject, kNoSuchSub}) {
       const Answer expected = warned.count(reg) != 0   ? Answer::kMissing

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "drivers/families/drive_family.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::test_damiao_family {
@@ -21,6 +22,7 @@ constexpr double kTorqueCount = 20.0 / 4095.0;
 /// Ids 001h and 011h; +-12.5 rad, +-30 rad/s, +-10 N m; 2 N m/A; a watchdog of 20 ms: 400 counts.
 JointConfig joint(double torque_limit_Nm = 8.0) {
   JointConfig made;
+  made.drive.protocol = &protocol_named("damiao_mit");
   made.torque_limit_Nm = torque_limit_Nm;
   made.drive.command_id = 0x001;
   made.drive.reply_id = 0x011;
@@ -37,24 +39,25 @@ class DamiaoFamilyTest : public ::testing::Test {
   double sent(double torque_Nm) {
     CanFrame frame;
     DriveCommand sent;
-    EXPECT_TRUE(family_->command({.torque_Nm = torque_Nm}, {}, &frame, &sent));
+    EXPECT_TRUE(family_.codec->command({.torque_Nm = torque_Nm}, {}, &frame, &sent));
     return sent.torque_Nm;
   }
   DriveReport read(const std::string& candump) {
     DriveReport report;
-    EXPECT_EQ(family_->read_state(parse(candump), false, &report), StateReading::kWhole);
+    EXPECT_EQ(family_.codec->read_state(parse(candump), false, &report), StateReading::kWhole);
     return report;
   }
 
-  std::unique_ptr<DriveFamily> family_ = make_drive_family(joint(), false, 1e-3);
+  DriveFamily family_ = make_drive_family(joint(), false, 1e-3);
 };
 
 TEST_F(DamiaoFamilyTest, FramesWithoutTorque) {
-  EXPECT_EQ(text(family_->enable({})), "001#FFFFFFFFFFFFFFFC");
-  EXPECT_EQ(text(family_->disable()), "001#FFFFFFFFFFFFFFFD");
-  EXPECT_EQ(text(family_->clear_error()), "001#FFFFFFFFFFFFFFFB");
-  EXPECT_TRUE(text(family_->presence_request()).starts_with("7FF#0100330A")) << "register 10";
-  EXPECT_TRUE(text(family_->state_request()).starts_with("7FF#0100CC"));
+  EXPECT_EQ(text(family_.codec->enable({})), "001#FFFFFFFFFFFFFFFC");
+  EXPECT_EQ(text(family_.codec->disable()), "001#FFFFFFFFFFFFFFFD");
+  EXPECT_EQ(text(family_.codec->clear_error()), "001#FFFFFFFFFFFFFFFB");
+  EXPECT_TRUE(text(family_.startup->presence_request()).starts_with("7FF#0100330A"))
+      << "register 10";
+  EXPECT_TRUE(text(family_.codec->state_request()).starts_with("7FF#0100CC"));
 }
 
 TEST_F(DamiaoFamilyTest, AStateInSIUnits) {
@@ -78,9 +81,10 @@ TEST_F(DamiaoFamilyTest, AStateInSIUnits) {
   EXPECT_EQ(lowest.temperature_degC, 40.0) << "the warmer one";
   EXPECT_EQ(read("011#017FFF7FF7FF1E23").condition, DriveCondition::kDisabled);
   DriveReport none;
-  EXPECT_EQ(family_->read_state(parse("011#127FFF7FF7FF1E23"), false, &none), StateReading::kNone)
+  EXPECT_EQ(family_.codec->read_state(parse("011#127FFF7FF7FF1E23"), false, &none),
+            StateReading::kNone)
       << "another drive's number";
-  EXPECT_EQ(family_->read_state(parse("011#117FFF"), false, &none), StateReading::kNone);
+  EXPECT_EQ(family_.codec->read_state(parse("011#117FFF"), false, &none), StateReading::kNone);
 }
 
 TEST_F(DamiaoFamilyTest, EveryErrorInWords) {
@@ -97,7 +101,7 @@ TEST_F(DamiaoFamilyTest, EveryErrorInWords) {
       {0xE, "error E: overload"},
   };
   for (const auto& [status, words] : texts)
-    EXPECT_EQ(family_->status_text(static_cast<std::uint16_t>(status)), words);
+    EXPECT_EQ(family_.codec->status_text(static_cast<std::uint16_t>(status)), words);
 }
 
 // A count of 20 N m / 4095 is the most that rounding takes away, and nothing is added.
@@ -125,12 +129,12 @@ TEST_F(DamiaoFamilyTest, RoundingIsMadeUpForUntilTheDriveIsTakenOff) {
   EXPECT_NEAR(sum / 1000.0, wanted, 0.001 * kTorqueCount);
   for (int k = 0; k < 10; ++k) {
     sent(wanted + 0.37 * k * kTorqueCount);
-    static_cast<void>(family_->disable());
+    static_cast<void>(family_.codec->disable());
     EXPECT_EQ(sent(wanted), first) << "nothing is left of before";
     CanFrame frame;
     DriveCommand command{.torque_Nm = kNan};
     sent(wanted + 0.37 * k * kTorqueCount);
-    EXPECT_FALSE(family_->command(command, {}, &frame, &command));
+    EXPECT_FALSE(family_.codec->command(command, {}, &frame, &command));
     EXPECT_EQ(sent(wanted), first) << "nor after a command that was none";
   }
 }
@@ -138,19 +142,19 @@ TEST_F(DamiaoFamilyTest, RoundingIsMadeUpForUntilTheDriveIsTakenOff) {
 TEST_F(DamiaoFamilyTest, WhatIsNotFiniteIsNoCommand) {
   CanFrame frame;
   DriveCommand sent;
-  ASSERT_TRUE(family_->command({}, {}, &frame, &sent));
+  ASSERT_TRUE(family_.codec->command({}, {}, &frame, &sent));
   for (double DriveCommand::*field :
        {&DriveCommand::angle_rad, &DriveCommand::speed_rad_per_s, &DriveCommand::kp_Nm_per_rad,
         &DriveCommand::kd_Nms_per_rad, &DriveCommand::torque_Nm}) {
     DriveCommand command;
     command.*field = kNan;
-    EXPECT_FALSE(family_->command(command, {}, &frame, &sent));
+    EXPECT_FALSE(family_.codec->command(command, {}, &frame, &sent));
   }
 }
 
 TEST_F(DamiaoFamilyTest, CommandsAndSettingsOfOthersAreForeign) {
   const auto foreign = [this](const std::string& frame) {
-    return family_->is_foreign_command(parse(frame));
+    return family_.intruders->is_foreign_command(parse(frame));
   };
   EXPECT_TRUE(foreign("001#FFFFFFFFFFFFFFFC"));
   EXPECT_TRUE(foreign("7FF#0100550A02000000")) << "writes a register";
@@ -165,7 +169,9 @@ TEST_F(DamiaoFamilyTest, CommandsAndSettingsOfOthersAreForeign) {
 
 // As delivered, it answers with identifier 0.
 TEST_F(DamiaoFamilyTest, AnswersWithAnotherIdAreAstray) {
-  const auto astray = [this](const std::string& frame) { return family_->is_astray(parse(frame)); };
+  const auto astray = [this](const std::string& frame) {
+    return family_.startup->has_wrong_reply_id(parse(frame));
+  };
   EXPECT_TRUE(astray("000#0100330A01000000"));
   EXPECT_TRUE(astray("012#0100330A01000000"));
   EXPECT_FALSE(astray("011#0100330A01000000")) << "its own";
@@ -175,19 +181,19 @@ TEST_F(DamiaoFamilyTest, AnswersWithAnotherIdAreAstray) {
   EXPECT_FALSE(astray("000#0100330901000000")) << "another register";
   CanFrame longer = parse("000#0100330A01000000");
   longer.extended = true;
-  EXPECT_FALSE(family_->is_astray(longer));
+  EXPECT_FALSE(family_.startup->has_wrong_reply_id(longer));
   EXPECT_FALSE(astray("000#117FFF7FF7FF1E23"));
 }
 
 TEST_F(DamiaoFamilyTest, EachFrameIsAnsweredAtOnce) {
   CanFrame frame;
-  EXPECT_FALSE(family_->needs_bus_frame(&frame));
-  EXPECT_EQ(family_->patience_cycles(), 1);
+  EXPECT_FALSE(family_.codec->needs_bus_frame(&frame));
+  EXPECT_EQ(family_.startup->patience_cycles(), 1);
 }
 
 TEST_F(DamiaoFamilyTest, AnAnswerIsPresence) {
-  EXPECT_TRUE(family_->is_presence(parse("011#0100330A01000000")));
-  EXPECT_FALSE(family_->is_presence(parse("012#0100330A01000000")));
+  EXPECT_TRUE(family_.startup->is_presence(parse("011#0100330A01000000")));
+  EXPECT_FALSE(family_.startup->is_presence(parse("012#0100330A01000000")));
 }
 
 /// An answer judged, with what was found.
@@ -200,7 +206,7 @@ class DamiaoStartUp : public DamiaoFamilyTest {
  protected:
   Checked check(int step, const std::string& frame) {
     Checked checked;
-    checked.answer = family_->check_answer(step, parse(frame), &checked.found);
+    checked.answer = family_.startup->check_answer(step, parse(frame), &checked.found);
     return checked;
   }
   /// An answer to a read of a register, float32.
@@ -215,17 +221,17 @@ class DamiaoStartUp : public DamiaoFamilyTest {
 };
 
 TEST_F(DamiaoStartUp, ReadsThreeRangesAndWritesTwoSettings) {
-  ASSERT_EQ(family_->startup_steps(), 7);
+  ASSERT_EQ(family_.startup->steps(), 7);
   const char* const requests[] = {"7FF#01003315",         "7FF#01003316", "7FF#01003317",
                                   "7FF#0100550A01000000", "7FF#0100330A", "7FF#0100550990010000",
                                   "7FF#01003309"};
   const StartupStep steps[] = {{21, 12.5}, {22, 30.0}, {23, 10.0}, {10, 1.0},
                                {10, 1.0},  {9, 400.0}, {9, 400.0}};
   for (int i = 0; i < 7; ++i) {
-    EXPECT_TRUE(text(family_->startup_request(i)).starts_with(requests[i])) << i;
-    EXPECT_EQ(family_->startup_step(i).reg, steps[i].reg);
-    EXPECT_EQ(family_->startup_step(i).expected, steps[i].expected);
-    EXPECT_TRUE(family_->startup_step(i).answered);
+    EXPECT_TRUE(text(family_.startup->request(i)).starts_with(requests[i])) << i;
+    EXPECT_EQ(family_.startup->step(i).reg, steps[i].reg);
+    EXPECT_EQ(family_.startup->step(i).expected, steps[i].expected);
+    EXPECT_TRUE(family_.startup->step(i).answered);
   }
 }
 
@@ -259,36 +265,38 @@ TEST_F(DamiaoStartUp, SettingsAreEqual) {
 }
 
 TEST_F(DamiaoStartUp, WhatFailedInWords) {
-  EXPECT_EQ(family_->describe({}), "could not be disabled, or does not answer");
-  EXPECT_EQ(family_->describe({23, Answer::kNone, 0.0, 28.0}), "register 23 not answered");
-  EXPECT_EQ(family_->describe({23, Answer::kWrong, 10.0, 28.0}), "register 23 is 10, expected 28");
+  EXPECT_EQ(family_.startup->describe({}), "could not be disabled, or does not answer");
+  EXPECT_EQ(family_.startup->describe({23, Answer::kNone, 0.0, 28.0}), "register 23 not answered");
+  EXPECT_EQ(family_.startup->describe({23, Answer::kWrong, 10.0, 28.0}),
+            "register 23 is 10, expected 28");
 }
 
 // OT_Value, register 2, against limit_temperature_degC. 90 is 42B40000h, the next float 42B40001h.
 TEST(DamiaoHeat, TheDrivesOwnLimitIsAbove) {
   JointConfig made = joint();
-  const int without = make_drive_family(made, false, 1e-3)->startup_steps();
+  const int without = make_drive_family(made, false, 1e-3).startup->steps();
   made.drive.limit_temperature_degC = 90.0;
   const auto family = make_drive_family(made, false, 1e-3);
-  ASSERT_EQ(family->startup_steps(), without + 1);
+  ASSERT_EQ(family.startup->steps(), without + 1);
   const int last = without;
-  EXPECT_EQ(text(family->startup_request(last)), "7FF#0100330200000000");
-  EXPECT_EQ(family->startup_step(last).reg, 2U);
-  EXPECT_EQ(family->startup_step(last).expected, 90.0);
-  EXPECT_FALSE(family->may_be_read_again(last)) << "the ranges, mode and time-out have their turn";
+  EXPECT_EQ(text(family.startup->request(last)), "7FF#0100330200000000");
+  EXPECT_EQ(family.startup->step(last).reg, 2U);
+  EXPECT_EQ(family.startup->step(last).expected, 90.0);
+  EXPECT_FALSE(family.startup->can_be_polled(last))
+      << "the ranges, mode and time-out have their turn";
   double found = 0.0;
   const auto answer = [&](const std::string& bytes) {
-    return family->check_answer(last, parse("011#01003302" + bytes), &found);
+    return family.startup->check_answer(last, parse("011#01003302" + bytes), &found);
   };
   EXPECT_EQ(answer("0000C842"), Answer::kRight);
   EXPECT_EQ(found, 100.0);
   EXPECT_EQ(answer("0100B442"), Answer::kRight);
   EXPECT_EQ(answer("0000B442"), Answer::kWrong);
   EXPECT_EQ(answer("0000C07F"), Answer::kWrong) << "not a number";
-  EXPECT_EQ(family->describe({2, Answer::kWrong, 85.0, 90.0}),
+  EXPECT_EQ(family.startup->describe({2, Answer::kWrong, 85.0, 90.0}),
             "register 2 (over-temperature) is 85, expected more than 90: the drive would let go "
             "before limit_temperature_degC stops the arm");
-  EXPECT_EQ(family->describe({2, Answer::kNone, 0.0, 90.0}), "register 2 not answered");
+  EXPECT_EQ(family.startup->describe({2, Answer::kNone, 0.0, 90.0}), "register 2 not answered");
 }
 
 TEST(DriveFamilies, WhatNobodyHasToldIsADisabledDriveAtRest) {

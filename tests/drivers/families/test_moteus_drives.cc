@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "drivers/drive/joint_link.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/drivers/fake_arm.h"
 
 namespace limber::test_moteus_drives {
@@ -160,7 +161,7 @@ Robot moteus_robot(std::uint32_t first_id = 1) {
     joint.velocity_limit = 5.0;
     joint.torque_limit_Nm = 8.0;
     joint.torque_rate_limit_Nm_per_s = 8000.0;
-    joint.drive.protocol = DriveProtocol::kMoteus;
+    joint.drive.protocol = &protocol_named("moteus");
     joint.drive.command_id = 0x8000 + first_id + i;
     joint.drive.reply_id = (first_id + i) * 256;
     joint.drive.frames = {48, {32}};

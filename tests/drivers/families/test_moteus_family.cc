@@ -10,6 +10,7 @@
 #include <string>
 
 #include "drivers/families/drive_family.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::test_moteus_family {
@@ -33,14 +34,12 @@ JointConfig joint() {
   made.torque_limit_Nm = 8.0;
   made.position_min = -1.0;
   made.position_max = 2.0;
-  made.drive.protocol = DriveProtocol::kMoteus;
+  made.drive.protocol = &protocol_named("moteus");
   made.drive.command_id = 0x00028005;
   made.drive.reply_id = 0x500;
   return made;
 }
-std::unique_ptr<DriveFamily> family_of(const JointConfig& joint) {
-  return make_drive_family(joint, true, 1e-3);
-}
+DriveFamily family_of(const JointConfig& joint) { return make_drive_family(joint, true, 1e-3); }
 
 CanFrame with_id(std::uint32_t id, bool extended) {
   CanFrame frame;
@@ -77,7 +76,7 @@ class MoteusFamilyTest : public ::testing::Test {
  protected:
   Answer check(int step, const CanFrame& frame) {
     found_ = -77.0;
-    return family_->check_answer(step, frame, &found_);
+    return family_.startup->check_answer(step, frame, &found_);
   }
   /// A question's line, sent and answered at once.
   Answer asked(int question, const std::string& answer) {
@@ -85,20 +84,21 @@ class MoteusFamilyTest : public ::testing::Test {
     return check(3 + 2 * question, said(answer));
   }
 
-  std::unique_ptr<DriveFamily> family_ = family_of(joint());
+  DriveFamily family_ = family_of(joint());
   double found_ = 0.0;
 };
 
 TEST_F(MoteusFamilyTest, ACommandInTurnsAndShares) {
   CanFrame frame;
   DriveCommand sent;
-  ASSERT_TRUE(family_->command({kTurn / 8.0, kTurn / 4.0, 250.0, 1.25, -3.0}, {}, &frame, &sent));
+  ASSERT_TRUE(
+      family_.codec->command({kTurn / 8.0, kTurn / 4.0, 250.0, 1.25, -3.0}, {}, &frame, &sent));
   const float expected[] = {0.125F, 0.25F, -3.0F, 0.5F, 0.25F, 8.0F};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_FLOAT_EQ(float_at(frame, 6 + 4 * i), expected[i]) << i;
   EXPECT_FLOAT_EQ(float_at(frame, 32), 0.02F);
   EXPECT_NEAR(sent.kp_Nm_per_rad, 250.0, 1e-12);
   EXPECT_NEAR(sent.kd_Nms_per_rad, 1.25, 1e-12);
-  ASSERT_TRUE(family_->command({1.0, 0.0, 0.0, 0.0, 9.0}, {}, &frame, &sent));
+  ASSERT_TRUE(family_.codec->command({1.0, 0.0, 0.0, 0.0, 9.0}, {}, &frame, &sent));
   EXPECT_TRUE(std::isnan(float_at(frame, 6))) << "without stiffness there is no place";
   EXPECT_EQ(sent.torque_Nm, 8.0);
 }
@@ -110,24 +110,26 @@ TEST_F(MoteusFamilyTest, WhatIsNotFiniteIsNoCommand) {
     CanFrame frame;
     DriveCommand command;
     command.*field = kInf;
-    EXPECT_FALSE(family_->command(command, {}, &frame, &command));
+    EXPECT_FALSE(family_.codec->command(command, {}, &frame, &command));
   }
 }
 
 TEST_F(MoteusFamilyTest, ItIsEnabledByACommandOfNothing) {
   DriveMemory memory;
   memory.seen.angle_rad = 1.0;
-  const CanFrame frame = family_->enable(memory);
+  const CanFrame frame = family_.codec->enable(memory);
   EXPECT_EQ(frame.data[2], 10) << "position mode";
   EXPECT_TRUE(std::isnan(float_at(frame, 6)));
   for (const std::size_t at : {10u, 14u, 18u, 22u}) EXPECT_EQ(float_at(frame, at), 0.0F) << at;
   memory.seen.angle_rad = kNan;
-  EXPECT_EQ(testing::text(family_->enable(memory)), testing::text(family_->state_request()));
+  EXPECT_EQ(testing::text(family_.codec->enable(memory)),
+            testing::text(family_.codec->state_request()));
 }
 
 TEST_F(MoteusFamilyTest, AStateInSIUnits) {
   DriveReport report;
-  ASSERT_EQ(family_->read_state(state(10, 0, 0.25F, -0.5F), false, &report), StateReading::kWhole);
+  ASSERT_EQ(family_.codec->read_state(state(10, 0, 0.25F, -0.5F), false, &report),
+            StateReading::kWhole);
   EXPECT_EQ(report.condition, DriveCondition::kEnabled);
   EXPECT_EQ(report.status, 10);
   EXPECT_NEAR(report.angle_rad, 0.25 * kTurn, 1e-12);
@@ -137,48 +139,49 @@ TEST_F(MoteusFamilyTest, AStateInSIUnits) {
   EXPECT_EQ(report.torque_Nm, 1.5);
   EXPECT_EQ(report.current_A, 0.25);
   EXPECT_EQ(report.temperature_degC, 41.0);
-  ASSERT_EQ(family_->read_state(state(1, 33), false, &report), StateReading::kWhole);
+  ASSERT_EQ(family_.codec->read_state(state(1, 33), false, &report), StateReading::kWhole);
   EXPECT_EQ(report.condition, DriveCondition::kFailed);
   EXPECT_EQ(report.status, 0x2101);
-  ASSERT_EQ(family_->read_state(state(1, -1), false, &report), StateReading::kWhole);
+  ASSERT_EQ(family_.codec->read_state(state(1, -1), false, &report), StateReading::kWhole);
   EXPECT_EQ(report.status, 0xFF01);
-  EXPECT_EQ(family_->read_state(said("OK"), false, &report), StateReading::kNone);
+  EXPECT_EQ(family_.codec->read_state(said("OK"), false, &report), StateReading::kNone);
 }
 
 TEST_F(MoteusFamilyTest, ModeAndFaultInWords) {
-  EXPECT_EQ(family_->status_text(10), "mode 10: position");
-  EXPECT_EQ(family_->status_text(0), "mode 0: stopped");
-  EXPECT_EQ(family_->status_text(0x000B), "mode 11: no command within the drive's time-out");
-  EXPECT_EQ(family_->status_text(0x2101), "mode 1, fault 33: motor driver");
-  EXPECT_EQ(family_->status_text(0x0101), "mode 1, fault 1: see the maker's list");
-  EXPECT_EQ(family_->status_text(0x0200), "mode 0, fault 2: see the maker's list");
+  EXPECT_EQ(family_.codec->status_text(10), "mode 10: position");
+  EXPECT_EQ(family_.codec->status_text(0), "mode 0: stopped");
+  EXPECT_EQ(family_.codec->status_text(0x000B), "mode 11: no command within the drive's time-out");
+  EXPECT_EQ(family_.codec->status_text(0x2101), "mode 1, fault 33: motor driver");
+  EXPECT_EQ(family_.codec->status_text(0x0101), "mode 1, fault 1: see the maker's list");
+  EXPECT_EQ(family_.codec->status_text(0x0200), "mode 0, fault 2: see the maker's list");
 }
 
 // An encoder count, or what float32 tells apart in a turn.
 TEST_F(MoteusFamilyTest, TheSmallestDifferenceOfAngles) {
   JointConfig config = joint();
   config.drive.counts_per_turn = 4096.0;
-  EXPECT_NEAR(family_of(config)->angle_resolution(), kTurn / 4096.0, 1e-15);
+  EXPECT_NEAR(family_of(config).codec->angle_resolution(), kTurn / 4096.0, 1e-15);
   config.drive.counts_per_turn = 1e9;
-  EXPECT_NEAR(family_of(config)->angle_resolution(), kTurn * std::ldexp(1.0, -23), 1e-15);
+  EXPECT_NEAR(family_of(config).codec->angle_resolution(), kTurn * std::ldexp(1.0, -23), 1e-15);
 }
 
 // Bits 0 to 6 are the number of whom it is for, 7Fh all; 16 to 28 the prefix.
 TEST_F(MoteusFamilyTest, FramesForItsNumberAndPrefixAreForeign) {
-  EXPECT_TRUE(family_->is_foreign_command(with_id(0x28005, true)));
-  EXPECT_TRUE(family_->is_foreign_command(with_id(0x28105, true))) << "from another host";
-  EXPECT_FALSE(family_->is_foreign_command(with_id(0x18005, true))) << "another prefix";
-  EXPECT_FALSE(family_->is_foreign_command(with_id(0x38005, true)));
-  EXPECT_FALSE(family_->is_foreign_command(with_id(0x28006, true)));
+  EXPECT_TRUE(family_.intruders->is_foreign_command(with_id(0x28005, true)));
+  EXPECT_TRUE(family_.intruders->is_foreign_command(with_id(0x28105, true))) << "from another host";
+  EXPECT_FALSE(family_.intruders->is_foreign_command(with_id(0x18005, true))) << "another prefix";
+  EXPECT_FALSE(family_.intruders->is_foreign_command(with_id(0x38005, true)));
+  EXPECT_FALSE(family_.intruders->is_foreign_command(with_id(0x28006, true)));
   CanFrame error = with_id(0x28005, true);
   error.error = true;
-  EXPECT_FALSE(family_->is_foreign_command(error));
-  EXPECT_FALSE(family_->is_astray(with_id(0x600, false))) << "its answers have its number";
+  EXPECT_FALSE(family_.intruders->is_foreign_command(error));
+  EXPECT_FALSE(family_.startup->has_wrong_reply_id(with_id(0x600, false)))
+      << "its answers have its number";
 }
 
 TEST_F(MoteusFamilyTest, FiltersLetItsNumberAndAllsPass) {
   const auto passes = [this](std::uint32_t id, bool extended) {
-    const std::vector<CanFilter> filters = family_->receive_filters();
+    const std::vector<CanFilter> filters = family_.codec->receive_filters();
     return std::ranges::any_of(
         filters, [&](const CanFilter& filter) { return filter.passes(with_id(id, extended)); });
   };
@@ -200,7 +203,7 @@ TEST_F(MoteusFamilyTest, FiltersLetItsNumberAndAllsPass) {
 // --- start-up --------------------------------------------------------------------------------
 
 TEST_F(MoteusFamilyTest, TheRegisterMapAndTheHomeState) {
-  EXPECT_EQ(family_->patience_cycles(), 5) << "text is answered from the drive's main loop";
+  EXPECT_EQ(family_.startup->patience_cycles(), 5) << "text is answered from the drive's main loop";
   const auto map = [this](int version) {
     CanFrame frame = with_id(0x500, false);
     frame.data = {0x29, 0x82, 0x02, static_cast<std::uint8_t>(version), 0, 0, 0};
@@ -313,7 +316,7 @@ TEST_F(MoteusFamilyTest, ADriveWithoutADiagnosticChannelIsOneWarning) {
   EXPECT_EQ(found_, -77.0);
   EXPECT_EQ(check(2, neither), Answer::kMissing);
   EXPECT_EQ(found_, 0.0);
-  for (int step = 3; step < family_->startup_steps(); ++step)
+  for (int step = 3; step < family_.startup->steps(); ++step)
     EXPECT_EQ(check(step, neither), Answer::kRight) << step;
   EXPECT_EQ(check(2, said("")), Answer::kRight) << "another start-up, and now it has one";
   EXPECT_EQ(check(2, neither), Answer::kMissing);
@@ -321,14 +324,14 @@ TEST_F(MoteusFamilyTest, ADriveWithoutADiagnosticChannelIsOneWarning) {
 
 TEST_F(MoteusFamilyTest, WhatFailedInWords) {
   const auto told = [this](std::uint32_t reg, Answer answer, double found, double expected) {
-    return family_->describe({reg, answer, found, expected});
+    return family_.startup->describe({reg, answer, found, expected});
   };
   EXPECT_EQ(told(0, Answer::kNone, 0.0, 0.0), "could not be stopped, or does not answer");
   EXPECT_EQ(told(0x102, Answer::kNone, 0.0, 5.0), "register map (register 102h) not answered");
   EXPECT_EQ(told(0x102, Answer::kWrong, 4.0, 5.0), "register map (register 102h) is 4, expected 5");
   EXPECT_EQ(told(0x00C, Answer::kWrong, 0.0, 1.0), "home state (register 00Ch) is 0, expected 1");
-  const std::uint32_t line = family_->startup_step(2).reg;
-  EXPECT_EQ(family_->startup_step(2).expected, 0.0);
+  const std::uint32_t line = family_.startup->step(2).reg;
+  EXPECT_EQ(family_.startup->step(2).expected, 0.0);
   EXPECT_EQ(told(line, Answer::kMissing, 0.0, 0.0),
             "no diagnostic channel: servo.pid_position and servopos are not compared with "
             "robot.yaml");

@@ -6,6 +6,7 @@
 
 #include "drivers/can/lockstep_frame.h"
 #include "drivers/families/drive_family.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "tests/drivers/families/fake_cia402.h"
 
 namespace limber::test_receive_filters {
@@ -35,7 +36,7 @@ std::vector<CanFrame> every_kind_of_id() {
 Robot moteus_robot() {
   Robot robot = testing::test_robot(3);
   for (std::uint32_t i = 0; i < 3; ++i) {
-    robot.joints[i].drive.protocol = DriveProtocol::kMoteus;
+    robot.joints[i].drive.protocol = &protocol_named("moteus");
     robot.joints[i].drive.command_id = 0x8000U | (i + 5);
     robot.joints[i].drive.reply_id = (i + 5) << 8U;
   }
@@ -47,9 +48,10 @@ TEST(ReceiveFilters, HoldsAllThatIsADrivesOwnOrAnOrderToIt) {
   for (const Robot& robot : {testing::test_robot(3), moteus_robot(), testing::cia402_robot()}) {
     for (const JointConfig& joint : robot.joints) {
       const auto family = make_drive_family(joint, true, 1e-3);
-      const std::vector<CanFilter> filters = family->receive_filters();
+      const std::vector<CanFilter> filters = family.codec->receive_filters();
       for (const CanFrame& frame : frames) {
-        const bool wanted = family->is_mine(frame) || family->is_foreign_command(frame);
+        const bool wanted =
+            family.codec->is_mine(frame) || family.intruders->is_foreign_command(frame);
         ASSERT_TRUE(!wanted || passes(filters, frame)) << std::hex << frame.id;
       }
     }
@@ -60,7 +62,7 @@ TEST(ReceiveFilters, HoldsAllThatIsADrivesOwnOrAnOrderToIt) {
 std::vector<std::uint32_t> filtered_ids(const Robot& robot) {
   std::vector<std::uint32_t> ids;
   const std::vector<CanFilter> filters =
-      make_drive_family(robot.joints[0], true, 1e-3)->receive_filters();
+      make_drive_family(robot.joints[0], true, 1e-3).codec->receive_filters();
   for (std::uint32_t id = 0; id <= kStandardIdMax; ++id) {
     if (passes(filters, with_id(id, false))) ids.push_back(id);
   }

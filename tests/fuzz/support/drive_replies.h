@@ -26,7 +26,7 @@ inline void command_raw(JointLink& link, FuzzInput& input) {
   memory.seen.angle_rad = link.theta();
   CanFrame frame;
   DriveCommand sent;
-  if (!link.family().command(command, memory, &frame, &sent)) return;
+  if (!link.family().codec->command(command, memory, &frame, &sent)) return;
   require(all_finite(command), "a command that is not finite is refused");
   require(all_finite(sent), "what is sent is finite");
   require(is_possible(frame), "a command is a frame that a bus can carry");
@@ -53,17 +53,17 @@ inline void act(JointLink& link, FuzzInput& input) {
 }
 
 inline void hear(JointLink& link, const CanFrame& frame, std::uint8_t kind, FuzzInput& input) {
-  DriveFamily& family = link.family();
-  static_cast<void>(family.is_foreign_command(frame));
-  static_cast<void>(family.is_presence(frame));
-  static_cast<void>(family.is_astray(frame));
+  const DriveFamily& family = link.family();
+  static_cast<void>(family.intruders->is_foreign_command(frame));
+  static_cast<void>(family.startup->is_presence(frame));
+  static_cast<void>(family.startup->has_wrong_reply_id(frame));
   if ((kind & 8U) != 0) {
-    const int step = input.take<std::uint8_t>() % family.startup_steps();
+    const int step = input.take<std::uint8_t>() % family.startup->steps();
     double found = 0.0;
-    const Answer answer = family.check_answer(step, frame, &found);
-    require(is_possible(family.startup_request(step)), "a start-up request can be carried");
+    const Answer answer = family.startup->check_answer(step, frame, &found);
+    require(is_possible(family.startup->request(step)), "a start-up request can be carried");
     if (answer != Answer::kNone)
-      family.describe({family.startup_step(step).reg, answer, found, 0.0});
+      family.startup->describe({family.startup->step(step).reg, answer, found, 0.0});
     return;
   }
   if (!link.is_mine(frame) || link.take_unsolicited(frame)) return;

@@ -8,6 +8,7 @@
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
 #include "qa/faults/state_change.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber::test_state_change {
 namespace {
@@ -16,16 +17,16 @@ using faults::with_motion;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-JointConfig joint_with(DriveProtocol protocol) {
+JointConfig joint_with(std::string_view protocol) {
   JointConfig joint;
-  joint.drive.protocol = protocol;
+  joint.drive.protocol = &protocol_named(protocol);
   joint.drive.reply_id = 0x181;
   return joint;
 }
 
 // 12.5 rad in 16 bits: 0.5 rad are 1310.7 counts; 30 rad/s in 12: 3 rad/s are 204.75.
 TEST(StateChange, Damiao) {
-  const JointConfig joint = joint_with(DriveProtocol::kDamiaoMit);
+  const JointConfig joint = joint_with("damiao_mit");
   const mit::Reply state{1, mit::DriveError::kEnabled, 1.0, 2.0, 3.0, 40, 50};
   CanFrame frame = mit::encode_reply(state, joint.drive.range, 0x11, false, mit::Quantiser::kRound);
   frame.timestamp_ns = 7;
@@ -44,7 +45,7 @@ TEST(StateChange, Damiao) {
 TEST(StateChange, Moteus) {
   using moteus::Type;
   const auto number = [](moteus::Register reg) { return static_cast<std::uint16_t>(reg); };
-  const JointConfig joint = joint_with(DriveProtocol::kMoteus);
+  const JointConfig joint = joint_with("moteus");
   moteus::FrameWriter writer(0x100);
   const double measured[] = {10.0, 0.25, 0.0, 1.5, 0.1};
   const double health[] = {30.0, 0.0};
@@ -62,7 +63,7 @@ TEST(StateChange, Moteus) {
 // Position in TPDO1, velocity in TPDO2, 16384 counts a turn: 0x181#2702 00000000 becomes
 // 0x181#2702 00080000 for an eighth of a turn.
 TEST(StateChange, Cia402InSeveralFrames) {
-  const JointConfig joint = joint_with(DriveProtocol::kCia402);
+  const JointConfig joint = joint_with("cia402");
   const cia402::StateLayout layout;
   const cia402::DriveState state{.statusword = 0x0227, .torque_permille = 5};
   const auto changed = [&](int k) {
@@ -84,8 +85,7 @@ TEST(StateChange, WhatHoldsNoStateStays) {
   CanFrame frame;
   frame.id = 0x7A1;
   frame.length = 3;
-  for (const auto protocol :
-       {DriveProtocol::kDamiaoMit, DriveProtocol::kMoteus, DriveProtocol::kCia402}) {
+  for (const auto protocol : {"damiao_mit", "moteus", "cia402"}) {
     const CanFrame same = with_motion(frame, joint_with(protocol), false, {1.0, 1.0});
     EXPECT_EQ(same.id, 0x7A1U);
     EXPECT_EQ(same.length, 3);

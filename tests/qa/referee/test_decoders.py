@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from limber.errors import InputError
-from limber_qa.referee import cia402, damiao, moteus
 from limber_qa.referee.arm import read_arm
 from limber_qa.referee.candump import Trace, read_trace
+from limber_qa.referee.drives import cia402, damiao_mit, moteus
 from limber_qa.referee.events import Kind
 from limber_qa.referee.judge import judge
 
@@ -35,7 +35,7 @@ def on_can0(motor, **changes):
 def test_damiao_command(tmp_path):
     """p 1.0, v -2.0, kp 60, kd 1.5, t 2.5 truncated: half a count low on average."""
     motor = on_can0(DM4310, number=3, fd=False)
-    (command,) = damiao.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
+    (command,) = damiao_mit.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
     assert command.kind is Kind.HOLD
     assert command.position == pytest.approx(1.0, abs=25 / 65535)
     assert command.velocity == pytest.approx(-2.0, abs=60 / 4095)
@@ -45,7 +45,7 @@ def test_damiao_command(tmp_path):
 
 def test_damiao_sign_and_offset(tmp_path):
     motor = on_can0(DM4310, number=3, fd=False, sign=-1.0, offset=0.25)
-    (command,) = damiao.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
+    (command,) = damiao_mit.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
     assert command.torque == pytest.approx(-2.5, abs=20 / 4095)
     assert command.position == pytest.approx(-0.75, abs=25 / 65535)
 
@@ -54,7 +54,7 @@ def test_damiao_replies(tmp_path):
     """Enabled; the same after a loss of communication; an answer about a register is no state."""
     motor = on_can0(DM4310, number=3, reply_id=0x13)
     frames = ("013#1387AD7DD9702926", "013#D387AD7FF7FF2926", "013#0300331700002041")
-    good, lost = damiao.states(motor, trace(tmp_path, *frames))
+    good, lost = damiao_mit.states(motor, trace(tmp_path, *frames))
     assert (good.enabled, good.failed) == (True, False)
     assert good.position == pytest.approx(0.75, abs=25 / 65535)
     assert good.velocity == pytest.approx(-0.5, abs=60 / 4095)
@@ -65,7 +65,7 @@ def test_damiao_register_reads_are_no_commands(tmp_path):
     """While a drive is on, its settings are read beside its commands."""
     motor = on_can0(DM4310, number=3, fd=False)
     frames = ("7FF#0300330A00000000", "7FF#0300CC0000000000", "7FF#0400CC0000000000")
-    (request,) = damiao.commands(motor, trace(tmp_path, *frames))
+    (request,) = damiao_mit.commands(motor, trace(tmp_path, *frames))
     assert (request.kind, request.time_ns) == (Kind.REQUEST, 2_000_000_000)
 
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "drivers/protocols/moteus.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "sim/nodes/moteus_node.h"
 #include "tests/sim/test_arms.h"
 
@@ -25,7 +26,7 @@ constexpr std::uint32_t kToServo4 = 0x8004;
 /// Servo 4: kp 40 and kd 4 N m per turn, peak 10 N m.
 JointConfig servo4() {
   JointConfig joint = testing::joint_config(3, JointType::kRevolute, 0.0);
-  joint.drive.protocol = DriveProtocol::kMoteus;
+  joint.drive.protocol = &protocol_named("moteus");
   joint.drive.command_id = kToServo4;
   joint.drive.reply_id = 0x400;
   joint.drive.counts_per_turn = std::exp2(32);

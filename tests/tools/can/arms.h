@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drivers/can/candump_log.h"
+#include "robots/loader/protocols/drive_protocol.h"
 #include "robots/loader/robot.h"
 #include "tools/can/bus_decoder.h"
 
@@ -20,7 +21,8 @@ inline CanFrame candump_frame(std::string text) {
 }
 
 /// One joint "elbow" on bus "arm"; ranges, gains and encoder are JointConfig's defaults.
-inline Robot one_motor(DriveProtocol protocol, std::uint32_t command_id, std::uint32_t reply_id) {
+inline Robot one_motor(std::string_view protocol, std::uint32_t command_id,
+                       std::uint32_t reply_id) {
   Robot robot;
   robot.name = "one";
   robot.has_drives = true;
@@ -32,7 +34,7 @@ inline Robot one_motor(DriveProtocol protocol, std::uint32_t command_id, std::ui
   JointConfig joint;
   joint.name = "elbow";
   joint.torque_limit_Nm = 5.0;
-  joint.drive.protocol = protocol;
+  joint.drive.protocol = &protocol_named(protocol);
   joint.drive.command_id = command_id;
   joint.drive.reply_id = reply_id;
   joint.drive.rated_torque_Nm = 28.0;

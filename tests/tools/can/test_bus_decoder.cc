@@ -14,7 +14,7 @@ using testing::said;
 // ------
 
 struct Damiao : ::testing::Test {
-  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  Robot robot = one_motor("damiao_mit", 0x003, 0x013);
   BusDecoder decoder{robot, 0};
 };
 
@@ -89,7 +89,7 @@ TEST_F(Damiao, LockStepAndErrors) {
 }
 
 TEST(Antagonist, SecondMotorHasANameOfItsOwn) {
-  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  Robot robot = one_motor("damiao_mit", 0x003, 0x013);
   robot.joints[0].has_antagonist = true;
   robot.joints[0].antagonist = robot.joints[0].drive;
   robot.joints[0].antagonist.command_id = 0x004;
@@ -101,7 +101,7 @@ TEST(Antagonist, SecondMotorHasANameOfItsOwn) {
 // --- moteus: servo 4 -----------------------------------------------------------------------------
 
 struct Moteus : ::testing::Test {
-  Robot robot = one_motor(DriveProtocol::kMoteus, 0x8004, 0x400);
+  Robot robot = one_motor("moteus", 0x8004, 0x400);
   BusDecoder decoder{robot, 0};
 };
 
@@ -148,7 +148,7 @@ TEST_F(Moteus, OtherTrafficIsShownRaw) {
 // ------------------------------------
 
 struct Canopen : ::testing::Test {
-  Robot robot = one_motor(DriveProtocol::kCia402, 0x203, 0x183);
+  Robot robot = one_motor("cia402", 0x203, 0x183);
   BusDecoder decoder{robot, 0};
 
   /// The master maps TPDO1 anew: status, position, torque.
@@ -226,7 +226,7 @@ TEST_F(Canopen, Emergencies) {
 // --- tip sensors ---------------------------------------------------------------------------------
 
 Robot with_tip_sensor(TipSensorProtocol protocol) {
-  Robot robot = one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  Robot robot = one_motor("damiao_mit", 0x003, 0x013);
   robot.has_tip_sensor = true;
   robot.tip_sensor.protocol = protocol;
   robot.tip_sensor.command_id = 0x64;

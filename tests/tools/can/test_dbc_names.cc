@@ -10,7 +10,7 @@ namespace limber::test_dbc_names {
 namespace {
 
 TEST(DbcNames, StayDistinct) {
-  Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 1, 0x11);
+  Robot robot = testing::one_motor("damiao_mit", 1, 0x11);
   for (const char* name : {"rot y", "rot_y", "rot-y", "rot_y_2", "limber", "all"}) {
     JointConfig joint = robot.joints.front();
     joint.name = name;

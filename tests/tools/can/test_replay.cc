@@ -32,7 +32,7 @@ const volatile std::sig_atomic_t kGoOn = 0;
 
 struct Replay : ::testing::Test {
   testing::TemporaryFolder folder;
-  Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  Robot robot = testing::one_motor("damiao_mit", 0x003, 0x013);
   std::string file = folder.write("run.can.log", kLog);
 
   std::string refusal(const bus_tools::ReplayOptions& options) {

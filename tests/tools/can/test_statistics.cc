@@ -21,7 +21,7 @@ bool contains_line(const std::string& text, const std::string& pattern) {
 }
 
 TEST(Statistics, RateMeanAndGreatestGap) {
-  const Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  const Robot robot = testing::one_motor("damiao_mit", 0x003, 0x013);
   BusStatistics statistics(robot);
   for (const std::int64_t at_ms : {0, 1, 2, 5, 6})
     statistics.add(at_ms * kMs, 0, candump_frame("003#"));
@@ -33,7 +33,7 @@ TEST(Statistics, RateMeanAndGreatestGap) {
 
 // An empty frame with identifier 003 is sent in 49 bits and its stuff bits; ten in 1 ms.
 TEST(Statistics, LoadIsTheTimeOnTheWire) {
-  const Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  const Robot robot = testing::one_motor("damiao_mit", 0x003, 0x013);
   BusStatistics statistics(robot);
   const CanFrame frame = candump_frame("003#");
   for (int i = 0; i <= 10; ++i) statistics.add(i * kMs / 10, 0, frame);
@@ -48,7 +48,7 @@ TEST(Statistics, LoadIsTheTimeOnTheWire) {
 }
 
 TEST(Statistics, ErrorFramesAndLockStepAreNoLoad) {
-  const Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  const Robot robot = testing::one_motor("damiao_mit", 0x003, 0x013);
   BusStatistics statistics(robot);
   statistics.add(0, 0, candump_frame("003#"));
   statistics.add(1 * kMs, 0, candump_frame("1FFFFFF0#0A00000000000000"));
@@ -61,7 +61,7 @@ TEST(Statistics, ErrorFramesAndLockStepAreNoLoad) {
 }
 
 TEST(Statistics, AnIdentifierThatSeveralJointsShareSaysSo) {
-  Robot robot = testing::one_motor(DriveProtocol::kDamiaoMit, 0x003, 0x013);
+  Robot robot = testing::one_motor("damiao_mit", 0x003, 0x013);
   robot.joints.push_back(robot.joints.front());
   robot.joints[1].name = "wrist";
   robot.joints[1].drive.command_id = 0x004;

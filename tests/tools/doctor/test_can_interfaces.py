@@ -5,8 +5,8 @@ import pytest
 from limber.doctor import can_interfaces, machine
 from limber.doctor.can_interfaces import BusNeeds, compare, lines_to_bring_up, needs_of
 
-FD = BusNeeds("socketcan:can3", 1_000_000, 5_000_000, moteus=False)
-CLASSIC = BusNeeds("virtual:x", 500_000, None, moteus=False)
+FD = BusNeeds("socketcan:can3", 1_000_000, 5_000_000, 0.0)
+CLASSIC = BusNeeds("virtual:x", 500_000, None, 0.0)
 
 
 def test_the_whole_line():
@@ -29,7 +29,7 @@ def test_moteus_drives_want_their_sample_points():
             "dsample-point 0.666 fd on"
         )
     )
-    assert not needs_of("openarm")["arm"].moteus
+    assert not needs_of("openarm")["arm"].sample_point
 
 
 def test_every_shipped_robot_is_in_one_of_the_lines():

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -216,7 +216,7 @@ def check(
 def new(
     urdf: Annotated[Path, typer.Argument(help="URDF file.")],
     drives: Annotated[
-        Literal["damiao", "moteus", "cia402"], typer.Option(help="What drives the joints.")
+        str, typer.Option(help="Protocol of the drives, or its beginning: damiao, moteus, ...")
     ],
     base: Annotated[str | None, typer.Option(help="Link the arm is fixed by.")] = None,
     tip: Annotated[str | None, typer.Option(help="Link the arm works with.")] = None,

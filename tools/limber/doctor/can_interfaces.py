@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from limber.errors import InputError
+from limber.model.protocols import protocol
 from limber.model.robot import read_yaml
 from limber.paths import robot_folder, robot_names
 
 TX_QUEUE = 64  # frames: more than a cycle of the largest arm
 RESTART_MS = 100  # after bus-off
-MOTEUS_SAMPLE_POINT = 0.666  # mjbots, moteus reference
 SYSFS = Path("/sys/class/net")
 
 
@@ -25,7 +25,7 @@ class BusNeeds:
     address: str
     bitrate: int
     data_bitrate: int | None  # None: classic CAN
-    moteus: bool  # its drives want sample points of their own
+    sample_point: float  # that its drives want; 0: any
 
     @property
     def interface(self) -> str | None:
@@ -36,17 +36,17 @@ class BusNeeds:
     @property
     def hardware(self) -> tuple:
         """Buses that are brought up alike have this in common."""
-        return self.bitrate, self.data_bitrate, self.moteus
+        return self.bitrate, self.data_bitrate, self.sample_point
 
     def bring_up(self, name: str) -> str:
         """The commands that bring an adapter up, on one line."""
         words = ["type can bitrate", str(self.bitrate)]
-        if self.moteus:
-            words += ["sample-point", str(MOTEUS_SAMPLE_POINT)]
+        if self.sample_point:
+            words += ["sample-point", str(self.sample_point)]
         if self.data_bitrate:
             words += ["dbitrate", str(self.data_bitrate)]
-            if self.moteus:
-                words += ["dsample-point", str(MOTEUS_SAMPLE_POINT)]
+            if self.sample_point:
+                words += ["dsample-point", str(self.sample_point)]
             words += ["fd on"]
         words += ["restart-ms", str(RESTART_MS)]
         return (
@@ -60,21 +60,23 @@ def needs_of(robot: str) -> dict[str, BusNeeds]:
     folder = robot_folder(robot)
     content = read_yaml(folder / "robot.yaml")
     try:
-        moteus = {
-            joint["bus"]
+        sample_points = {
+            joint["bus"]: protocol(content["motors"][joint["motor"]]["protocol"]).sample_point
             for joint in content["joints"].values()
-            if content["motors"][joint["motor"]]["protocol"] == "moteus"
         }
-        return {bus["name"]: _needs(bus, bus["name"] in moteus) for bus in content["buses"]}
+        return {
+            bus["name"]: _needs(bus, sample_points.get(bus["name"], 0.0))
+            for bus in content["buses"]
+        }
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(
             f"{folder / 'robot.yaml'}: {error} is missing or wrong; see `limber check {folder}`"
         ) from error
 
 
-def _needs(bus: dict[str, Any], moteus: bool) -> BusNeeds:
+def _needs(bus: dict[str, Any], sample_point: float) -> BusNeeds:
     data_bitrate = int(bus["data_bitrate_bps"]) if bus.get("fd") else None
-    return BusNeeds(str(bus["can"]), int(bus["bitrate_bps"]), data_bitrate, moteus)
+    return BusNeeds(str(bus["can"]), int(bus["bitrate_bps"]), data_bitrate, sample_point)
 
 
 def lines_to_bring_up(robot: str | None) -> Iterator[tuple[str, str]]:

@@ -8,6 +8,7 @@ from math import isfinite, pi, sqrt
 
 import numpy as np
 
+from limber.model.protocols import Protocol
 from limber.new.facts import ArmFacts, JointFacts
 
 SOFT_rad_per_s = 2.0 * pi  # natural frequency of the joints on their springs
@@ -15,11 +16,10 @@ RATIO = 0.7
 GRAVITY_IN_s = 0.12  # the weight's torque comes within half a second, steepest in the middle
 LEAST_RATE_per_s = 1000.0  # N m/s or N/s; without a key of robot.yaml the gate allows no more
 SPARE = 2.0  # torque, as a multiple of what the weight needs
-GEAR = {"damiao": 10.0, "moteus": 9.0, "cia402": 100.0}
 ROTOR_kgm2_per_Nm = 4e-4  # reflected rotor inertia per peak torque; that of common geared drives
 PEAK_A = 30.0  # current at peak torque
 WINDING_ohm = 0.3
-MIT_POSITION_rad, MIT_KP, MIT_KD = 12.5, 500.0, 5.0  # as Damiao drives are delivered
+KP_MOST_Nm_per_rad, KD_MOST_Nms_per_rad = 5000.0, 500.0  # if the drives carry so much
 
 
 def three(value: float) -> float:
@@ -81,7 +81,7 @@ class Guesses:
     K_rotation: float
 
 
-def guess(arm: ArmFacts, drives: str) -> Guesses:
+def guess(arm: ArmFacts, drives: Protocol) -> Guesses:
     names: dict[tuple[bool, float, float], str] = {}
     joints = [_joint(facts, drives, names) for facts in arm.joints]
     motors = [
@@ -93,7 +93,7 @@ def guess(arm: ArmFacts, drives: str) -> Guesses:
 
 
 def _joint(
-    facts: JointFacts, drives: str, names: dict[tuple[bool, float, float], str]
+    facts: JointFacts, drives: Protocol, names: dict[tuple[bool, float, float], str]
 ) -> JointGuess:
     weak = facts.effort < 1.2 * facts.gravity_home
     needed = three(max(SPARE * facts.gravity, 20.0 * facts.inertia, 0.5))
@@ -103,13 +103,15 @@ def _joint(
     low, high = facts.low, facts.high
     if not turns and not isfinite(high - low):
         low, high = (-0.2, 0.2) if facts.slides else (-3.0, 3.0)
-    if drives == "damiao" and not facts.slides:  # whose frames carry no more
-        most = 2.0 * pi if turns else MIT_POSITION_rad
+    carried = drives.most("position_rad")
+    if isfinite(carried) and not facts.slides:
+        most = 2.0 * pi if turns else carried
         low, high = max(low, -three(most)), min(high, three(most))
     inertia = facts.inertia + ROTOR_kgm2_per_Nm * torque
     K_q = three(min(SOFT_rad_per_s**2 * inertia, 1e4))
-    kp = three(min(4.0 * K_q, MIT_KP if drives == "damiao" else 5000.0))
-    kd = three(min(2.0 * RATIO * sqrt(kp * inertia), MIT_KD if drives == "damiao" else 500.0))
+    kp = three(min(4.0 * K_q, drives.most("kp_Nm_per_rad"), KP_MOST_Nm_per_rad))
+    kd = 2.0 * RATIO * sqrt(kp * inertia)
+    kd = three(min(kd, drives.most("kd_Nms_per_rad"), KD_MOST_Nms_per_rad))
     key = (facts.slides, torque, velocity)
     limits = (facts.effort, facts.velocity) if turns else (facts.effort, facts.velocity, facts.high)
     return JointGuess(
@@ -128,10 +130,10 @@ def _joint(
 
 
 def _motor(
-    name: str, key: tuple[bool, float, float], drives: str, joints: list[JointGuess]
+    name: str, key: tuple[bool, float, float], drives: Protocol, joints: list[JointGuess]
 ) -> MotorGuess:
     slides, peak, velocity = key
-    gear = GEAR[drives]
+    gear = drives.usual_gear_ratio
     return MotorGuess(
         name,
         slides,

@@ -4,6 +4,7 @@ import json
 import re
 from math import isfinite
 
+from limber.model.protocols import Protocol
 from limber.new.facts import ArmFacts
 from limber.new.guesses import RATIO, Guesses, JointGuess, number
 from limber.new.motor_text import bus_lines, bus_names, motor_lines
@@ -47,12 +48,12 @@ def plain(text: str) -> str:
     return text if safe and text.lower() not in words else json.dumps(text)
 
 
-def text(name: str, arm: ArmFacts, guesses: Guesses, drives: str, rate: int) -> str:
+def text(name: str, arm: ArmFacts, guesses: Guesses, drives: Protocol, rate: int) -> str:
     buses = bus_names(drives, len(arm.joints))
     head = HEAD.format(
         name=name,
         urdf=arm.urdf.name,
-        drives=drives,
+        drives=drives.title,
         base=plain(arm.base),
         tip=plain(arm.tip),
         rate=rate,
@@ -73,17 +74,18 @@ def text(name: str, arm: ArmFacts, guesses: Guesses, drives: str, rate: int) -> 
     return "\n".join(parts) + "\n"
 
 
-def _joint_lines(joint: JointGuess, bus: str, node: int, home: float, drives: str) -> list[str]:
+def _joint_lines(
+    joint: JointGuess, bus: str, node: int, home: float, drives: Protocol
+) -> list[str]:
     rotary = not joint.facts.slides
     unit, force = ("rad", "Nm") if rotary else ("m", "N")
     stiffness, damping = ("Nm_per_rad", "Nms_per_rad") if rotary else ("N_per_m", "Ns_per_m")
     kp, kd = (number(gain) for gain in (joint.hold_kp, joint.hold_kd))
-    ids = [f"    id: {node} # guess: node number of the drive"]
-    if drives == "damiao":
-        ids = [
-            f"    id: 0x{node:02X} # guess: CAN_ID of the drive",
-            f"    reply_id: 0x{node + 0x10:02X} # guess: MST_ID of the drive",
-        ]
+    digits = "0x{:02X}" if drives.hex_ids else "{}"
+    ids = [f"    id: {digits.format(node)} # guess: {drives.id_found}"]
+    for key in drives.keys("joints.*"):
+        first = digits.format(node + int(key.least))
+        ids.append(f"    {key.key}: {first} # guess: {key.found}")
     return [
         f"  {plain(joint.facts.name)}:",
         f"    motor: {joint.motor}",

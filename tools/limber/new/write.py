@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from limber.errors import OK, InputError
+from limber.model.protocols import Protocol, protocol, protocols
 from limber.model.validation import run_checker
 from limber.new import facts, robot_text, scenario_text
 from limber.new.guesses import guess
@@ -15,7 +16,6 @@ from limber.output import write_new
 from limber.paths import existing_file
 
 RATES_Hz = (1000, 500, 250, 100)
-ROTARY_ONLY = ("moteus", "cia402")
 
 
 def write(
@@ -38,16 +38,20 @@ def write(
             raise InputError(f"{path} exists already and is left as it is; give --name or --out")
     arm = facts.read(urdf, *ends)
     sliding = [joint.name for joint in arm.joints if joint.slides]
-    if sliding and drives in ROTARY_ONLY:
-        raise InputError(f"{drives} drives count turns; {', '.join(sliding)} slides: use damiao")
-    guesses = guess(arm, drives)
-    rate = _write_robot(folder, name, arm, guesses, drives)
+    chosen = protocol(drives)
+    if sliding and chosen.rotary_only:
+        others = " or ".join(entry.word for entry in protocols() if not entry.rotary_only)
+        raise InputError(
+            f"{chosen.title} drives count turns; {', '.join(sliding)} slides: use {others}"
+        )
+    guesses = guess(arm, chosen)
+    rate = _write_robot(folder, name, arm, guesses, chosen)
     write_new(scenario, scenario_text.text(name, folder.name, scenario.name, arm, guesses))
     _tell(folder, scenario, rate, console)
     return OK
 
 
-def _write_robot(folder: Path, name: str, arm, guesses, drives: str) -> int:
+def _write_robot(folder: Path, name: str, arm, guesses, drives: Protocol) -> int:
     """At the highest rate that the buses carry, which is returned."""
     complaint = ""
     with tempfile.TemporaryDirectory() as scratch:

@@ -7,6 +7,7 @@
 #include "driver_view.h"
 #include "drivers/gate/torque_gate.h"
 #include "drivers/protocols/moteus.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
 
@@ -41,7 +42,7 @@ LoadedRobot driver_view(const LoadedRobot& robot) {
 
 void send_what_is_no_number(faults::FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
-  if (drive.protocol != DriveProtocol::kMoteus) return;
+  if (drive.protocol != &protocol_named("moteus")) return;
   moteus::Command command;
   command.position_turns = command.torque_Nm = std::numeric_limits<double>::quiet_NaN();
   command.watchdog_s = drive.watchdog_s;

@@ -7,6 +7,7 @@ from limber_qa.referee.arm import Motor, TURN_rad
 from limber_qa.referee.candump import Frame, Trace
 from limber_qa.referee.events import Command, Kind, State
 
+TELLS_HOLD = False
 RPDO1, TPDO1, PDO_STEP = 0x200, 0x180, 0x100
 OPERATION_ENABLED, FAULT_BIT, QUICK_STOP_BIT = 0x27, 0x08, 0x20
 # Objects by name, in the order of the frames

@@ -8,6 +8,7 @@ from limber_qa.referee.arm import Motor, TURN_rad
 from limber_qa.referee.candump import Frame, Trace
 from limber_qa.referee.events import Command, Kind, State, kind_of
 
+TELLS_HOLD = True
 FORMATS = "bhif"  # int8, int16, int32, float32
 SIZES = (1, 2, 4, 4)
 WRITE, READ, REPLY = 0x00, 0x10, 0x20

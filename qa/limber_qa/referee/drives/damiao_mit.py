@@ -4,6 +4,7 @@ from limber_qa.referee.arm import Motor
 from limber_qa.referee.candump import Frame, Trace
 from limber_qa.referee.events import Command, Kind, State, kind_of
 
+TELLS_HOLD = True
 SPECIAL = {0xFC: Kind.ENABLE, 0xFD: Kind.DISABLE, 0xFE: Kind.INVALID, 0xFB: Kind.REQUEST}
 ENABLED, DISABLED = 1, 0
 REGISTERS = 0x7FF  # identifier of what asks for registers or for a state; the drive's is in it

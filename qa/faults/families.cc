@@ -1,0 +1,24 @@
+// The list of families that faults are injected into, and nothing else: docs/adding.md.
+#include "qa/faults/families.h"
+
+#include <algorithm>
+#include <array>
+
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber::faults {
+
+std::span<const Family> families() {
+  static constexpr std::array kFamilies = {
+      Family{"damiao_mit", "desktop2r", with_motion_of_damiao},
+      Family{"moteus", "planar2r", with_motion_of_moteus},
+      Family{"cia402", "iiwa14", with_motion_of_cia402},
+  };
+  return kFamilies;
+}
+
+const Family& family_of(const DriveConfig& drive) {
+  return *std::ranges::find(families(), drive.protocol->word, &Family::protocol);
+}
+
+}  // namespace limber::faults

@@ -1,0 +1,21 @@
+// The list of drive protocols, and nothing else: docs/adding.md.
+#include <array>
+
+#include "robots/loader/protocols/drive_protocol.h"
+
+namespace limber {
+
+extern const DriveProtocol kDamiaoMit;
+extern const DriveProtocol kMoteus;
+extern const DriveProtocol kCia402;
+
+std::span<const DriveProtocol* const> drive_protocols() noexcept {
+  static constexpr std::array kAll = {
+      &kDamiaoMit,
+      &kMoteus,
+      &kCia402,
+  };
+  return kAll;
+}
+
+}  // namespace limber
