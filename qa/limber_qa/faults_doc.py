@@ -1,6 +1,7 @@
 """Faults on the bus and what the driver makes of them; the table in docs/bus.md."""
 
 import json
+import re
 import subprocess
 from typing import Any
 
@@ -11,6 +12,7 @@ from limber_qa.written_table import WrittenTable
 
 FAMILIES = {"damiao_mit": "Damiao", "moteus": "moteus", "cia402": "CiA 402"}
 COUNTERS = ("lost", "late", "invalid", "foreign")
+ADDRESS = re.compile(r" \((?:id 0x[0-9a-f]+|servo \d+|node \d+)\)")  # behind a joint's name
 
 
 def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]:
@@ -38,12 +40,15 @@ def reaction_text(cell: dict[str, Any] | None) -> str:
 
 
 def cause_text(row: dict[str, Any]) -> str:
-    """The code of JOINT_STATE.fault and the words behind it, of each family where they differ."""
+    """The code of JOINT_STATE.fault and the words behind it, without addresses and remedies; of
+    each family where they differ.
+    """
     found: list[str] = []
     for cell in row["families"].values():
         if cell["cycles"][1] < 0:
             continue
         words = cell["text"].replace(cell["bus"], "NAME").replace(cell["joint_name"], "JOINT")
+        words = re.sub(r"JOINT to \w+", "JOINT to JOINT", ADDRESS.sub("", words)).split("; ")[0]
         cause = problem("driver", cell["cause"])
         text = (cause.code if cause else "none") + (f": {words}" if words else "")
         if text not in found:

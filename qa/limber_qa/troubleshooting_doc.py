@@ -23,9 +23,10 @@ def _group(group: Group) -> list[str]:
 
 
 def _lines() -> list[str]:
-    lines = ["| code | what happened |", "|---|---|"]
-    for group in groups().values():
-        lines += [f"| [{p.code}](#{p.anchor}) | {p.what} |" for p in group.problems.values()]
+    lines = []
+    for key, group in groups().items():
+        names = [f"[{name}](#{p.anchor})" for name, p in group.problems.items()]
+        lines.append(f"- `{key}`: {', '.join(names)}")
     lines.append("")
     for group in groups().values():
         lines += _group(group)
