@@ -77,7 +77,7 @@ class Quantities:
 
     @property
     def pose(self) -> Pose:
-        """Where the tip is."""
+        """Pose of the tip."""
         return self._pose("BT")
 
     @property
@@ -87,7 +87,7 @@ class Quantities:
 
     @property
     def goal(self) -> Pose:
-        """Where the tip is wanted now: the equilibrium of the virtual spring."""
+        """Desired pose of the tip: the equilibrium of the virtual spring."""
         return self._pose("BD")
 
     @property
@@ -97,8 +97,8 @@ class Quantities:
 
     @property
     def wrench(self) -> np.ndarray:
-        """Contact as the controller believes it: wrench of the world on the arm at the tip, N and
-        N m, shape (6,). InputError while the gains choose no contact source.
+        """Estimated contact: wrench of the world on the arm at the tip, N and N m, shape (6,).
+        InputError while the gains choose no contact source.
         """
         return np.array(self._contact()["F_ext"])
 
