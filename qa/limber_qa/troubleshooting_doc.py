@@ -8,7 +8,7 @@ from limber_qa.written_table import WrittenTable
 def _problem(problem: Problem) -> list[str]:
     lines = [f"### {problem.code}", "", sentence(problem.what), ""]
     if problem.causes:
-        lines += ["Likely:", "", *(f"- {cause}" for cause in problem.causes), ""]
+        lines += [*(f"- {cause}" for cause in problem.causes), ""]
     return [*lines, f"To do: {problem.remedy}.", ""]
 
 
