@@ -56,13 +56,20 @@ def cause_text(row: dict[str, Any]) -> str:
     return "; ".join(found)
 
 
+def reactions_text(row: dict[str, Any]) -> str:
+    """One reaction if all families have it, else each with its family."""
+    texts = {name: reaction_text(row["families"].get(word)) for word, name in FAMILIES.items()}
+    if len(set(texts.values())) == 1:
+        return texts.popitem()[1]
+    return "; ".join(f"{name}: {text}" for name, text in texts.items() if text)
+
+
 def cells(row: dict[str, Any]) -> list[str]:
-    """Fault, its reaction in each family, cause."""
-    families = [reaction_text(row["families"].get(word)) for word in FAMILIES]
-    return [row["name"], *families, cause_text(row)]
+    """Fault, its reaction, cause."""
+    return [row["name"], reactions_text(row), cause_text(row)]
 
 
-HEAD = ["fault", *FAMILIES.values(), "code: words"]
+HEAD = ["fault", "reaction", "code: words"]
 
 
 def _lines() -> list[str]:
