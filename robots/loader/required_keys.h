@@ -1,5 +1,5 @@
 // The keys that every robot.yaml has to have, in one table: checked here, and written into
-// docs/own_arm.md.
+// robots/README.md.
 #pragma once
 
 #include <span>
