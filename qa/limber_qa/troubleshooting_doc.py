@@ -9,7 +9,7 @@ def _problem(problem: Problem) -> list[str]:
     lines = [f"### {problem.code}", "", sentence(problem.what), ""]
     if problem.causes:
         lines += [*(f"- {cause}" for cause in problem.causes), ""]
-    return [*lines, f"To do: {problem.remedy}.", ""]
+    return [*lines, f"Remedy: {problem.remedy}.", ""]
 
 
 def _group(group: Group) -> list[str]:
