@@ -152,7 +152,7 @@ class Quantities:
 
     @property
     def faults(self) -> list[str]:
-        """What is wrong, in words: code, joint, what it means and what to do; empty if nothing."""
+        """Faults in words: code, joint, meaning and remedy; empty if there is none."""
         state, status = self._records()
         # The reason stays in the status until it is acknowledged; what has passed is no fault.
         reason = status["reason"] if self.mode in ("init", "fault", "estop") else 0
@@ -166,7 +166,7 @@ class Quantities:
 
     @property
     def warnings(self) -> list[str]:
-        """What the drives warn of, a code and a joint each; empty if nothing."""
+        """Warnings of the drives, code and joint; empty if there is none."""
         flags, names = self._records()[0]["joint_flags"], self._joint_names()
         return [
             f"{found.code} ({name})"
