@@ -1,6 +1,7 @@
 """Faults on the bus and what the driver makes of them; the table in docs/bus.md."""
 
 import json
+import re
 import subprocess
 from typing import Any
 
@@ -11,6 +12,7 @@ from limber.problems import problem
 from limber_qa.written_table import WrittenTable
 
 COUNTERS = ("lost", "late", "invalid", "foreign")
+ADDRESS = re.compile(r" \((?:id 0x[0-9a-f]+|servo \d+|node \d+)\)")  # behind a joint's name
 
 
 def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]:
@@ -38,12 +40,15 @@ def reaction_text(cell: dict[str, Any] | None) -> str:
 
 
 def cause_text(row: dict[str, Any]) -> str:
-    """The code of JOINT_STATE.fault and the words behind it, of each family where they differ."""
+    """The code of JOINT_STATE.fault and the words behind it, without addresses and remedies; of
+    each family where they differ.
+    """
     found: list[str] = []
     for cell in row["families"].values():
         if cell["cycles"][1] < 0:
             continue
         words = cell["text"].replace(cell["bus"], "NAME").replace(cell["joint_name"], "JOINT")
+        words = re.sub(r"JOINT to \w+", "JOINT to JOINT", ADDRESS.sub("", words)).split("; ")[0]
         cause = problem("driver", cell["cause"])
         text = (cause.code if cause else "none") + (f": {words}" if words else "")
         if text not in found:
@@ -51,18 +56,24 @@ def cause_text(row: dict[str, Any]) -> str:
     return "; ".join(found)
 
 
+def reactions_text(row: dict[str, Any]) -> str:
+    """One reaction if all families have it, else each with its family."""
+    texts = {entry.title: reaction_text(row["families"].get(entry.word)) for entry in protocols()}
+    if len(set(texts.values())) == 1:
+        return texts.popitem()[1]
+    return "; ".join(f"{name}: {text}" for name, text in texts.items() if text)
+
+
 def cells(row: dict[str, Any]) -> list[str]:
-    """Fault, its reaction in each family, cause."""
-    families = [reaction_text(row["families"].get(entry.word)) for entry in protocols()]
-    return [row["name"], *families, cause_text(row)]
+    """Fault, its reaction, cause."""
+    return [row["name"], reactions_text(row), cause_text(row)]
 
 
-def head() -> list[str]:
-    return ["fault", *(entry.title for entry in protocols()), "code: words"]
+HEAD = ["fault", "reaction", "code: words"]
 
 
 def _lines() -> list[str]:
-    rows = [head(), ["---"] * len(head()), *(cells(row) for row in reactions())]
+    rows = [HEAD, ["---"] * len(HEAD), *(cells(row) for row in reactions())]
     return ["| " + " | ".join(row) + " |" for row in rows]
 
 

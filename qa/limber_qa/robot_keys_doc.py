@@ -1,4 +1,4 @@
-"""The table of required keys in docs/own_arm.md, written from the loader's."""
+"""The table of required keys in robots/README.md, written from the loader's."""
 
 import subprocess
 
@@ -12,4 +12,4 @@ def _lines() -> list[str]:
     return done.stdout.splitlines()
 
 
-TABLE = WrittenTable(ROOT / "docs" / "own_arm.md", "required keys", _lines)
+TABLE = WrittenTable(ROOT / "robots" / "README.md", "required keys", _lines)

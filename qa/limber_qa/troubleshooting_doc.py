@@ -8,8 +8,8 @@ from limber_qa.written_table import WrittenTable
 def _problem(problem: Problem) -> list[str]:
     lines = [f"### {problem.code}", "", sentence(problem.what), ""]
     if problem.causes:
-        lines += ["Likely:", "", *(f"- {cause}" for cause in problem.causes), ""]
-    return [*lines, f"To do: {problem.remedy}.", ""]
+        lines += [*(f"- {cause}" for cause in problem.causes), ""]
+    return [*lines, f"Remedy: {problem.remedy}.", ""]
 
 
 def _group(group: Group) -> list[str]:
@@ -23,9 +23,10 @@ def _group(group: Group) -> list[str]:
 
 
 def _lines() -> list[str]:
-    lines = ["| code | what happened |", "|---|---|"]
-    for group in groups().values():
-        lines += [f"| [{p.code}](#{p.anchor}) | {p.what} |" for p in group.problems.values()]
+    lines = []
+    for key, group in groups().items():
+        names = [f"[{name}](#{p.anchor})" for name, p in group.problems.items()]
+        lines.append(f"- `{key}`: {', '.join(names)}")
     lines.append("")
     for group in groups().values():
         lines += _group(group)

@@ -1,5 +1,5 @@
 // The keys that every robot.yaml has to have, those of its drives' protocols among them: checked
-// here, and written into docs/own_arm.md.
+// here, and written into robots/README.md.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-"""The required keys in docs/own_arm.md are the loader's."""
+"""The required keys in robots/README.md are the loader's."""
 
 from limber_qa import robot_keys_doc
 

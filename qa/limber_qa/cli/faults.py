@@ -87,7 +87,7 @@ def bus(
 
     from limber_qa import faults_doc
 
-    table = Table(*faults_doc.head(), show_lines=True)
+    table = Table(*faults_doc.HEAD, show_lines=True)
     for row in faults_doc.reactions(fault, phases):
         table.add_row(*faults_doc.cells(row))
     console.print(table)

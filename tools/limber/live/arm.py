@@ -23,11 +23,11 @@ class Arm(Modes, Motions, World, AbstractContextManager):
             arm.move([0, 0, 0.05])
             print(arm.pose.p, arm.q)
 
-    It finds the stack and its robot by itself; `robot` refuses any other. The first request takes
-    the lease, close() or the end of the block gives it back and leaves the arm held. Quantities are
-    the newest, some milliseconds old. `client`: number of the lease, by default one of Python's.
+    It finds the stack and its robot; `robot` refuses any other. The first request takes the lease,
+    close() or the end of the block gives it back and leaves the arm held. Quantities are the
+    newest, some milliseconds old. `client`: number of the lease, by default one of this process.
 
-    Raises NoStackError if no stack is heard. Later everything may raise StackLostError, and every
+    Raises NoStackError if no stack runs. Later everything may raise StackLostError, and every
     request RefusedError.
     """
 

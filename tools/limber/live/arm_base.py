@@ -55,8 +55,8 @@ class ArmBase(Quantities):
         return self._link.lost()
 
     def states(self, hz: float = 50.0) -> Iterator[State]:
-        """The newest state, `hz` times a second, without end; what the loop is too slow for is left
-        out. In lock step it is a second of arm time.
+        """The newest state, `hz` times a second, without end; a slow loop misses states. In lock
+        step it is a second of arm time.
         """
         period_s = 1.0 / number("hz", hz, 1e-3, 1000.0)
         due_s = time.monotonic()
@@ -74,10 +74,9 @@ class ArmBase(Quantities):
     ) -> Callable[[], None]:
         """Calls `callback` with every message of JOINT_STATE or CONTROLLER_STATUS from now on.
 
-        It gets records in order, all that came since its last call, and runs in a thread of its
-        own; however long it takes, none is left out. Fields are those of the message; joint
-        quantities have 16 entries, of which the first `len(arm.joint_names)` count. Returns a
-        function that ends it, once the callback has had all.
+        It gets records in order, all since its last call, in a thread of its own; however long it
+        takes, none is left out. Fields are those of the message; joint quantities have 16 entries,
+        of which the first `len(arm.joint_names)` count. Returns a function that ends it.
         """
         stream = self._link.receiver.stream(channel)
         ended = threading.Event()
@@ -113,8 +112,8 @@ class ArmBase(Quantities):
 
         `mode`: such as "hold"; `contact_N`: a contact force of at least so much, N; `at_rest`: goal
         and arm stand still; `for_s`: so much arm time has passed; `until`: any function of a state.
-        Every CONTROLLER_STATUS is looked at, none is left out. Raises WaitTimeoutError, or
-        FaultError if the arm meanwhile faults.
+        Every CONTROLLER_STATUS is tested. Raises WaitTimeoutError, or FaultError if the arm
+        meanwhile faults.
         """
         rest = RestWatch()
         end_s = self.time_s + number("for_s", for_s, 0.0)
@@ -137,7 +136,7 @@ class ArmBase(Quantities):
         """Context manager: an LCM log of every message while the block runs (limber.log.reader).
 
         Compressed if the name ends in .zst; an existing log is not overwritten.
-        Messages that were lost are counted in its `lost` and warned of.
+        Lost messages are counted in its `lost`, with a warning.
         """
         return Recording(Path(path))
 

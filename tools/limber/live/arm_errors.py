@@ -4,11 +4,11 @@ from limber.errors import RunError
 
 
 class NoStackError(RunError):
-    """No driver or no controller was heard within a second, or that of another robot."""
+    """No message of a driver or controller within a second, or that of another robot."""
 
 
 class StackLostError(RunError):
-    """Driver or controller has fallen silent, or answers no request."""
+    """Driver or controller is silent, or answers no request."""
 
 
 class RefusedError(RunError):
@@ -33,7 +33,7 @@ class FaultError(RunError):
 
 
 class RecoveryError(RunError):
-    """arm.recover() did not get the arm back to a running law.
+    """arm.recover() has not brought the arm back to a running law.
 
     `step`: wait, acknowledge, hold or active, whichever failed; `mode`: where the arm is now.
     """
@@ -70,4 +70,4 @@ class NotReachedError(RunError):
 
 
 class WaitTimeoutError(RunError, TimeoutError):
-    """What was waited for did not come within the time."""
+    """The awaited state did not come within the time."""

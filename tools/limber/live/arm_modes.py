@@ -83,10 +83,10 @@ class Modes(ArmBase):
 
     def recover(self, timeout_s: float = POWER_S, release: bool | None = None) -> None:
         """Back to a running law, from FAULT and ESTOP too: acknowledge(), hold(), activate(), as
-        far as they are needed; each is waited for, `timeout_s` at most. First cure the cause.
+        far as they are needed, each within `timeout_s`. First cure the cause.
 
         A drive that was in error is enabled again only after idle(), which releases all drives: an
-        arm without brakes sinks. `release`: whether it may; None: simulated arms only. Raises
+        arm without brakes sinks. `release` permits that; None: on simulated arms only. Raises
         RecoveryError with the step that failed and why.
         """
         release = self.simulated if release is None else release

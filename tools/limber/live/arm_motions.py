@@ -32,11 +32,11 @@ class Motions(ArmBase):
     ) -> State:
         """Moves the tip to a pose, or the joints, and returns when the arm is there and at rest.
 
-        A pose, or its position (m, base frame) with or without its orientation; without, the goal
-        keeps the one it has. Or joints, rad or m. `posture_rad`: joints that a redundant arm shall
-        have at that pose. The motion takes `duration_s`, or longer where it would be too fast; 0: a
-        moderate speed. A soft arm rests beside its goal, by friction and load: more than
-        `tolerance_m`, `tolerance_rad` away it raises NotReachedError with the distance missing.
+        A pose, or its position (m, base frame) with or without its orientation (default: that of
+        the goal). Or joints, rad or m. `posture_rad`: joints of a redundant arm at that pose. The
+        motion takes `duration_s`, or longer where it would be too fast; 0: a moderate speed. A soft
+        arm rests beside its goal, by friction and load: more than `tolerance_m`, `tolerance_rad`
+        away it raises NotReachedError with the distance missing.
         """
         if pose is not None:
             position_m, quaternion_wxyz = pose.p, pose.quat
@@ -86,11 +86,10 @@ class Motions(ArmBase):
     ) -> None:
         """One goal of a stream of them, 10 to 50 a second, such as a policy makes; does not wait.
 
-        The goal moves on without a jump in position, velocity or acceleration, so as to come to
-        rest at the new one in `horizon_s`; the next one comes before that. So it follows 0.6
-        horizons and up to half a period behind, and comes to rest by itself when the stream ends.
-        With `valid_for_s`, say five periods, the controller ends the motion and holds the arm if
-        this program dies or hangs in the middle of its stream.
+        The goal moves without a jump in position, velocity or acceleration to rest at the new one
+        in `horizon_s`; the next one comes before that. It follows 0.6 horizons and up to half a
+        period behind, and comes to rest when the stream ends. With `valid_for_s`, such as five
+        periods, the controller holds the arm if the stream stops.
         `horizon_s`: three periods of the stream or more, at least 0.1 s; less is jerky. Further
         keys as in set_goal().
         """

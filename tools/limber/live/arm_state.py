@@ -77,7 +77,7 @@ class Quantities:
 
     @property
     def pose(self) -> Pose:
-        """Where the tip is."""
+        """Pose of the tip."""
         return self._pose("BT")
 
     @property
@@ -87,7 +87,7 @@ class Quantities:
 
     @property
     def goal(self) -> Pose:
-        """Where the tip is wanted now: the equilibrium of the virtual spring."""
+        """Desired pose of the tip: the equilibrium of the virtual spring."""
         return self._pose("BD")
 
     @property
@@ -97,8 +97,8 @@ class Quantities:
 
     @property
     def wrench(self) -> np.ndarray:
-        """Contact as the controller believes it: wrench of the world on the arm at the tip, N and
-        N m, shape (6,). InputError while the gains choose no contact source.
+        """Estimated contact: wrench of the world on the arm at the tip, N and N m, shape (6,).
+        InputError while the gains choose no contact source.
         """
         return np.array(self._contact()["F_ext"])
 
@@ -152,7 +152,7 @@ class Quantities:
 
     @property
     def faults(self) -> list[str]:
-        """What is wrong, in words: code, joint, what it means and what to do; empty if nothing."""
+        """Faults in words: code, joint, meaning and remedy; empty if there is none."""
         state, status = self._records()
         # The reason stays in the status until it is acknowledged; what has passed is no fault.
         reason = status["reason"] if self.mode in ("init", "fault", "estop") else 0
@@ -166,7 +166,7 @@ class Quantities:
 
     @property
     def warnings(self) -> list[str]:
-        """What the drives warn of, a code and a joint each; empty if nothing."""
+        """Warnings of the drives, code and joint; empty if there is none."""
         flags, names = self._records()[0]["joint_flags"], self._joint_names()
         return [
             f"{found.code} ({name})"
