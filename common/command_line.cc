@@ -98,6 +98,11 @@ Option CommandLine::numbers(const std::string& names, std::vector<double>* value
   return Option(app_->add_option(names, *value, help)->delimiter(','));
 }
 
+Option CommandLine::integers(const std::string& names, std::vector<std::int64_t>* value,
+                             const std::string& help) {
+  return Option(app_->add_option(names, *value, help)->delimiter(','));
+}
+
 CommandLine& CommandLine::command(const std::string& name, const std::string& purpose) {
   app_->require_subcommand(1);
   commands_.emplace_back(new CommandLine(name, app_->add_subcommand(name, purpose)));

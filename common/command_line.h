@@ -52,6 +52,9 @@ class CommandLine {
                  const std::string& help);
   /// x,y,z
   Option numbers(const std::string& names, std::vector<double>* value, const std::string& help);
+  /// 1,2,3
+  Option integers(const std::string& names, std::vector<std::int64_t>* value,
+                  const std::string& help);
   /// A command with options of its own; exactly one of the commands must be given.
   CommandLine& command(const std::string& name, const std::string& purpose);
   /// Calls `chosen` during parse() if this command is the one that was given.

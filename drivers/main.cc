@@ -25,6 +25,8 @@ void define(limber::CommandLine& line, Arguments* given) {
   line.number("--duration", &options.duration_s, 1e-3, 1e8, "stop after so much arm time, s");
   line.integer("--cycles", &options.cycles, 1, kMost, "stop after so many cycles");
   line.priority(&options.realtime_priority);
+  line.integers("--wait-for", &options.readers,
+                "processes that record: without a clock, the run waits where they fall behind");
   line.number("--patience", &options.patience_s, 0.0, 1e6,
               "give up (exit 3) when motors, simulator or controller are silent so long, s");
 }

@@ -105,6 +105,7 @@ bool DriverProcess::run_cycles(const volatile std::sig_atomic_t& stop) {
   }
   LockstepRunner runner(&port_, robot_.rate_hz, options_.patience_s, length);
   if (options_.pace == Pace::kPaced) runner.pace(grant_.reason);
+  runner.wait_for(ReaderBacklog(options_.readers));
   return runner.run(stop);
 }
 

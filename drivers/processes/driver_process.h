@@ -24,11 +24,12 @@ struct DriverProcessOptions {
   std::map<std::string, std::string> buses;  ///< name in robot.yaml -> address to use instead
   double rate_hz = 0.0;                      ///< 0: as in robot.yaml
   Pace pace = Pace::kRealtime;
-  std::int64_t session = 0;    ///< identifies this run, by run_id()
-  std::int64_t cycles = 0;     ///< 0: for ever
-  double duration_s = 0.0;     ///< arm time; 0: for ever
-  int realtime_priority = 80;  ///< 0: none is requested
-  double patience_s = 30.0;    ///< how long to wait for motors, simulator, controller
+  std::vector<std::int64_t> readers = {};  ///< processes that a run without a clock waits for
+  std::int64_t session = 0;                ///< identifies this run, by run_id()
+  std::int64_t cycles = 0;                 ///< 0: for ever
+  double duration_s = 0.0;                 ///< arm time; 0: for ever
+  int realtime_priority = 80;              ///< 0: none is requested
+  double patience_s = 30.0;                ///< how long to wait for motors, simulator, controller
 };
 
 class DriverProcess {

@@ -13,6 +13,11 @@ namespace limber {
 namespace {
 
 constexpr double kShutDownPatience_s = 1.0;
+// A cycle's copies on the user plane are about 8 kB of a buffer of 416 kB (the kernel's default).
+constexpr std::int64_t kReadersEvery = 10;
+constexpr std::int64_t kMostBacklog_bytes = 100'000;
+constexpr std::int64_t kReaderPause_ns = 500'000;
+constexpr std::int64_t kReaderPatience_ns = 5'000'000'000;
 constexpr std::int64_t kRepeat_ns = 100'000'000;  // then once more: a datagram may be lost
 
 /// Waits until `arrived(deadline)`, calling `repeat` in between. False after `patience_s`, or when
@@ -44,7 +49,11 @@ void LockstepRunner::pace(const std::string& unraised) {
 
 bool LockstepRunner::run(const volatile std::sig_atomic_t& stop) {
   while (stop == 0 && !length_.reached(cycle_, static_cast<double>(cycle_ * period_ns_) * 1e-9)) {
-    if (pacer_) wait_until_due();
+    if (pacer_) {
+      wait_until_due();
+    } else if (cycle_ % kReadersEvery == 0) {
+      wait_for_readers(stop);
+    }
     const char* silent = cycle(stop);
     if (silent == nullptr) continue;
     if (stop != 0) break;
@@ -80,6 +89,24 @@ void LockstepRunner::wait_until_due() {
       "warning: {}: the three processes wait for one another's turn{}{}; nothing is lost. Close "
       "other programs, or use --one-process",
       pace_text(*share), unraised_.empty() ? "" : ", and ", unraised_);
+}
+
+// Nothing that is to be recorded is lost, however busy the machine is.
+void LockstepRunner::wait_for_readers(const volatile std::sig_atomic_t& stop) {
+  if (!readers_.watches_any() || told_) return;
+  const std::int64_t end_ns = monotonic_ns() + kReaderPatience_ns;
+  while (stop == 0 && readers_.bytes() > kMostBacklog_bytes) {
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns > end_ns) {
+      told_ = true;
+      spdlog::warn(
+          "warning: the recorder has read nothing for {:g} s: not waited for any longer, messages "
+          "will be lost",
+          1e-9 * static_cast<double>(kReaderPatience_ns));
+      return;
+    }
+    sleep_until(now_ns + kReaderPause_ns);
+  }
 }
 
 void LockstepRunner::report_pace() const {

@@ -1,6 +1,7 @@
 """How a run ends for its user: exit code, rows of the result, the list of events."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -85,6 +86,43 @@ def test_a_session_that_its_user_stops_ends_well(tmp_path):
     assert rows["messages lost"]["value"] == 0, rows["messages lost"]
     listed = limber("log", "events", str(folder)).stdout
     assert listed.count("goal offset: taken") == 2
+
+
+def test_a_run_without_a_clock_waits_for_its_recorder(tmp_path):
+    """The recorder, stopped for half a second: some five thousand cycles' worth."""
+    path = written(tmp_path, "", seconds=60)
+    folder = tmp_path / "out"
+    with subprocess.Popen(
+        [*LIMBER, "run", path, "--lockstep", "--out", str(folder), "--can"],
+        cwd=ROOT / "tools",
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as running:
+        log = folder / "limber-controller.log"
+        end = time.monotonic() + 60
+        while not log.exists() or "mode ACTIVE" not in log.read_text(encoding="utf-8"):
+            assert time.monotonic() < end and running.poll() is None
+            time.sleep(0.02)
+        children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
+        recorders = [
+            int(pid)
+            for pid in children
+            if Path(f"/proc/{pid}/comm").read_text().strip() in ("limber-record", "limber-can")
+        ]
+        assert len(recorders) == 2
+        for pid in recorders:
+            os.kill(pid, signal.SIGSTOP)
+            time.sleep(0.5)
+            assert running.poll() is None
+            os.kill(pid, signal.SIGCONT)
+        shown, _ = running.communicate(timeout=300)
+    assert running.returncode == 0, shown
+    assert rows_of(folder)["messages lost"]["value"] == 0
+    frames = subprocess.run(
+        ["grep", "-c", "8001##", str(folder / "run.can.log")], capture_output=True, text=True, check=False
+    )
+    assert int(frames.stdout) >= 60_000 - 5, "a command a cycle to the first motor"
 
 
 def test_the_events_of_a_run_with_a_fault(tmp_path):

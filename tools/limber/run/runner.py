@@ -27,7 +27,8 @@ DRIVER, LAB = "limber-driver", "limber-lab"  # the clock: a run is over when it 
 TELLERS = (DRIVER, "limber-controller", "limber-sim", LAB)
 BEHIND = re.compile(r"simulated time runs at \d+ % of real time")  # in all of one process' words
 MONITOR = "limber-monitor"
-LISTENERS = ("limber-record", "limber-can", MONITOR)  # never a reason to stop an arm
+RECORDERS = ("limber-record", "limber-can")
+LISTENERS = (*RECORDERS, MONITOR)  # never a reason to stop an arm
 
 
 def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console) -> FinishedRun:
@@ -45,7 +46,7 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
     result = FinishedRun(folder, str(pace), recorded=recorded, log_name=options.log_name)
     with process_group(folder) as group, sigterm_as_interrupt():
         for name, command in commands.items():
-            _start(group, name, command, console)
+            _start(group, name, [*command, *_readers(group, name, pace)], console)
         clock = group.children[list(commands)[-1]]
         shown = display(scenario, result.log, console, options.live_view)
         code = _follow(group, clock.name, shown, result, options, console)
@@ -105,7 +106,7 @@ def _commands(
         ).items()
     }
     if pace == Pace.LOCKSTEP:  # as fast as the processors allow, but whoever records comes first
-        for name in started.keys() - {"limber-record", "limber-can"}:
+        for name in started.keys() - set(RECORDERS):
             started[name] = ["nice", "-n", "10", *started[name]]
     if options.page:
         path, robot = str(scenario.path), str(scenario.robot.folder)
@@ -165,6 +166,13 @@ def _start(group: ProcessGroup, name: str, command: list[str], console: Console)
     if name == MONITOR:
         for line in child.last_lines(2):  # its address
             console.print(line, markup=False, soft_wrap=True)
+
+
+def _readers(group: ProcessGroup, name: str, pace: Pace) -> list[str]:
+    """Without a clock the driver waits for those that record."""
+    recorders = [str(group.children[n].process.pid) for n in RECORDERS if n in group.children]
+    waits = name == DRIVER and pace == Pace.LOCKSTEP and recorders
+    return ["--wait-for", ",".join(recorders)] if waits else []
 
 
 def _follow(
