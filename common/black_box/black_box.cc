@@ -33,12 +33,12 @@ std::string from_environment(const char* variable) {
   return value == nullptr ? "" : value;
 }
 
-fs::path incidents_folder() {
-  if (const std::string own = from_environment("LIMBER_INCIDENTS"); !own.empty()) return own;
+fs::path copies_folder() {
+  if (const std::string own = from_environment("LIMBER_BLACK_BOXES"); !own.empty()) return own;
   const std::string state = from_environment("XDG_STATE_HOME");
   const fs::path base =
       state.empty() ? fs::path(from_environment("HOME")) / ".local" / "state" : fs::path(state);
-  return base / "limber" / "incidents";
+  return base / "limber" / "black_boxes";
 }
 
 /// In order of time by name.
@@ -61,12 +61,12 @@ fs::path boxes_folder() {
 }
 
 void delete_oldest(const fs::path& folder) {
-  std::vector<fs::path> incidents;
+  std::vector<fs::path> copies;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".box") incidents.push_back(entry.path());
-  std::ranges::sort(incidents);
-  constexpr auto kept = static_cast<std::size_t>(BlackBox::kIncidents) - 1;  // one is to come
-  for (std::size_t i = 0; i + kept < incidents.size(); ++i) fs::remove(incidents[i]);
+    if (entry.path().extension() == ".box") copies.push_back(entry.path());
+  std::ranges::sort(copies);
+  constexpr auto kept = static_cast<std::size_t>(BlackBox::kMostCopies) - 1;  // one is to come
+  for (std::size_t i = 0; i + kept < copies.size(); ++i) fs::remove(copies[i]);
 }
 
 /// A state and a command a cycle, and what else there is.
@@ -78,8 +78,8 @@ std::size_t bytes_for(double rate_hz) {
   return static_cast<std::size_t>(std::clamp(rate_hz * seconds * kPerCycle, kLeast, kMost)) / 8 * 8;
 }
 
-fs::path incident_path(const std::string& name, const std::string& code) {
-  const fs::path folder = incidents_folder();
+fs::path copy_path(const std::string& name, const std::string& code) {
+  const fs::path folder = copies_folder();
   fs::create_directories(folder);
   const fs::path path = folder / fmt::format("{}-{}-{}.box", now_text(), name, code);
   delete_oldest(folder);
@@ -109,10 +109,10 @@ void BlackBox::open(const std::string& name, std::size_t bytes) {
     if (flock(file_.get(), LOCK_EX | LOCK_NB) == 0) path_ = path;
   }
   if (fs::file_size(path_) > 0) {  // its process did not end by itself
-    const fs::path incident = incident_path(path_.filename(), "killed");
-    fs::copy_file(path_, incident, fs::copy_options::overwrite_existing);
+    const fs::path copy = copy_path(path_.filename(), "killed");
+    fs::copy_file(path_, copy, fs::copy_options::overwrite_existing);
     spdlog::warn("warning: the last {} ended without closing its black box; kept: {}", name,
-                 incident.string());
+                 copy.string());
     if (ftruncate(file_.get(), 0) != 0) fail(path_);
   }
   const std::size_t size = kHeaderBytes + bytes;
@@ -156,9 +156,9 @@ void BlackBox::keep(const std::string& code) {
 
 fs::path BlackBox::announce(const std::string& code) const {
   try {
-    const fs::path incident = incident_path(path_.filename(), code);
-    spdlog::info("what happened is kept for `limber log black-box`: {}", incident.string());
-    return incident;
+    const fs::path copy = copy_path(path_.filename(), code);
+    spdlog::info("what happened is kept for `limber log black-box`: {}", copy.string());
+    return copy;
   } catch (const std::exception& error) {
     spdlog::warn("the black box cannot be kept: {}", error.what());
     return {};
@@ -171,11 +171,11 @@ void BlackBox::keep_when_due() {
     changed_.wait(lock, [this] { return ending_ || !code_.empty(); });
     if (!code_.empty()) {
       lock.unlock();
-      const fs::path incident = announce(code_);  // which keep() leaves alone until it is cleared
+      const fs::path copy = announce(code_);  // which keep() leaves alone until it is cleared
       lock.lock();
       changed_.wait_for(lock, std::chrono::duration<double>(kAfter_s), [this] { return ending_; });
       lock.unlock();
-      if (!incident.empty()) tell([&] { copy_to(incident); });
+      if (!copy.empty()) tell([&] { copy_to(copy); });
       lock.lock();
       code_.clear();
     }
@@ -183,12 +183,12 @@ void BlackBox::keep_when_due() {
   }
 }
 
-void BlackBox::copy_to(const fs::path& incident) const {
-  std::ofstream out(incident, std::ios::binary);
+void BlackBox::copy_to(const fs::path& copy) const {
+  std::ofstream out(copy, std::ios::binary);
   out.write(reinterpret_cast<const char*>(memory_.data()),
             static_cast<std::streamsize>(memory_.size()));
   out.close();
-  if (!out) spdlog::warn("the black box could not be written to {}", incident.string());
+  if (!out) spdlog::warn("the black box could not be written to {}", copy.string());
 }
 
 }  // namespace limber

@@ -20,10 +20,10 @@
 namespace limber {
 
 /// Memory that is a file in /dev/shm: it survives SIGKILL of the process, not of the machine, and
-/// writing to it is no system call. After a fault a copy is kept as an incident: a file with what
+/// writing to it is no system call. After a fault a copy is kept: a file with what
 /// came before and kAfter_s of what came after. What a process that was killed has left is kept by
-/// the next one of its name. Incidents lie in $LIMBER_INCIDENTS, else in limber/incidents of
-/// $XDG_STATE_HOME or ~/.local/state; the oldest beyond kIncidents are deleted. `limber log
+/// the next one of its name. Copies lie in $LIMBER_BLACK_BOXES, else in limber/black_boxes of
+/// $XDG_STATE_HOME or ~/.local/state; the oldest beyond kMostCopies are deleted. `limber log
 /// black-box` reads them.
 ///
 /// File: kHeaderBytes of text ("limber-black-box/1", then key: value lines, zeros), then the
@@ -32,7 +32,7 @@ class BlackBox {
  public:
   static constexpr std::size_t kHeaderBytes = 4096;
   static constexpr double kAfter_s = 2.0;
-  static constexpr int kIncidents = 30;
+  static constexpr int kMostCopies = 30;
   static constexpr double kSeconds = 10.0;  ///< before the fault
 
   /// `name`: program and robot, such as "driver-openarm"; room for kSeconds at `rate_hz`. With
@@ -47,7 +47,7 @@ class BlackBox {
   void write(std::string_view channel, std::span<const std::uint8_t> message) noexcept;
 
   /// Something happened that is worth keeping; `code`, such as driver.VELOCITY, becomes part of the
-  /// file's name, which is logged. Nothing happens if an incident is under way. Files are the
+  /// file's name, which is logged. Nothing happens while a copy is under way. Files are the
   /// thread's work: the caller waits for none. Allocates; not in the cycle.
   void keep(const std::string& code);
 
@@ -55,7 +55,7 @@ class BlackBox {
   void open(const std::string& name, std::size_t bytes);
   void keep_when_due();
   std::filesystem::path announce(const std::string& code) const;
-  void copy_to(const std::filesystem::path& incident) const;
+  void copy_to(const std::filesystem::path& copy) const;
 
   std::filesystem::path path_;
   FileDescriptor file_;
@@ -64,7 +64,7 @@ class BlackBox {
 
   std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
-  std::string code_;  ///< of the incident under way
+  std::string code_;  ///< of the copy under way
   bool ending_ = false;
   std::thread thread_;
 };

@@ -39,8 +39,9 @@ def run_experiments(
     jobs: Annotated[
         int, typer.Option(min=1, max=64, help="Number of experiments at a time.")
     ] = PROCESSORS,
-    referee: Annotated[
-        bool, typer.Option("--referee", help="Judge the CAN frames of every run, too.")
+    check_trace: Annotated[
+        bool,
+        typer.Option("--check-trace", "--referee", help="Judge the CAN frames, too."),
     ] = False,
     root: Root = None,
 ) -> None:
@@ -49,15 +50,15 @@ def run_experiments(
     from limber.paths import output_folder
     from limber_lecture.batch import run_many
     from limber_lecture.catalog import catalog, choose
-    from limber_lecture.context import REFEREE
+    from limber_lecture.context import CHECK_TRACE
     from limber_lecture.run_one import run_one, summary
 
     chosen = [item for item in choose(which, catalog(root)) if item.fast or not fast]
     if not chosen:
         raise InputError("--fast leaves none of them; omit it")
     output_folder(out)
-    if referee:
-        os.environ[REFEREE] = "1"
+    if check_trace:
+        os.environ[CHECK_TRACE] = "1"
     if len(chosen) > 1:
         raise typer.Exit(run_many(chosen, out, jobs, console))
     checks = run_one(chosen[0], out, console)

@@ -21,7 +21,7 @@ from limber_lecture import evaluate, pictures
 from limber_lecture.catalog import Experiment
 from limber_lecture.comparison import Comparison, at_least, at_most, ideal_and_bus, near_zero
 from limber_lecture.evaluate import case
-from limber_qa.referee.judge import require_no_breach
+from limber_qa.check_trace.judge import require_no_breach
 
 # What every experiment needs is imported from here
 __all__ = ["Comparison", "Context", "at_least", "at_most", "case", "ideal_and_bus", "near_zero"]
@@ -30,7 +30,7 @@ PICTURE = "picture.png"
 # No springs, friction or drives: nothing happens between two commands that Runge-Kutta steps of a
 # period would miss.
 SMOOTH, PERIOD_S = ("ideal7", "planar2r"), 1e-3
-REFEREE = "LIMBER_REFEREE"  # 1: the frames of every run are judged
+CHECK_TRACE = "LIMBER_CHECK_TRACE"  # 1: the frames of every run are judged
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Context:
         self.progress(f"lab: {name}")
         folder = output_folder(self.out / name)
         (folder / LOG_NAME).unlink(missing_ok=True)  # of the last time
-        judged = os.environ.get(REFEREE) == "1"
+        judged = os.environ.get(CHECK_TRACE) == "1"
         result = runner.lab(load_checked(path), folder, Console(quiet=True), record_can=judged)
         if judged:
             require_no_breach(result.can_log, str(folder))

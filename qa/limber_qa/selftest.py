@@ -167,7 +167,7 @@ def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
 def run(names: list[str], console: Console) -> bool:
     """Runs all parts, also after one has failed; True if all passed."""
     commands = {name: PARTS[name].command() for name in names}
-    os.environ["LIMBER_INCIDENTS"] = str(ROOT / "out" / "incidents")  # tests crash a lot
+    os.environ["LIMBER_BLACK_BOXES"] = str(ROOT / "out" / "black_boxes")  # tests crash a lot
     begun = time.monotonic()
     verdicts: list[Verdict] = []
 

@@ -37,8 +37,8 @@ class SimPort {
   }
   void handle_messages() noexcept;
   void publish_truth() noexcept;
-  /// Keeps what is published and heard from now on, as an incident when driver or controller has a
-  /// fault. Outlives this. Set-up only.
+  /// Keeps what is published and heard from now on, in a black box that is kept when driver or
+  /// controller has a fault. Outlives this. Set-up only.
   void set_black_box(BlackBox* box);
   /// To the log, at most once a second.
   void complain(const std::string& what);

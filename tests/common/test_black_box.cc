@@ -113,10 +113,10 @@ TEST(EventRing, TakesSeveralWriters) {
 
 class BlackBoxTest : public ::testing::Test {
  protected:
-  BlackBoxTest() { setenv("LIMBER_INCIDENTS", folder_.c_str(), 1); }
-  ~BlackBoxTest() override { unsetenv("LIMBER_INCIDENTS"); }
-  /// The only incident whose name contains `part`; waits for its bytes.
-  Bytes incident(const std::string& part) const {
+  BlackBoxTest() { setenv("LIMBER_BLACK_BOXES", folder_.c_str(), 1); }
+  ~BlackBoxTest() override { unsetenv("LIMBER_BLACK_BOXES"); }
+  /// The only kept box whose name contains `part`; waits for its bytes.
+  Bytes kept(const std::string& part) const {
     for (int i = 0; i < 1000; ++i) {
       for (const auto& entry : fs::directory_iterator(folder_)) {
         if (entry.path().string().find(part) == std::string::npos) continue;
@@ -145,7 +145,7 @@ TEST_F(BlackBoxTest, KeepsWhatCameBeforeAndAfterAFault) {
   box.keep("driver.VELOCITY");
   box.keep("driver.BUS");  // while one is under way
   box.write("A", bytes("after"));
-  const Bytes content = incident("-" + name_ + "-driver.VELOCITY.box");
+  const Bytes content = kept("-" + name_ + "-driver.VELOCITY.box");
   ASSERT_FALSE(content.empty());
   EXPECT_EQ(std::string(content.begin(), content.begin() + 18), "limber-black-box/1");
   const auto found = records_of(content);
@@ -153,13 +153,13 @@ TEST_F(BlackBoxTest, KeepsWhatCameBeforeAndAfterAFault) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(BlackBoxTest, AnEndInOrderFinishesTheIncidentAndLeavesNothing) {
+TEST_F(BlackBoxTest, AnEndInOrderFinishesTheCopyAndLeavesNothing) {
   {
     BlackBox box(name_, 10.0);
     box.write("A", bytes("x"));
     box.keep("driver.BUS");
   }
-  EXPECT_EQ(records_of(incident("driver.BUS")).size(), 1U);
+  EXPECT_EQ(records_of(kept("driver.BUS")).size(), 1U);
   { BlackBox again(name_, 10.0); }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
@@ -174,7 +174,7 @@ TEST_F(BlackBoxTest, AKilledProcessLeavesItsLastSeconds) {
   waitpid(child, nullptr, 0);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 0);
   const BlackBox next(name_, 10.0);
-  EXPECT_EQ(records_of(incident("-killed.box")),
+  EXPECT_EQ(records_of(kept("-killed.box")),
             (std::map<std::int64_t, std::string>{{0, "last words"}}));
 }
 
@@ -185,12 +185,12 @@ TEST_F(BlackBoxTest, TwoOfOneNameHaveAFileEach) {
   two.write("A", bytes("two"));
   one.keep("first");
   two.keep("second");
-  EXPECT_EQ(records_of(incident("-first.box")).at(0), "one");
-  EXPECT_EQ(records_of(incident("-second.box")).at(0), "two");
+  EXPECT_EQ(records_of(kept("-first.box")).at(0), "one");
+  EXPECT_EQ(records_of(kept("-second.box")).at(0), "two");
 }
 
-TEST_F(BlackBoxTest, OnlySoManyIncidentsStay) {
-  for (int i = 0; i < BlackBox::kIncidents + 5; ++i)
+TEST_F(BlackBoxTest, OnlySoManyStay) {
+  for (int i = 0; i < BlackBox::kMostCopies + 5; ++i)
     std::ofstream(folder_ / ("20200101T0000" + std::to_string(10 + i) + "-driver-x-y.box"))
         << "old";
   {
@@ -198,8 +198,8 @@ TEST_F(BlackBoxTest, OnlySoManyIncidentsStay) {
     box.write("A", bytes("x"));
     box.keep("new");
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), BlackBox::kIncidents);
-  EXPECT_FALSE(incident("-new.box").empty());
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), BlackBox::kMostCopies);
+  EXPECT_FALSE(kept("-new.box").empty());
 }
 
 TEST_F(BlackBoxTest, CanBeSwitchedOff) {
@@ -214,7 +214,7 @@ TEST_F(BlackBoxTest, CanBeSwitchedOff) {
 }
 
 TEST_F(BlackBoxTest, AFolderThatCannotBeMadeIsNoReasonNotToRun) {
-  setenv("LIMBER_INCIDENTS", "/proc/nothing/here", 1);
+  setenv("LIMBER_BLACK_BOXES", "/proc/nothing/here", 1);
   BlackBox box(name_, 10.0);
   box.write("A", bytes("x"));
   box.keep("lost");

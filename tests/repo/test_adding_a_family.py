@@ -7,7 +7,7 @@ import yaml
 
 from limber.model.protocols import protocols
 from limber.paths import ROOT
-from limber_qa.referee import drives
+from limber_qa.check_trace import drives
 
 DOCUMENT = (ROOT / "docs" / "adding.md").read_text(encoding="utf-8")
 SECTION = DOCUMENT.split("## A drive family")[1].split("\n## ")[0]

@@ -6,9 +6,9 @@ import subprocess
 
 import pytest
 
+from limber_qa.check_trace.judge import judge_file
+from limber_qa.check_trace.stops import Expectation
 from limber_qa.faults.matrix import read_matrix
-from limber_qa.referee.judge import judge_file
-from limber_qa.referee.stops import Expectation
 from stack import BIN, Stack, slow_arm
 
 PAUSE_CYCLES = 60  # the frames' stamps are the clock's: what the machine adds
@@ -35,9 +35,9 @@ def pytest_configure(config):
 
 
 @pytest.fixture(autouse=True)
-def own_incidents(tmp_path, monkeypatch):
+def own_black_boxes(tmp_path, monkeypatch):
     """Neither in the user's folder, nor mixed with those of other runs."""
-    monkeypatch.setenv("LIMBER_INCIDENTS", str(tmp_path / "incidents"))
+    monkeypatch.setenv("LIMBER_BLACK_BOXES", str(tmp_path / "black_boxes"))
 
 
 @pytest.fixture
@@ -68,8 +68,8 @@ def pytest_collection_modifyitems(items):
 
 
 @pytest.fixture
-def refereed(stack, tmp_path):
-    """The stack, with all its CAN frames recorded; at the end the referee judges them."""
+def judged(stack, tmp_path):
+    """The stack, with all its CAN frames recorded; at the end the trace checker judges them."""
     trace = tmp_path / "frames.log"
     recorder = subprocess.Popen(
         [BIN / "limber-can", "record", stack.robot, "--out", trace],

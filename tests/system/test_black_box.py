@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-from limber.incident.black_box import incidents, read
+from limber.black_box.boxes import kept_boxes, read
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.log.reader import Log
 from stack import ROOT, SLOW_HZ
@@ -25,19 +25,22 @@ def test_the_cycles_before_a_kill_are_kept(stack, tmp_path):
     time.sleep(0.2)
     last = stack.state.seq
     stack.until(lambda: stack.mode == Status.MODE_FAULT, 10, "the controller's fault")
-    stack.until(lambda: len(incidents()) >= 1, 10, "the controller's box")
+    stack.until(lambda: len(kept_boxes()) >= 1, 10, "the controller's box")
     stack.start("driver")
     stack.until(
-        lambda: any(box.program == "driver" for box in incidents()), 10, "the killed driver's box"
+        lambda: any(box.program == "driver" for box in kept_boxes()), 10, "the killed driver's box"
     )
     time.sleep(2.5)  # what comes after is kept, too
-    boxes = {box.program: box for box in incidents()}
+    boxes = {box.program: box for box in kept_boxes()}
     assert boxes["driver"].code == "killed"
     assert boxes["controller"].code == "controller.STATE_LOST"
 
     out = tmp_path / "told"
     done = subprocess.run(
-        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=300
+        [LIMBER, "log", "black-box", "show", "--out", str(out)],
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     assert "controller.STATE_LOST" in done.stdout
@@ -77,10 +80,13 @@ def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     """The driver and the simulator saw nothing wrong themselves."""
     told = play(tmp_path, 6.0, 1.5).stdout
     assert "kept: limber log black-box show" in " ".join(told.split())
-    assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
+    assert {box.program for box in kept_boxes()} == {"driver", "controller", "sim"}
     out = tmp_path / "told"
     done = subprocess.run(
-        [LIMBER, "incident", "show", "--out", str(out)], capture_output=True, text=True, timeout=300
+        [LIMBER, "log", "black-box", "show", "--out", str(out)],
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     assert "ENCODER_STOPPED" in done.stdout
@@ -93,7 +99,7 @@ def test_a_fault_of_the_controller_is_kept_by_all_three_and_drawn(tmp_path):
     assert push["force_N"] == pytest.approx([0, 8, 0], abs=0.1)
 
 
-def test_an_end_that_was_wanted_is_no_incident(tmp_path):
+def test_an_end_that_was_wanted_keeps_no_black_box(tmp_path):
     done = play(tmp_path, 1.3, None)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert incidents() == []
+    assert kept_boxes() == []

@@ -120,7 +120,10 @@ def test_a_run_without_a_clock_waits_for_its_recorder(tmp_path):
     assert running.returncode == 0, shown
     assert rows_of(folder)["messages lost"]["value"] == 0
     frames = subprocess.run(
-        ["grep", "-c", "8001##", str(folder / "run.can.log")], capture_output=True, text=True, check=False
+        ["grep", "-c", "8001##", str(folder / "run.can.log")],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert int(frames.stdout) >= 60_000 - 5, "a command a cycle to the first motor"
 

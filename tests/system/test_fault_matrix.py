@@ -1,7 +1,7 @@
 """Faults of processes, planes and the start, injected into the real processes: the rows of
 qa/faults/matrix.yaml that name these tests.
 
-The referee judges what was on the bus meanwhile: every test here takes `refereed`.
+The trace checker judges what was on the bus meanwhile: every test here takes `judged`.
 """
 
 import resource
@@ -38,130 +38,130 @@ def speed_since(stack: Stack, index: int) -> float:
 
 
 @pytest.mark.realtime
-def test_a_controller_that_freezes_is_not_followed_again(refereed):
-    active(refereed)
-    before = refereed.positions
-    freeze(refereed, "controller")
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_HOLD, 5, "the drives to hold")
+def test_a_controller_that_freezes_is_not_followed_again(judged):
+    active(judged)
+    before = judged.positions
+    freeze(judged, "controller")
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_HOLD, 5, "the drives to hold")
     time.sleep(0.5)
-    assert refereed.state.drive_state == State.DRIVE_HOLD, "thawed, it asks for nothing"
-    assert refereed.state.fault == State.FAULT_CONTROLLER_LOST
-    assert refereed.mode == Status.MODE_FAULT
-    assert np.abs(refereed.positions - before).max() < 3 * DEGREE
-    refereed.acknowledge()
-    refereed.bring_to(Status.MODE_HOLD)
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 5, "the drives to obey")
+    assert judged.state.drive_state == State.DRIVE_HOLD, "thawed, it asks for nothing"
+    assert judged.state.fault == State.FAULT_CONTROLLER_LOST
+    assert judged.mode == Status.MODE_FAULT
+    assert np.abs(judged.positions - before).max() < 3 * DEGREE
+    judged.acknowledge()
+    judged.bring_to(Status.MODE_HOLD)
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_ON, 5, "the drives to obey")
 
 
 @pytest.mark.realtime
-def test_a_driver_that_freezes_sends_no_old_commands(refereed):
-    active(refereed)
-    index = refereed.user.count("SIM_TRUTH")
-    freeze(refereed, "driver")
-    thawed = refereed.user.count("SIM_TRUTH")
-    refereed.until(lambda: refereed.state.drive_state != State.DRIVE_ON, 5, "the driver to notice")
+def test_a_driver_that_freezes_sends_no_old_commands(judged):
+    active(judged)
+    index = judged.user.count("SIM_TRUTH")
+    freeze(judged, "driver")
+    thawed = judged.user.count("SIM_TRUTH")
+    judged.until(lambda: judged.state.drive_state != State.DRIVE_ON, 5, "the driver to notice")
     time.sleep(0.5)
-    assert refereed.mode == Status.MODE_FAULT
-    assert speed_since(refereed, index) < 2.0, "on shorted phases the arm sinks slowly"
+    assert judged.mode == Status.MODE_FAULT
+    assert speed_since(judged, index) < 2.0, "on shorted phases the arm sinks slowly"
     # What the motors make now is braking: it takes energy out of the arm.
-    for truth in refereed.user.since("SIM_TRUTH", thawed)[50:]:
+    for truth in judged.user.since("SIM_TRUTH", thawed)[50:]:
         power_W = np.array(truth.tau_motor) * np.array(truth.theta_dot)
         assert power_W.max() < 0.5, "a torque that drives the arm"
 
 
 @pytest.mark.realtime
-def test_an_arm_that_comes_back_elsewhere_stays_there(refereed):
-    active(refereed)
-    home = refereed.positions
-    refereed.kill("sim")
-    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 5, "FAULT")
+def test_an_arm_that_comes_back_elsewhere_stays_there(judged):
+    active(judged)
+    home = judged.positions
+    judged.kill("sim")
+    judged.until(lambda: judged.mode == Status.MODE_FAULT, 5, "FAULT")
     elsewhere = home + np.array([0.2, 0.1, -0.2, 0.2, 0.1, -0.1, 0.2])
-    refereed.start("sim", "--start-q", *map(str, elsewhere))
+    judged.start("sim", "--start-q", *map(str, elsewhere))
     time.sleep(1.0)
-    assert np.abs(refereed.positions - elsewhere).max() < 1 * DEGREE, "it lies in its stand"
-    refereed.acknowledge()
-    refereed.bring_to(Status.MODE_HOLD)
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+    assert np.abs(judged.positions - elsewhere).max() < 1 * DEGREE, "it lies in its stand"
+    judged.acknowledge()
+    judged.bring_to(Status.MODE_HOLD)
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_ON, 10, "drives on")
     time.sleep(1.0)
-    assert np.abs(refereed.positions - elsewhere).max() < 6 * DEGREE, "not to the old goal"
+    assert np.abs(judged.positions - elsewhere).max() < 6 * DEGREE, "not to the old goal"
 
 
-def test_a_recorder_that_hangs_is_not_noticed(refereed, tmp_path):
+def test_a_recorder_that_hangs_is_not_noticed(judged, tmp_path):
     recorder = subprocess.Popen([BIN / "limber-record", "--out", tmp_path / "run.lcmlog"])
     try:
-        active(refereed)
+        active(judged)
         recorder.send_signal(signal.SIGSTOP)
         time.sleep(2.0)
-        assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
+        assert judged.state.drive_state == State.DRIVE_ON, judged.describe()
         recorder.kill()
         time.sleep(0.5)
-        assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
-        assert refereed.mode == Status.MODE_ACTIVE
+        assert judged.state.drive_state == State.DRIVE_ON, judged.describe()
+        assert judged.mode == Status.MODE_ACTIVE
     finally:
         recorder.kill()
         recorder.wait()
 
 
 @pytest.mark.realtime
-def test_a_simulator_that_stalls_is_a_fault(refereed):
-    active(refereed)
-    freeze(refereed, "sim")
-    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 5, "FAULT")
-    assert refereed.state.fault == State.FAULT_REPLY_LOST
-    assert refereed.state.drive_state != State.DRIVE_ON
-    refereed.acknowledge()
-    refereed.bring_to(Status.MODE_HOLD)
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+def test_a_simulator_that_stalls_is_a_fault(judged):
+    active(judged)
+    freeze(judged, "sim")
+    judged.until(lambda: judged.mode == Status.MODE_FAULT, 5, "FAULT")
+    assert judged.state.fault == State.FAULT_REPLY_LOST
+    assert judged.state.drive_state != State.DRIVE_ON
+    judged.acknowledge()
+    judged.bring_to(Status.MODE_HOLD)
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_ON, 10, "drives on")
 
 
-def test_a_flood_of_telemetry_stops_no_arm(refereed):
-    active(refereed)
-    before = refereed.positions
+def test_a_flood_of_telemetry_stops_no_arm(judged):
+    active(judged)
+    before = judged.positions
     end = time.monotonic() + 3.0
     sent = 0
     while time.monotonic() < end:
         for _ in range(10):
-            refereed.user.lcm.publish("FOREIGN", b"x" * 200)
+            judged.user.lcm.publish("FOREIGN", b"x" * 200)
             sent += 1
         time.sleep(0.002)
     assert sent > 1000
-    assert refereed.state.drive_state == State.DRIVE_ON, refereed.describe()
-    assert refereed.mode == Status.MODE_ACTIVE
-    assert np.abs(refereed.positions - before).max() < 1 * DEGREE
+    assert judged.state.drive_state == State.DRIVE_ON, judged.describe()
+    assert judged.mode == Status.MODE_ACTIVE
+    assert np.abs(judged.positions - before).max() < 1 * DEGREE
 
 
 @pytest.mark.realtime
-def test_replayed_requests_enable_nothing(refereed):
+def test_replayed_requests_enable_nothing(judged):
     """An old log, played to the user plane of a stack that has been started anew."""
-    active(refereed)
-    old = list(refereed.user.raw["MODE_REQUEST"])
+    active(judged)
+    old = list(judged.user.raw["MODE_REQUEST"])
     assert old, "the requests that brought the arm up"
-    for tag in list(refereed.processes):
-        refereed.kill(tag)
-    refereed.start_all()
-    refereed.until(lambda: refereed.mode == Status.MODE_IDLE, 10, "IDLE")
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_OFF, 5, "drives off")
+    for tag in list(judged.processes):
+        judged.kill(tag)
+    judged.start_all()
+    judged.until(lambda: judged.mode == Status.MODE_IDLE, 10, "IDLE")
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_OFF, 5, "drives off")
     for _ in range(20):
         for data in old:
-            refereed.user.lcm.publish("MODE_REQUEST", data)
+            judged.user.lcm.publish("MODE_REQUEST", data)
         time.sleep(0.1)
-    assert refereed.state.drive_state == State.DRIVE_OFF
+    assert judged.state.drive_state == State.DRIVE_OFF
 
 
 @pytest.mark.realtime
-def test_a_network_that_goes_down_is_a_fault(refereed):
-    active(refereed)
-    before = refereed.positions
+def test_a_network_that_goes_down_is_a_fault(judged):
+    active(judged)
+    before = judged.positions
     _ip("link", "set", "lo", "down")
     time.sleep(FREEZE_s)
     _ip("link", "set", "lo", "up")
     _ip("route", "replace", "224.0.0.0/4", "dev", "lo")
-    refereed.until(lambda: refereed.mode == Status.MODE_FAULT, 10, "FAULT")
-    assert refereed.state.drive_state != State.DRIVE_ON
-    assert np.abs(refereed.positions - before).max() < 30 * DEGREE, "it sank on shorted phases"
-    refereed.acknowledge()
-    refereed.bring_to(Status.MODE_HOLD)
-    refereed.until(lambda: refereed.state.drive_state == State.DRIVE_ON, 10, "drives on")
+    judged.until(lambda: judged.mode == Status.MODE_FAULT, 10, "FAULT")
+    assert judged.state.drive_state != State.DRIVE_ON
+    assert np.abs(judged.positions - before).max() < 30 * DEGREE, "it sank on shorted phases"
+    judged.acknowledge()
+    judged.bring_to(Status.MODE_HOLD)
+    judged.until(lambda: judged.state.drive_state == State.DRIVE_ON, 10, "drives on")
 
 
 def _ip(*words: str) -> None:

@@ -14,7 +14,7 @@ from limber.lcmtypes.joint_command_t import joint_command_t
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import ARM_URL, Listener
 
-pytestmark = [pytest.mark.realtime, pytest.mark.usefixtures("refereed")]
+pytestmark = [pytest.mark.realtime, pytest.mark.usefixtures("judged")]
 
 
 def active(stack) -> None:

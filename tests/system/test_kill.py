@@ -9,7 +9,7 @@ from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import SLOW_HZ
 
-pytestmark = [pytest.mark.realtime, pytest.mark.usefixtures("refereed")]
+pytestmark = [pytest.mark.realtime, pytest.mark.usefixtures("judged")]
 DEGREE = np.pi / 180
 FALLING_rad_per_s = (
     0.6  # an undamped openarm shoulder passes this a tenth of a second after its torque is gone

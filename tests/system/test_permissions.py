@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from limber.incident.black_box import incidents
+from limber.black_box.boxes import kept_boxes
 from stack import BIN, ROOT
 
 LIMBER = str(ROOT / ".venv" / "bin" / "limber")
@@ -41,10 +41,10 @@ def open_to_all(folder: Path) -> list[Path]:
 def test_nobody_else_may_change_what_a_run_writes(tmp_path, monkeypatch):
     scenario, out, kept = tmp_path / "fault.yaml", tmp_path / "out", tmp_path / "kept"
     scenario.write_text(FAULT)
-    monkeypatch.setenv("LIMBER_INCIDENTS", str(kept))
+    monkeypatch.setenv("LIMBER_BLACK_BOXES", str(kept))
     done = limber("run", str(scenario), "--out", str(out), umask=0)
     assert (out / "run.lcmlog.zst").exists(), done.stderr
-    assert {box.program for box in incidents()} == {"driver", "controller", "sim"}
+    assert {box.program for box in kept_boxes()} == {"driver", "controller", "sim"}
     done = limber("log", "convert", str(out), "--to", "csv", umask=0)
     assert done.returncode == 0, done.stderr
     assert limber("plot", str(out), umask=0).returncode == 0

@@ -18,7 +18,7 @@ def stack(monkeypatch):
     folder = HERE.parents[1] / "build" / "dev" / "vcan-tests"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    monkeypatch.setenv("LIMBER_INCIDENTS", str(folder / "incidents"))
+    monkeypatch.setenv("LIMBER_BLACK_BOXES", str(folder / "black_boxes"))
     running = Stack(folder, pace="--realtime")
     try:
         yield running

@@ -16,7 +16,7 @@ SHOWN = 40
 
 
 @app.command("check-trace", epilog="Example: limber dev check-trace frames.log --robot openarm")
-def referee(
+def check_trace(
     trace: Annotated[Path, typer.Argument(help="A candump log of all the arm's buses.")],
     robot: Annotated[str, typer.Option("--robot", "-r", help="Its name or folder.")] = "openarm",
     bus: Bus = None,
@@ -35,8 +35,8 @@ def referee(
 ) -> None:
     """Judge an arm by its CAN frames and robot.yaml alone; 1 if a rule is broken."""
     from limber.tables import table
-    from limber_qa.referee.judge import judge_file
-    from limber_qa.referee.stops import Expectation
+    from limber_qa.check_trace.judge import judge_file
+    from limber_qa.check_trace.stops import Expectation
 
     expected = Expectation(
         None if fault_at is None else round(fault_at * 1e9),

@@ -36,7 +36,7 @@ def run(
     ] = None,
     phases: Phases = 20,
 ) -> None:
-    """Run the lock-step faults of a row, or of all, each judged by the referee as well."""
+    """Run the lock-step faults of a row, or of all, each judged by the trace checker as well."""
     from limber_qa.faults.lockstep import run_fault
     from limber_qa.faults.matrix import read_matrix
 

@@ -1,6 +1,6 @@
 """Runs the lock-step faults of a row and judges each phase: the driver's reaction, and the trace.
 
-The driver tells what it did in JOINT_STATE; the referee tells what was on the bus.
+The driver tells what it did in JOINT_STATE; the trace checker tells what was on the bus.
 """
 
 import json
@@ -13,11 +13,11 @@ from typing import Any
 from limber.errors import RunError
 from limber.messages import constants
 from limber.paths import captured, program
+from limber_qa.check_trace.arm import Arm, read_arm
+from limber_qa.check_trace.candump import read_trace
+from limber_qa.check_trace.judge import judge
+from limber_qa.check_trace.stops import Expectation
 from limber_qa.faults.matrix import LockStepRun, Row
-from limber_qa.referee.arm import Arm, read_arm
-from limber_qa.referee.candump import read_trace
-from limber_qa.referee.judge import judge
-from limber_qa.referee.stops import Expectation
 
 PHASES = 20
 STATES = {"FALLBACK": "HOLD", "DAMP": "DAMP", "FAULT": "FAULT"}  # the driver's words
@@ -57,7 +57,7 @@ def run_row(row: Row, phases: int = PHASES) -> Iterator[RunResult]:
 
 def run_fault(run: LockStepRun, phases: int = PHASES) -> RunResult:
     with tempfile.TemporaryDirectory() as folder:
-        traces = [] if run.referee else ["--traces", folder]
+        traces = [] if run.unjudged else ["--traces", folder]
         text = _limber_faults(run.fault, "--phases", str(phases), "--family", run.family, *traces)
         cell = json.loads(text)["faults"][0]["families"].get(run.family)
         if cell is None:
@@ -120,7 +120,7 @@ def _wrong(run: LockStepRun, reaction: dict[str, Any]) -> Iterator[str]:
 def _judge(
     run: LockStepRun, reaction: dict[str, Any], trace: Path, arm: Arm, found: list[str]
 ) -> list[float]:
-    """Adds the referee's complaints; the time to the first safe frame, if there is one."""
+    """Adds the trace checker's complaints; the time to the first safe frame, if there is one."""
     leaves_on = run.reaction in STATES
     expected = Expectation(
         fault_ns=reaction["fault_ns"] if leaves_on else None,
@@ -129,7 +129,7 @@ def _judge(
     )
     verdict = judge(read_trace(trace), arm, expected)
     found += [
-        f"referee: {breach.joint}: {breach.rule} {breach.number:.4g} {breach.unit} "
+        f"trace: {breach.joint}: {breach.rule} {breach.number:.4g} {breach.unit} "
         f"(limit {breach.limit:.4g}): {breach.text}"
         for breach in verdict.breaches[:3]
     ]

@@ -29,7 +29,7 @@ class LockStepRun:
     `verdict`: by which most commands are refused, of
     DRIVER_STATUS, without VERDICT_. `moved_rad`: farthest that a joint may move, and
     `moved_on_rad`: while the drives are ON; 0: no limit.
-    `referee`: why the trace cannot be judged, or "".
+    `unjudged`: why the trace cannot be judged, or "".
     """
 
     fault: str
@@ -41,7 +41,7 @@ class LockStepRun:
     moved_rad: float = 0.0
     moved_on_rad: float = 0.0
     family: str = "damiao_mit"
-    referee: str = ""
+    unjudged: str = ""
     known_failing: str = ""
 
 

@@ -13,13 +13,13 @@ from typer.exceptions import TyperException
 
 from limber import __version__
 from limber.cli import (
+    black_box,
     can,
-    directions,  # noqa: F401 - fills groups.identify
     doctor,
     export,  # noqa: F401 - fills groups.export
     groups,
     identify,  # noqa: F401 - fills groups.identify
-    incident,
+    joint_check,  # noqa: F401 - fills groups.identify
     live,
     log,
     monitor,
@@ -40,7 +40,7 @@ app = typer.Typer(
 )
 for module in (run, doctor, live, monitor, log):
     app.add_typer(module.app)
-groups.log.add_typer(incident.app, name="black-box")
+groups.log.add_typer(black_box.app, name="black-box")
 app.add_typer(groups.log, name="log")
 app.add_typer(groups.identify, name="identify")
 app.add_typer(groups.export, name="export")

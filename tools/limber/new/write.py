@@ -28,6 +28,7 @@ def write(
 ) -> int:
     """`ends`: base and tip; `out`: the folder to make, default ./NAME. Raises InputError."""
     existing_file(urdf, "URDF file")
+    chosen = protocol(drives)
     name = name or re.sub(r"[^A-Za-z0-9_-]+", "_", urdf.name.split(".")[0])
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]{0,39}", name):
         raise InputError(f"--name '{name}': a letter, then letters, digits, _ or -, at most 40")
@@ -38,7 +39,6 @@ def write(
             raise InputError(f"{path} exists already and is left as it is; give --name or --out")
     arm = facts.read(urdf, *ends)
     sliding = [joint.name for joint in arm.joints if joint.slides]
-    chosen = protocol(drives)
     if sliding and chosen.rotary_only:
         others = " or ".join(entry.word for entry in protocols() if not entry.rotary_only)
         raise InputError(

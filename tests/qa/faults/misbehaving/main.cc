@@ -1,5 +1,5 @@
 // A lab whose controller breaks one limit of its first joint, from 1.3 s on, and writes the frames.
-// For the tests of the referee only.
+// For the tests of the trace checker only.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,0 +1,179 @@
+"""The trace checker's decoders, byte by byte: the protocols' worked frames, and by hand."""
+
+import math
+import struct
+from dataclasses import replace
+
+import pytest
+
+from limber.errors import InputError
+from limber_qa.check_trace.arm import read_arm
+from limber_qa.check_trace.candump import Trace, read_trace
+from limber_qa.check_trace.drives import cia402, damiao_mit, moteus
+from limber_qa.check_trace.events import Kind
+from limber_qa.check_trace.judge import judge
+
+TURN_rad = 2 * math.pi
+DM4310 = next(motor for motor in read_arm("openarm").motors if motor.name == "joint5")
+IDEAL = read_arm("planar2r").motors[0]
+IIWA = read_arm("iiwa14").motors[0]
+
+MODES = ((10, 0), (1, 33), (0, 0))  # and fault
+
+
+def trace(tmp_path, *frames: str) -> Trace:
+    path = tmp_path / "trace.log"
+    lines = [f"({k}.000000) can0 {frame}\n" for k, frame in enumerate(frames, 1)]
+    path.write_text("".join(lines), encoding="ascii")
+    return read_trace(path)
+
+
+def on_can0(motor, **changes):
+    return replace(motor, interface="can0", **changes)
+
+
+def test_damiao_command(tmp_path):
+    """p 1.0, v -2.0, kp 60, kd 1.5, t 2.5 truncated: half a count low on average."""
+    motor = on_can0(DM4310, number=3, fd=False)
+    (command,) = damiao_mit.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
+    assert command.kind is Kind.HOLD
+    assert command.position == pytest.approx(1.0, abs=25 / 65535)
+    assert command.velocity == pytest.approx(-2.0, abs=60 / 4095)
+    assert (command.kp, command.kd) == pytest.approx((60, 1.5), abs=500 / 4095)
+    assert command.torque == pytest.approx(2.5, abs=20 / 4095)
+
+
+def test_damiao_sign_and_offset(tmp_path):
+    motor = on_can0(DM4310, number=3, fd=False, sign=-1.0, offset=0.25)
+    (command,) = damiao_mit.commands(motor, trace(tmp_path, "003#8A3C7771EB4CC9FF"))
+    assert command.torque == pytest.approx(-2.5, abs=20 / 4095)
+    assert command.position == pytest.approx(-0.75, abs=25 / 65535)
+
+
+def test_damiao_replies(tmp_path):
+    """Enabled; the same after a loss of communication; an answer about a register is no state."""
+    motor = on_can0(DM4310, number=3, reply_id=0x13)
+    frames = ("013#1387AD7DD9702926", "013#D387AD7FF7FF2926", "013#0300331700002041")
+    good, lost = damiao_mit.states(motor, trace(tmp_path, *frames))
+    assert (good.enabled, good.failed) == (True, False)
+    assert good.position == pytest.approx(0.75, abs=25 / 65535)
+    assert good.velocity == pytest.approx(-0.5, abs=60 / 4095)
+    assert (lost.enabled, lost.failed) == (False, True)
+
+
+def test_damiao_register_reads_are_no_commands(tmp_path):
+    """While a drive is on, its settings are read beside its commands."""
+    motor = on_can0(DM4310, number=3, fd=False)
+    frames = ("7FF#0300330A00000000", "7FF#0300CC0000000000", "7FF#0400CC0000000000")
+    (request,) = damiao_mit.commands(motor, trace(tmp_path, *frames))
+    assert (request.kind, request.time_ns) == (Kind.REQUEST, 2_000_000_000)
+
+
+def moteus_frame(*values: float) -> str:
+    """Mode 10, six values from register 20h on, NOPs up to a length that FD has."""
+    data = bytes([0x01, 0x00, 10, 0x0C, len(values), 0x20]) + struct.pack(
+        f"<{len(values)}f", *values
+    )
+    return data.ljust(32, b"\x50").hex().upper()
+
+
+def test_moteus_command(tmp_path):
+    frame = moteus_frame(0.25, -0.5, 3.0, 0.5, 1.0, 20.0)
+    (command,) = moteus.commands(on_can0(IDEAL), trace(tmp_path, f"00008001##1{frame}"))
+    assert command.kind is Kind.HOLD
+    assert command.torque == 3.0
+    assert command.position == pytest.approx(0.25 * TURN_rad)
+    assert command.velocity == pytest.approx(-0.5 * TURN_rad)
+    assert (command.kp, command.kd) == pytest.approx((2000 / TURN_rad, 200 / TURN_rad))
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        (moteus_frame(math.nan, 0.0, 3.0, 0.0, 0.0, 20.0), Kind.FOLLOW),
+        (moteus_frame(math.nan, 0.0, 0.0, 0.0, 1.0, 20.0), Kind.DAMP),
+        ("0100005050505050", Kind.DISABLE),  # mode 0
+        ("1100505050505050", Kind.REQUEST),  # reads the mode
+        ("0D20000000005050", Kind.INVALID),  # a position without a mode
+        ("01000F5050505050", Kind.INVALID),  # mode 15
+        ("99", Kind.INVALID),
+        ("0C0620000000", Kind.INVALID),  # six values that are not there
+    ],
+)
+def test_moteus_kinds(tmp_path, data, kind):
+    (command,) = moteus.commands(on_can0(IDEAL), trace(tmp_path, f"00008001##1{data}"))
+    assert command.kind is kind
+
+
+@pytest.mark.parametrize("torque", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_a_breach(tmp_path, torque):
+    arm = replace(read_arm("planar2r"), motors=[on_can0(IDEAL)])
+    frame = moteus_frame(math.nan, 0.0, torque, 0.0, 0.0, 20.0)
+    verdict = judge(trace(tmp_path, f"00008001##1{frame}"), arm)
+    assert "finite" in {breach.rule for breach in verdict.breaches}
+
+
+def test_moteus_states(tmp_path):
+    """Mode as int8, four floats from register 1 on, temperature and fault as int8."""
+    measured = struct.pack("<4f", 0.25, -1.0, 2.0, 0.5).hex()
+    frames = [f"100##12100{mode:02X}2C0401{measured}220E1E{fault:02X}" for mode, fault in MODES]
+    good, failed, stopped = moteus.states(on_can0(IDEAL), trace(tmp_path, *frames))
+    assert (good.enabled, good.failed) == (True, False)
+    assert good.position == pytest.approx(0.25 * TURN_rad)
+    assert good.velocity == pytest.approx(-TURN_rad)
+    assert (failed.enabled, failed.failed) == (False, True)
+    assert (stopped.enabled, stopped.failed) == (False, False)
+
+
+def test_cia402_command(tmp_path):
+    """Enable, 200 thousandths of 28 N m; a torque without the enabling word is none."""
+    motor = on_can0(IIWA, number=3, keys={"rated_torque_Nm": 28.0}, sign=1.0)
+    frames = ("203#0F00C800", "203#0600C800", "203#06000000", "203#00000000", "203#0F00C8")
+    found = cia402.commands(motor, trace(tmp_path, *frames))
+    assert found[0].torque == pytest.approx(5.6)
+    kinds = [command.kind for command in found]
+    assert kinds == [Kind.FOLLOW, Kind.INVALID, Kind.ENABLE, Kind.DISABLE, Kind.INVALID]
+
+
+def test_cia402_states_on_a_classic_bus(tmp_path):
+    """Statusword and angle in one frame, speed and torque in the next: 81920 counts of 327680."""
+    motor = on_can0(
+        IIWA,
+        number=3,
+        fd=False,
+        torque_sensor=False,
+        link_counts_per_turn=None,
+        counts_per_turn=327680.0,
+        sign=-1.0,
+        offset=0.0,
+    )
+    frames = ("183#371600400100", "283#00C0FEFFF1FF", "183#081600400100", "283#000000000000")
+    good, failed = cia402.states(motor, trace(tmp_path, *frames))
+    assert good.position == pytest.approx(-TURN_rad / 4)
+    assert good.velocity == pytest.approx(TURN_rad / 4)
+    assert (good.enabled, good.failed) == (True, False)
+    assert (failed.enabled, failed.failed) == (False, True)
+
+
+def test_cia402_states_of_a_link_encoder(tmp_path):
+    data = struct.pack("<Hiihhii", 0x1637, 1, 2, 3, 4, 1 << 18, -(1 << 17)).ljust(24, b"\0")
+    motor = on_can0(IIWA, number=3, fd=True, link_counts_per_turn=2.0**20, sign=-1.0)
+    (state,) = cia402.states(motor, trace(tmp_path, f"183##1{data.hex()}"))
+    assert state.position == pytest.approx(TURN_rad / 4)
+    assert state.velocity == pytest.approx(-TURN_rad / 8)
+    assert state.motor_velocity == pytest.approx(-2 * TURN_rad / IIWA.counts_per_turn)
+
+
+@pytest.mark.parametrize(
+    "line", ["hello", "(1.0) can0 001", "1.0 can0 001#00", "(1.0) can0 001#0", "(1.0) can0 1#00"]
+)
+def test_a_line_that_is_none_is_named(tmp_path, line):
+    path = tmp_path / "trace.log"
+    path.write_text(f"(1.0) can0 001#00\n{line}\n", encoding="ascii")
+    with pytest.raises(InputError, match=r"trace\.log:2"):
+        read_trace(path)
+
+
+def test_a_trace_of_another_arm_is_refused(tmp_path):
+    with pytest.raises(InputError, match="can0"):
+        judge(trace(tmp_path, "001#00"), read_arm("openarm"))
