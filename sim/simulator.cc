@@ -16,19 +16,19 @@ constexpr std::int64_t kLongest_ns = 366LL * 86400 * 1'000'000'000;
 
 /// The arm as it is.
 const LoadedRobot& real(const LoadedRobot& robot, const SimulatorOptions& options) {
-  return options.reality != nullptr ? *options.reality : robot;
+  return options.plant != nullptr ? *options.plant : robot;
 }
 
 sim::SimulatedArm checked_arm(const LoadedRobot& robot, std::size_t buses,
                               const SimulatorOptions& options) {
-  const LoadedRobot& reality = real(robot, options);
+  const LoadedRobot& plant = real(robot, options);
   sim::check_setup(robot.robot, buses, options.step_s);
-  sim::check_reality(robot.robot, reality.robot);
-  return {reality,
+  sim::check_plant(robot.robot, plant.robot);
+  return {plant,
           robot.robot,
           options.integrator,
           options.friction,
-          sim::start_position(reality.robot, options.start_q),
+          sim::start_position(plant.robot, options.start_q),
           options.stand};
 }
 

@@ -31,7 +31,7 @@ struct SimulatorOptions {
   WireOptions wire;
   /// The arm, its motors and sensors as they are, where they differ from robot.yaml;
   /// null: robot.yaml is right. The drives' firmware believes robot.yaml in any case.
-  const LoadedRobot* reality = nullptr;
+  const LoadedRobot* plant = nullptr;
 };
 
 /// What a scenario, which must outlive them, wants of the simulated world. Lock step is set by the
@@ -40,7 +40,7 @@ inline SimulatorOptions simulator_options(const Scenario& scenario) {
   return {scenario.integrator, scenario.step_s,
           scenario.friction,   scenario.start_q,
           scenario.stand,      true,
-          scenario.wire,       scenario.reality ? &*scenario.reality : nullptr};
+          scenario.wire,       scenario.plant ? &*scenario.plant : nullptr};
 }
 
 /// Lock step: TICK(k) starts the control period [k T, (k+1) T] of arm time. JOINT_STATE(k), taken
@@ -56,10 +56,10 @@ inline SimulatorOptions simulator_options(const Scenario& scenario) {
 /// After construction every member is free of allocation, locks, logs and exceptions.
 class Simulator {
  public:
-  /// `buses` in the order of robot.buses; robot and reality need not outlive the simulator, the
+  /// `buses` in the order of robot.buses; robot and plant need not outlive the simulator, the
   /// buses do.
   /// Throws ConfigError: no drives, a start outside the joint limits, links the integrator cannot
-  /// take, a reality with other joints or motors.
+  /// take, a plant with other joints or motors.
   Simulator(const LoadedRobot& robot, std::vector<CanBus*> buses, const SimulatorOptions& options);
 
   /// Handles the frames that wait: nodes answer theirs at once; the TICK that completes a number on

@@ -206,7 +206,7 @@ def motor_yaml() -> dict[str, Any]:
     return read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"][MOTOR]
 
 
-# In reality, whatever the motor is told; its torque at the joint is as before
+# In plant_overrides, whatever the motor is told; its torque at the joint is as before
 CLAMPED = motor(
     rotor_inertia_kgm2=1.0, gear_ratio=FAST_KGM2**0.5, rotor_torque_constant_Nm_per_A=1e-3
 )

@@ -126,9 +126,9 @@ LoadedRobot load_robot(const std::string& name_or_path) {
   return load_from(YamlMap::from_file(folder / "robot.yaml"), folder);
 }
 
-LoadedRobot load_reality(const std::string& name_or_path, const YamlMap& reality) {
+LoadedRobot load_plant(const std::string& name_or_path, const YamlMap& plant) {
   const fs::path folder = find_robot(name_or_path);
-  return load_from(YamlMap::from_file(folder / "robot.yaml").merged_with(reality), folder);
+  return load_from(YamlMap::from_file(folder / "robot.yaml").merged_with(plant), folder);
 }
 
 LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, const std::string& tip,

@@ -33,9 +33,9 @@ LoadedRobot load_robot(const std::string& name_or_path);
 /// What to tell a user who named a robot that is none.
 std::string no_robot_text(const std::string& name);
 
-/// The same arm as it really is: `reality` merged onto its robot.yaml. For the simulator, which has
+/// The same arm as it really is: `plant` merged onto its robot.yaml. For the simulator, which has
 /// to be different from what drives and controller believe. Throws ConfigError. Set-up only.
-LoadedRobot load_reality(const std::string& name_or_path, const YamlMap& reality);
+LoadedRobot load_plant(const std::string& name_or_path, const YamlMap& plant);
 
 /// Loads a bare URDF; limits come from the URDF (absent or zero: none, with a note), there are no
 /// drives. gravity in axes of the URDF's root link.

@@ -7,7 +7,7 @@
 #include "common/complaints.h"
 #include "common/yaml_reader.h"
 #include "scenarios/loader/entry_yaml.h"
-#include "scenarios/loader/reality_keys.h"
+#include "scenarios/loader/plant_overrides.h"
 #include "scenarios/loader/scenario.h"
 #include "scenarios/loader/values_yaml.h"
 
@@ -39,10 +39,10 @@ double read_step(const YamlMap& yaml, double rate_hz) {
 }
 
 /// Same joints, same buses: only what an arm is like may differ.
-LoadedRobot read_reality(const YamlMap& yaml, const LoadedRobot& robot) {
-  check_reality_keys(yaml);
-  LoadedRobot real = load_reality(robot.robot.folder, yaml);
-  check_reality_sensors(yaml, robot.robot, real.robot);
+LoadedRobot read_plant(const YamlMap& yaml, const LoadedRobot& robot) {
+  check_plant_keys(yaml);
+  LoadedRobot real = load_plant(robot.robot.folder, yaml);
+  check_plant_sensors(yaml, robot.robot, real.robot);
   return real;
 }
 
@@ -138,7 +138,8 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   scenario.allow_unstable = yaml.boolean_or("allow_unstable", false);
   scenario.wire = read_wire(yaml, scenario.seed);
   scenario.stand = yaml.boolean_or("stand", true);
-  if (yaml.has("reality")) scenario.reality = read_reality(yaml.map("reality"), robot);
+  const char* overrides = yaml.has("plant_overrides") ? "plant_overrides" : "reality";
+  if (yaml.has(overrides)) scenario.plant = read_plant(yaml.map(overrides), robot);
   scenario.start_q = read_start(yaml, robot.robot);
   if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
     yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");

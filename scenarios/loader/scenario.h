@@ -52,7 +52,7 @@ struct Scenario {
   WireOptions wire;
   bool stand = true;  ///< the arm is carried at its start pose until the drives hold it
   /// The simulated arm, where it differs from what drives and controller believe.
-  std::optional<LoadedRobot> reality;
+  std::optional<LoadedRobot> plant;
   std::vector<double> start_q;         ///< pose of the simulated arm at time zero; defaults to home
   std::vector<TimedMessage> timeline;  ///< sorted by time, file order within the same time
 };

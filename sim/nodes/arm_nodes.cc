@@ -4,10 +4,10 @@
 
 namespace limber::sim {
 
-ArmNodes::ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm)
-    : motors_(robot, reality, arm.forces(), arm.state()) {
-  if (reality.has_tip_sensor) tip_sensor_.emplace(reality.tip_sensor, arm.body());
-  if (reality.emergency_stop) emergency_stop_.emplace(*reality.emergency_stop);
+ArmNodes::ArmNodes(const Robot& robot, const Robot& plant, const SimulatedArm& arm)
+    : motors_(robot, plant, arm.forces(), arm.state()) {
+  if (plant.has_tip_sensor) tip_sensor_.emplace(plant.tip_sensor, arm.body());
+  if (plant.emergency_stop) emergency_stop_.emplace(*plant.emergency_stop);
 }
 
 void ArmNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept {

@@ -15,9 +15,9 @@ namespace limber::sim {
 /// After construction every member but steps_per_period() is allowed in the cycle.
 class ArmNodes {
  public:
-  /// `robot` is how the drives are configured, `reality` the arm with its sensors. Throws
+  /// `robot` is how the drives are configured, `plant` the arm with its sensors. Throws
   /// ConfigError.
-  ArmNodes(const Robot& robot, const Robot& reality, const SimulatedArm& arm);
+  ArmNodes(const Robot& robot, const Robot& plant, const SimulatedArm& arm);
 
   /// See MotorNodes. Throws ConfigError. Set-up only.
   std::int64_t steps_per_period(double rate_hz, double step_s) const {

@@ -34,10 +34,10 @@ bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(rat
 
 }  // namespace
 
-MotorNodes::MotorNodes(const Robot& robot, const Robot& reality, const ForceModel& forces,
+MotorNodes::MotorNodes(const Robot& robot, const Robot& plant, const ForceModel& forces,
                        const ArmState& x) {
   for (int i = 0; i < robot.size(); ++i) {
-    const JointConfig& real = reality.joints[i];
+    const JointConfig& real = plant.joints[i];
     const JointConfig joint = as_mounted(robot.joints[i], real);
     add(joint, i, robot);
     if (joint.has_antagonist) add(antagonist_of(joint), i, robot);

@@ -18,9 +18,9 @@ namespace limber::sim {
 /// After construction every member but steps_per_period() is allowed in the cycle.
 class MotorNodes {
  public:
-  /// `robot` is how the drives are configured, `reality` the arm with its sensors, which is at x;
+  /// `robot` is how the drives are configured, `plant` the arm with its sensors, which is at x;
   /// the force model gives the motor torques there.
-  MotorNodes(const Robot& robot, const Robot& reality, const ForceModel& forces, const ArmState& x);
+  MotorNodes(const Robot& robot, const Robot& plant, const ForceModel& forces, const ArmState& x);
 
   /// The fewest integration steps no longer than step_s of which a whole number makes a control
   /// period, and another the period of every sampled loop in the drives. Throws ConfigError if

@@ -46,13 +46,12 @@ void check_setup(const Robot& robot, std::size_t buses, double step_s) {
   }
 }
 
-void check_reality(const Robot& robot, const Robot& reality) {
-  bool same = robot.size() == reality.size() && robot.has_tip_sensor == reality.has_tip_sensor;
+void check_plant(const Robot& robot, const Robot& plant) {
+  bool same = robot.size() == plant.size() && robot.has_tip_sensor == plant.has_tip_sensor;
   for (int i = 0; same && i < robot.size(); ++i) {
-    same = robot.joints[i].has_antagonist == reality.joints[i].has_antagonist;
+    same = robot.joints[i].has_antagonist == plant.joints[i].has_antagonist;
   }
-  if (!same)
-    refuse(robot, "its reality has other joints, motors or tip sensor; the same are needed");
+  if (!same) refuse(robot, "its plant has other joints, motors or tip sensor; the same are needed");
 }
 
 VectorJ start_position(const Robot& robot, const std::vector<double>& start_q) {

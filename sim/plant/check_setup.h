@@ -15,8 +15,8 @@ namespace limber::sim {
 /// rate out of range.
 void check_setup(const Robot& robot, std::size_t buses, double step_s);
 
-/// A reality with other joints, motors or tip sensor than the robot.
-void check_reality(const Robot& robot, const Robot& reality);
+/// A plant with other joints, motors or tip sensor than the robot.
+void check_plant(const Robot& robot, const Robot& plant);
 
 /// Joint positions to start at: `start_q`, or home if that is empty. Refuses what is outside the
 /// joint limits.

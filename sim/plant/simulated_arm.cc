@@ -4,13 +4,13 @@
 
 namespace limber::sim {
 
-SimulatedArm::SimulatedArm(const LoadedRobot& reality, const Robot& robot, Integrator integrator,
+SimulatedArm::SimulatedArm(const LoadedRobot& plant, const Robot& robot, Integrator integrator,
                            bool friction, const VectorJ& q, bool stand)
-    : plant_(make_arm_plant(integrator, build_arm_model(reality))),
-      forces_(reality.robot, robot, friction),
+    : plant_(make_arm_plant(integrator, build_arm_model(plant))),
+      forces_(plant.robot, robot, friction),
       stand_(stand) {
-  start_at(reality.robot, q, stand, plant_.get());
-  if (stand) set_stands(reality.robot, plant_->state(), &forces_);
+  start_at(plant.robot, q, stand, plant_.get());
+  if (stand) set_stands(plant.robot, plant_->state(), &forces_);
 }
 
 void SimulatedArm::step(double h, std::int64_t now_ns, std::int64_t next_ns, bool held) noexcept {

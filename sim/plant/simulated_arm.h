@@ -16,9 +16,9 @@ namespace limber::sim {
 /// After construction every member is free of allocation, locks, logs and exceptions.
 class SimulatedArm {
  public:
-  /// At rest at q. `reality` is the arm as it is, `robot` what its drives believe it to be. On the
+  /// At rest at q. `plant` is the arm as it is, `robot` what its drives believe it to be. On the
   /// stand it is carried until the drives hold it. Throws ConfigError.
-  SimulatedArm(const LoadedRobot& reality, const Robot& robot, Integrator integrator, bool friction,
+  SimulatedArm(const LoadedRobot& plant, const Robot& robot, Integrator integrator, bool friction,
                const VectorJ& q, bool stand);
 
   /// One integration step of h seconds from simulated time now to next, with the drives' laws in

@@ -17,7 +17,7 @@ name: softer_springs
 description: springs that pull a quarter less than robot.yaml believes
 robot: antagonist2r
 duration_s: 5
-reality:
+plant_overrides:
   joints:
     shoulder: {transmission: {spring: {k2_Nm_per_rad2: 300}}}
     elbow: {transmission: {spring: {k2_Nm_per_rad2: 300}}}

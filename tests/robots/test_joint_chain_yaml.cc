@@ -1,4 +1,4 @@
-// The stages of a joint in robot.yaml: what a good file means, one slip each, and reality on top.
+// The stages of a joint in robot.yaml: what a good file means, one slip each, and plant on top.
 #include <cmath>
 
 #include "robots/loader/load_robot.h"
@@ -225,13 +225,13 @@ const Mutation kSlips[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Slips, ChainRefusal, ::testing::ValuesIn(kSlips), testing::MutationName());
 
-// Reality is merged key by key; what it does not say stays.
-TEST(Reality, ChangesWhatItNames) {
-  const YamlMap reality = YamlMap::from_text(
+// Plant is merged key by key; what it does not say stays.
+TEST(Plant, ChangesWhatItNames) {
+  const YamlMap plant = YamlMap::from_text(
       "motors: {strong: {rotor_torque_constant_Nm_per_A: 0.09}}\n"
       "joints: {turn: {transmission: {spring: {stiffness_Nm_per_rad: 4000}}}}\n",
       "scenario.yaml");
-  const Robot real = load_reality(kData + "chain", reality).robot;
+  const Robot real = load_plant(kData + "chain", plant).robot;
   const Robot believed = load_robot(kData + "chain").robot;
   EXPECT_NEAR(real.joints[0].drive.torque_constant_Nm_per_A, 9.0, 1e-12);
   EXPECT_NEAR(believed.joints[0].drive.torque_constant_Nm_per_A, 10.0, 1e-12);
@@ -240,11 +240,10 @@ TEST(Reality, ChangesWhatItNames) {
   EXPECT_EQ(real.joints[1].transmission.spring.k3_Nm_per_rad3, 900.0);
 }
 
-TEST(Reality, SlipNamesBothFiles) {
-  const YamlMap reality =
+TEST(Plant, SlipNamesBothFiles) {
+  const YamlMap plant =
       YamlMap::from_text("joints: {turn: {link_encoder: {bitz: 3}}}\n", "scenario.yaml");
-  const std::string complaint =
-      testing::complaint_of([&] { load_reality(kData + "chain", reality); });
+  const std::string complaint = testing::complaint_of([&] { load_plant(kData + "chain", plant); });
   EXPECT_NE(complaint.find("chain/robot.yaml with scenario.yaml:1"), std::string::npos)
       << complaint;
   EXPECT_NE(complaint.find("unknown key 'bitz'"), std::string::npos) << complaint;

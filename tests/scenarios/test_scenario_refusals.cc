@@ -55,13 +55,13 @@ const Mutation kHead[] = {
 INSTANTIATE_TEST_SUITE_P(Head, ScenarioRefusal, ::testing::ValuesIn(kHead),
                          testing::MutationName());
 
-std::string with_reality(const std::string& reality) {
-  return good_scenario() + "reality: " + reality + "\n";
+std::string with_overrides(const std::string& plant) {
+  return good_scenario() + "plant_overrides: " + plant + "\n";
 }
 
 // The simulated arm would be the same: said, not passed over.
-TEST(ScenarioReality, KeysThatChangeNothingAreRefused) {
-  for (const char* reality :
+TEST(PlantOverrides, KeysThatChangeNothingAreRefused) {
+  for (const char* plant :
        {"{rate_hz: 1000}", "{base: link}", "{gains: {law: joint_impedance}}", "{buses: []}",
         "{watchdog: {timeout_s: 1}}", "{motors: {big: {protocol: moteus}}}",
         "{motors: {big: {peak_torque_Nm: 1}}}", "{motors: {big: {encoder_bits: 8}}}",
@@ -70,20 +70,29 @@ TEST(ScenarioReality, KeysThatChangeNothingAreRefused) {
         "{joints: {turn: {hold: {kp_Nm_per_rad: 1}}}}", "{joints: {turn: {id: 3}}}",
         "{joints: {turn: {bus: right}}}"}) {
     std::string file;
-    const std::string complaint = refusal(with_reality(reality), &file);
+    const std::string complaint = refusal(with_overrides(plant), &file);
     testing::expect_complaint(complaint, file, testing::kNoLine,
-                              "cannot differ between robot.yaml and reality");
+                              "cannot differ between robot.yaml and the plant");
   }
 }
 
-TEST(ScenarioReality, WhatIsMountedOtherwiseIs) {
+TEST(PlantOverrides, AreFoundUnderTheirFormerName) {
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.write(
+      "s.yaml", good_scenario() + "reality: {joints: {slide: {friction: {coulomb_N: 30}}}}\n");
+  const Scenario scenario = load_scenario(file, arm(), &controller::law_catalog());
+  ASSERT_TRUE(scenario.plant);
+  EXPECT_EQ(scenario.plant->robot.joints[1].friction.coulomb_Nm, 30.0);
+}
+
+TEST(PlantOverrides, WhatIsMountedOtherwiseIs) {
   const testing::TemporaryFolder folder;
   const std::string file =
-      folder.write("s.yaml", with_reality("{joints: {turn: {sign: 1, offset_rad: 0.2}, "
-                                          "slide: {friction: {coulomb_N: 30}}}}"));
+      folder.write("s.yaml", with_overrides("{joints: {turn: {sign: 1, offset_rad: 0.2}, "
+                                            "slide: {friction: {coulomb_N: 30}}}}"));
   const Scenario scenario = load_scenario(file, arm(), &controller::law_catalog());
-  ASSERT_TRUE(scenario.reality);
-  const std::vector<JointConfig>& real = scenario.reality->robot.joints;
+  ASSERT_TRUE(scenario.plant);
+  const std::vector<JointConfig>& real = scenario.plant->robot.joints;
   EXPECT_EQ(real[0].drive.sign, 1.0);
   EXPECT_EQ(real[0].drive.offset_rad, 0.2);
   EXPECT_EQ(real[1].friction.coulomb_Nm, 30.0);

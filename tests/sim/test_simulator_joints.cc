@@ -154,15 +154,15 @@ TEST(Simulator, FaultOfAJointIsOneOfBothItsMotors) {
 }
 
 // The drive divides by the torque constant of robot.yaml; the motor multiplies by its own.
-TEST_P(JointSimulator, RealityIsTheArmAndRobotYamlTheDrives) {
+TEST_P(JointSimulator, ThePlantIsTheArmAndRobotYamlTheDrives) {
   LoadedRobot robot = elastic_joint();
   robot.robot.gravity[1] = 0.0;
   robot.robot.joints[0].drive.torque_constant_Nm_per_A = 0.5;
-  LoadedRobot reality = robot;
-  reality.robot.joints[0].drive.torque_constant_Nm_per_A = 0.4;
-  reality.robot.joints[0].transmission.spring.stiffness_Nm_per_rad = 70.0;
+  LoadedRobot plant = robot;
+  plant.robot.joints[0].drive.torque_constant_Nm_per_A = 0.4;
+  plant.robot.joints[0].transmission.spring.stiffness_Nm_per_rad = 70.0;
   SimulatorOptions with = options(GetParam(), false);
-  with.reality = &reality;
+  with.plant = &plant;
   Bench bench(robot, with);
   bench.send(0, Special::kEnable);
   for (int k = 0; k < 2; ++k) {
@@ -179,11 +179,11 @@ TEST_P(JointSimulator, RealityIsTheArmAndRobotYamlTheDrives) {
               2.0 * kTorqueCount);
 }
 
-TEST(Simulator, RealityWithOtherMotorsIsRefused) {
+TEST(Simulator, APlantWithOtherMotorsIsRefused) {
   const LoadedRobot robot = elastic_joint();
-  const LoadedRobot reality = antagonistic_joint();
+  const LoadedRobot plant = antagonistic_joint();
   SimulatorOptions with = options(Integrator::kReference, false);
-  with.reality = &reality;
+  with.plant = &plant;
   EXPECT_THROW(Bench(robot, with), ConfigError);
 }
 

@@ -67,7 +67,7 @@ def bench(tmp_path_factory) -> tuple[Arm, Motion]:
     heavy = text.replace("gravity_m_per_s2: [0, 0, 0]", "gravity_m_per_s2: [0, -20, 0]")
     assert heavy != text
     (robot / "robot.yaml").write_text(heavy, encoding="utf-8")
-    reality = {
+    plant_overrides = {
         "motors": {"bench": {CONSTANT: 0.8}},
         "joints": {
             "joint": {
@@ -78,7 +78,7 @@ def bench(tmp_path_factory) -> tuple[Arm, Motion]:
             }
         },
     }
-    log = record(folder, robot, {"reality": reality}, spread=1.2, poses=3)
+    log = record(folder, robot, {"plant_overrides": plant_overrides}, spread=1.2, poses=3)
     arm = load_arm(str(robot))
     return arm, read_motion([log], arm)
 
@@ -105,7 +105,7 @@ def test_seven_flexible_joints(tmp_path):
     """Four numbers are hidden in an iiwa14, the others must stay what they are."""
     robot = ROOT / "robots" / "iiwa14"
     coulomb = {"coulomb_Nm": 15, "static_Nm": 18, "stribeck_rad_per_s": 0.08}
-    reality = {
+    plant_overrides = {
         "motors": {"shoulder": {CONSTANT: 0.09}},
         "joints": {
             "joint_1": {"friction": coulomb},
@@ -115,7 +115,7 @@ def test_seven_flexible_joints(tmp_path):
             },
         },
     }
-    log = record(tmp_path, robot, {"reality": reality}, spread=0.6, poses=2)
+    log = record(tmp_path, robot, {"plant_overrides": plant_overrides}, spread=0.6, poses=2)
     arm = load_arm(str(robot))
     motion = read_motion([log], arm)
     constants = numbers(torque_constant, arm, motion)
@@ -140,7 +140,7 @@ def test_springs_of_two_motors(tmp_path):
     """Their torque is known from the weight of the links only."""
     robot = ROOT / "robots" / "antagonist2r"
     spring = {"transmission": {"spring": {"k2_Nm_per_rad2": 330}}}
-    tour = {"reality": {"joints": {"shoulder": spring}}}
+    tour = {"plant_overrides": {"joints": {"shoulder": spring}}}
     log = record(tmp_path, robot, tour, spread=0.6, poses=2)
     arm = load_arm(str(robot))
     found = numbers(stiffness, arm, read_motion([log], arm))
@@ -158,7 +158,7 @@ def test_heavier_links_of_a_series_elastic_arm(tmp_path):
         link = inertials[body.heaviest]
         changes[body.heaviest] = (link.mass * (1.0 + 0.05 * i), link.com + 0.01)
     (robot / "heavier.urdf").write_text(with_inertials(arm.robot.urdf, changes))
-    tour = {"reality": {"urdf": "heavier.urdf"}}
+    tour = {"plant_overrides": {"urdf": "heavier.urdf"}}
     log = record(tmp_path, robot, tour, spread=0.8, poses=4, seconds=32.0)
     proposed = gravity.identify(arm, read_motion([log], arm)).inertials
     (robot / "proposed.urdf").write_text(with_inertials(arm.robot.urdf, proposed))
@@ -201,7 +201,7 @@ def test_all_in_one_go_takes_the_sag_away(tmp_path):
     heavier = {name: (1.2 * inertials[name].mass, 1.05 * inertials[name].com) for name in links}
     (robot / "heavier.urdf").write_text(with_inertials(arm.robot.urdf, heavier))
     scenario = yaml.safe_load(excitation.scenario_text(arm, "planar2r", 0.8, 5, seed=3))
-    tour = scenario | {"mode": "lockstep", "reality": {"urdf": "heavier.urdf"}}
+    tour = scenario | {"mode": "lockstep", "plant_overrides": {"urdf": "heavier.urdf"}}
     (tmp_path / "tour.yaml").write_text(yaml.safe_dump(tour, sort_keys=False))
     command = [sys.executable, "-m", "limber", "identify", "arm", str(tmp_path / "tour.yaml")]
     command += ["--out", str(tmp_path / "out")]

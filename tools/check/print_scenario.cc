@@ -81,7 +81,7 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
       "{}: {}, {:g} s, {}, {} integrator at {:g} ms, friction {}, seed {}\n", scenario.name,
       robot.robot.name, scenario.duration_s, mode_name(scenario), integrator_name(scenario),
       scenario.step_s * 1e3, scenario.friction ? "on" : "off", scenario.seed);
-  if (scenario.reality) text += "  the simulated arm differs from robot.yaml (reality)\n";
+  if (scenario.plant) text += "  the simulated arm differs from robot.yaml (plant_overrides)\n";
   for (const TimedMessage& timed : scenario.timeline) {
     text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
                         describe(timed));
@@ -115,7 +115,7 @@ std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
                        {"step_s", json::number(scenario.step_s)},
                        {"friction", scenario.friction ? "true" : "false"},
                        {"seed", fmt::format("{}", scenario.seed)},
-                       {"reality", scenario.reality ? "true" : "false"},
+                       {"plant_overrides", scenario.plant ? "true" : "false"},
                        {"start_q", json::numbers(scenario.start_q)},
                        {"timeline", json::list(timeline)},
                        {"stiffness", stiffness_json(reports)},

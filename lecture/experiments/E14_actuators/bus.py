@@ -27,7 +27,7 @@ def torque_constant(context: Context, K: float, D: float) -> tuple[float, float,
         7.0,
         changes=_robot(GRAVITY),
         start_q=[HORIZONTAL],
-        reality=bench.torque_constant(KAPPA),
+        plant_overrides=bench.torque_constant(KAPPA),
     )
     rest = bench.mean(log, 3.0, 3.9)
     moved = bench.mean(log, 5.5, 6.4) - rest
@@ -38,9 +38,11 @@ def friction_lag(context: Context, K: float, D: float) -> float:
     """In the middle of a smooth motion, where nothing accelerates: mean over a stretch of it."""
     middle, end = 2.0 + MOVE_S / 2, 2.0 + MOVE_S
     goal = {"at_s": 2.0, "goal": {"joints_rad": [1.0], "duration_s": MOVE_S}}
-    reality = bench.joint(friction=friction(COULOMB_NM))
+    plant_overrides = bench.joint(friction=friction(COULOMB_NM))
     law, name = bench.spring_damper(K, D), f"friction_{K:g}"
-    log = bench.on_bus(context, name, law, [goal], end, changes=_robot(), reality=reality)
+    log = bench.on_bus(
+        context, name, law, [goal], end, changes=_robot(), plant_overrides=plant_overrides
+    )
     return bench.lag(log, middle - 0.5, middle + 0.5)
 
 

@@ -38,7 +38,7 @@ def _jumped(context: Context, name: str, joint: dict[str, Any], end_s: float, st
         end_s,
         changes={"urdf": "held.urdf", **bench.joint(**joint)},
         step_s=step_s,
-        reality=bench.joint(transmission={"damping_Nms_per_rad": bench.D_J}),
+        plant_overrides=bench.joint(transmission={"damping_Nms_per_rad": bench.D_J}),
     )
 
 
@@ -78,8 +78,8 @@ def pushed(
     push: float,
 ) -> Log:
     """The free joint with another torque constant than the drive believes in."""
-    entries, reality = [bench.push(push, 2.0, 4.0, 0.5)], bench.torque_constant(kappa)
-    real = {"changes": changes, "reality": reality}
+    entries, plant_overrides = [bench.push(push, 2.0, 4.0, 0.5)], bench.torque_constant(kappa)
+    real = {"changes": changes, "plant_overrides": plant_overrides}
     return bench.on_bus(context, name, law, entries, 5.4, **real, step_s=STEP_S)
 
 
@@ -95,7 +95,7 @@ def shared(context: Context, rho: float, kappa: float, push: float) -> float:
 
 def _free(context: Context, name: str, rho: float, entries: list, end_s: float, **real: Any) -> Log:
     """The free joint with something else about it than the drive believes."""
-    robot = {"changes": bench.joint(**_loop(rho)), "reality": bench.joint(**real)}
+    robot = {"changes": bench.joint(**_loop(rho)), "plant_overrides": bench.joint(**real)}
     return bench.on_bus(context, name, LAW, entries, end_s, **robot, step_s=STEP_S)
 
 

@@ -47,7 +47,7 @@ def most_gain_bus(context: Context, expected: float) -> float:
     def growth(gain: float) -> float:
         damper = bench.joint(transmission={"damping_Nms_per_rad": 0.0})
         real = bench.joint(transmission={"damping_Nms_per_rad": bench.D_J})
-        robot = {"changes": {"urdf": "held.urdf", **damper}, "reality": real}
+        robot = {"changes": {"urdf": "held.urdf", **damper}, "plant_overrides": real}
         name, law = f"controller_limit_{gain:.3f}", _law(K_HELD, 0.0, gain)
         return bus.mode(bench.on_bus(context, name, law, JUMP, 2.5, **robot), 1.9, 2.5).growth
 

@@ -85,7 +85,7 @@ def changes(spring: float, gravity: float) -> dict:
 # The controller refuses gains below the bound of the proof. Here it takes the link for lighter than
 # it is, and so accepts them; upright the weight it believes in does not matter, g(q_d) = 0.
 BELIEVED = 5.0
-REALITY = bench.gravity(GRAVITY)
+PLANT_OVERRIDES = bench.gravity(GRAVITY)
 # Fine steps of the torque, where little torque decides
 FINE_MOTOR = bench.motor(rated_torque_Nm=1.0, peak_torque_Nm=32.0)
 
@@ -100,7 +100,7 @@ def final_error_bus(
     """From a goal beside upright, which then goes there."""
     goal = {"at_s": GAINS_S + 0.6, "goal": {"joints_rad": [UPRIGHT], "duration_s": 0.5}}
     end, name = GAINS_S + seconds, f"upright_{spring:g}_{K_P:g}"
-    real = {"changes": changes(spring, BELIEVED), "reality": REALITY}
+    real = {"changes": changes(spring, BELIEVED), "plant_overrides": PLANT_OVERRIDES}
     log = bench.on_bus(context, name, gains(K_P), [goal], end, **real, start_q=[UPRIGHT - start])
     return abs(bench.mean(log, end - 0.5, end) - UPRIGHT)
 
@@ -127,7 +127,10 @@ def from_afar_bus(context: Context, K_P: float, start: float) -> Path:
 
 def critical_bus(context: Context, tried: list[float]) -> float:
     """Where a small push neither grows nor dies out, between two gains that were tried."""
-    robot = {"changes": {**changes(SPRING, BELIEVED), **FINE_MOTOR}, "reality": REALITY}
+    robot = {
+        "changes": {**changes(SPRING, BELIEVED), **FINE_MOTOR},
+        "plant_overrides": PLANT_OVERRIDES,
+    }
 
     def rate(K_P: float) -> float:
         push, name = bench.push(0.3, 1.8, 0.5, 0.1), f"critical_{K_P:g}"

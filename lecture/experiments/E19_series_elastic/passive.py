@@ -34,8 +34,8 @@ def ring_bus(context: Context) -> Mode:
 
 
 def clamped(K: float, D: float) -> dict[str, Any]:
-    """How the bench is changed, and what is so in reality."""
-    return {"changes": bench.sprung(K, D), "reality": bench.CLAMPED}
+    """How the bench is changed, and what is so in plant_overrides."""
+    return {"changes": bench.sprung(K, D), "plant_overrides": bench.CLAMPED}
 
 
 def _free(K: float, D: float, q: float, v: float, seconds: float) -> Any:

@@ -69,9 +69,9 @@ def bus(context: Context, clamped: bool) -> Rung:
     # up slowly, so that the joint does not ring yet; the second push ends at once
     up = bench.push(pull, START_S, 3 * PUSH_S, PUSH_S - HELD_S)
     held = bench.push(pull, let_go - HELD_S, HELD_S)
-    law, reality = (bench.FREE, bench.CLAMPED) if clamped else (PLACED, {})
+    law, plant_overrides = (bench.FREE, bench.CLAMPED) if clamped else (PLACED, {})
     name, end = "clamped" if clamped else "under_law", let_go + RING_S
-    robot = {"changes": changes, "reality": reality}
+    robot = {"changes": changes, "plant_overrides": plant_overrides}
     log = bench.on_bus(context, name, law, [up, held], end, **robot)
     seen = bench.sensed(log, let_go + 0.01, end)
     return Rung(seen["t"] - let_go, seen["q"], mode_seen(seen["q"], seen["v"], EVERY))

@@ -60,7 +60,7 @@ def run(
     law = {"position_feedback": "static", "damping_ratio": ratio, **null, **UNBOUNDED}
     gains = tip_gains(K_X[0, 0], K_X[3, 3], **law)
     robot = variant(context.out / name, ROBOT, changes)
-    return context.run_law(name, robot, gains, more, end_s, reality={"motors": weak})
+    return context.run_law(name, robot, gains, more, end_s, plant_overrides={"motors": weak})
 
 
 def stiffness(context: Context, rho: float) -> tuple[np.ndarray, np.ndarray]:

@@ -119,7 +119,7 @@ class Joint:
         loop = {"inertia_ratio": self.rho, "rate_hz": LOOP_HZ}
         return bench.sprung(self.spring, self.damper, torque_loop=loop)
 
-    def reality(self, friction: bool = True) -> dict[str, Any]:
+    def plant_overrides(self, friction: bool = True) -> dict[str, Any]:
         """What robot.yaml does not know: the torque constant and the motor's friction."""
         coulomb = variants.friction(self.coulomb if friction else 0.0)
         return {**bench.torque_constant(self.kappa), **bench.joint(friction=coulomb)}

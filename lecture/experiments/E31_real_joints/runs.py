@@ -93,7 +93,7 @@ def bus(context: Context, joint: Joint) -> Seen:
         damping_ratio=ZETA,
         **UNBOUNDED,
     )
-    real = {"changes": joint.changes(), "reality": joint.reality()}
+    real = {"changes": joint.changes(), "plant_overrides": joint.plant_overrides()}
     end = START_S + RAMP_S + HOLD_S + FREE_S
     log = bench.on_bus(context, f"{name}_push", gains, pushes(), end, **real)
     push = _pushed_motion(log, end)
@@ -109,7 +109,10 @@ def bus(context: Context, joint: Joint) -> Seen:
     log = bench.on_bus(context, f"{name}_path", {**gains, **steady}, [goal], end, **real)
     behind = _behind(log, end - 0.5, end)
     level = bench.gravity(WEIGHT_NM / bench.LINK_MASS_M)
-    real = {"changes": {**joint.changes(), **level}, "reality": joint.reality(friction=False)}
+    real = {
+        "changes": {**joint.changes(), **level},
+        "plant_overrides": joint.plant_overrides(friction=False),
+    }
     end = START_S + REST_S
     log = bench.on_bus(context, f"{name}_level", gains, [], end, **real, start_q=[np.pi / 2])
     return _seen(*push, behind, _behind(log, end - 0.2, end), as_told)

@@ -60,7 +60,7 @@ def moved(context: Context, compensation: str, scale: float) -> np.ndarray:
         "robot": ROBOT,
         "duration_s": END_S,
         "wire": True,
-        "reality": {"joints": {name: {"friction": f} for name, f in frictions.items()}},
+        "plant_overrides": {"joints": {name: {"friction": f} for name, f in frictions.items()}},
         "timeline": [
             {"at_s": 0.3, "mode": "hold"},
             {"at_s": 0.8, "mode": "active"},

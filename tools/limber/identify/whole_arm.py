@@ -113,16 +113,16 @@ def record(scenario: Path, log: Path) -> Path:
 def scenario_with(scenario: Path, arm: Arm, proposal: Proposal, path: Path) -> Path:
     """The scenario for the proposed robot; the simulated arm is the one it was."""
     content = read_yaml(scenario)
-    reality = content.get("reality") or {}
-    beside = arm.robot.folder / reality.get("urdf", arm.robot.urdf.name)
+    overrides = content.get("plant_overrides") or content.pop("reality", {})
+    beside = arm.robot.folder / overrides.get("urdf", arm.robot.urdf.name)
     copy_new(beside, proposal.folder / "as_it_was.urdf")
     truth: dict[str, Any] = {}
     for value in proposal.changed:
         _put(truth, value.path, _as_it_was(arm, value))
-    _merge(truth, reality)
+    _merge(truth, overrides)
     content |= {
         "robot": str(proposal.folder.resolve()),
-        "reality": truth | {"urdf": "as_it_was.urdf"},
+        "plant_overrides": truth | {"urdf": "as_it_was.urdf"},
     }
     write_again(path, yaml.safe_dump(content, sort_keys=False))
     return path

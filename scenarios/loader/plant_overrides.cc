@@ -1,4 +1,4 @@
-#include "scenarios/loader/reality_keys.h"
+#include "scenarios/loader/plant_overrides.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ void allow(const YamlMap& map, const Keys& names) {
       return key == name || key.starts_with(name + "_");
     });
     if (acts) continue;
-    map.refuse(key, fmt::format("cannot differ between robot.yaml and reality: the simulated arm "
+    map.refuse(key, fmt::format("cannot differ between robot.yaml and the plant: the simulated arm "
                                 "and its sensors would be the same; what can: {}",
                                 joined(names)));
   }
@@ -40,14 +40,14 @@ void allow_in(const YamlMap& map, const std::string& key, const Keys& names) {
 
 }  // namespace
 
-void check_reality_keys(const YamlMap& reality) {
-  allow(reality, kArm);
-  if (reality.is_map("motors")) {
-    const YamlMap motors = reality.map("motors");
+void check_plant_keys(const YamlMap& plant) {
+  allow(plant, kArm);
+  if (plant.is_map("motors")) {
+    const YamlMap motors = plant.map("motors");
     for (const std::string& name : motors.keys()) allow_in(motors, name, kMotor);
   }
-  if (!reality.is_map("joints")) return;
-  const YamlMap joints = reality.map("joints");
+  if (!plant.is_map("joints")) return;
+  const YamlMap joints = plant.map("joints");
   for (const std::string& name : joints.keys()) {
     if (!joints.is_map(name)) continue;
     const YamlMap joint = joints.map(name);
@@ -57,12 +57,12 @@ void check_reality_keys(const YamlMap& reality) {
   }
 }
 
-void check_reality_sensors(const YamlMap& reality, const Robot& robot, const Robot& real) {
+void check_plant_sensors(const YamlMap& plant, const Robot& robot, const Robot& real) {
   for (int i = 0; i < robot.size(); ++i) {
     const JointConfig& believed = robot.joints[i];
-    const auto need = [&](const char* sensor, bool there, bool in_reality) {
-      if (there == in_reality) return;
-      reality.map("joints")
+    const auto need = [&](const char* sensor, bool there, bool in_plant) {
+      if (there == in_plant) return;
+      plant.map("joints")
           .map(believed.name)
           .refuse(sensor, fmt::format("robot.yaml has {} there; a drive reports what robot.yaml "
                                       "has, so give it there and only its errors here",
