@@ -6,6 +6,7 @@ frames connects the two.
 
 import configparser
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -20,6 +21,7 @@ from limber.lcmtypes.joint_state_t import joint_state_t as State
 from slow_arm import slow_arm
 from stack import BIN, ROOT
 
+STOOD_STILL = re.compile(r"^(driver|controller)\.\w+ at .* s: limber-\w+ stood still", re.MULTILINE)
 CABLE = "ip link add can0 type vxcan peer name can0 netns {pid}"
 LOOPBACK = "ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo"
 
@@ -81,14 +83,18 @@ def change_the_word(folder) -> None:
 
 
 def test_the_readmes_commands(folder, arm):
+    """Once more, twice at most, if the run's own verdict is that this machine stood still."""
     change_the_word(folder)
-    run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", "out")
-    said = run.stdout + run.stderr
+    for out in ("first", "second", "third"):
+        run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", out)
+        said = run.stdout + run.stderr
+        if run.returncode == 0 or not STOOD_STILL.search(said):
+            break
     assert "whatever is on socketcan:can0 will move" in said
     assert "private network" not in said
     assert arm.poll() is None
     assert run.returncode == 0, said + (folder / "arm.log").read_text()
-    assert (folder / "out" / "run.lcmlog.zst").exists()
+    assert (folder / out / "run.lcmlog.zst").exists()
 
 
 def test_without_a_multicast_route_the_cure_is_named(folder, arm):
