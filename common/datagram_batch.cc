@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/clock.h"
+#include "common/clock_pair.h"
 #include "common/file_descriptor.h"
 
 namespace limber {
@@ -73,8 +74,7 @@ int ReceiveBatch::receive(int descriptor, int at_most) noexcept {
   if (count == 0) return 0;
   // The kernel stamps with the wall clock. An offset taken now carries a stamp over to the
   // monotonic clock unless the wall clock was set in the microseconds between.
-  const std::int64_t now_ns = monotonic_ns();
-  const std::int64_t wall_now_ns = realtime_ns();
+  const auto [now_ns, wall_now_ns] = read_together(monotonic_ns, realtime_ns);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     timestamps_[i] = wall_now_ns;
     read_control(messages_[i].msg_hdr, i);

@@ -10,7 +10,7 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
-from multiprocessing.context import BaseContext
+from multiprocessing.context import ForkServerContext
 from pathlib import Path
 
 from rich.console import Console
@@ -82,7 +82,7 @@ def _outcomes(
     return done
 
 
-def _in_process(experiment: Experiment, out: Path, processes: BaseContext) -> Outcome:
+def _in_process(experiment: Experiment, out: Path, processes: ForkServerContext) -> Outcome:
     folder = output_folder(out / experiment.id)
     log = folder / "run.txt"
     start = time.monotonic()

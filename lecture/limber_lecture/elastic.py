@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber_lecture.plants import held
 
 PERIOD_S = 1e-3  # of the controller, whose torque comes one period late
@@ -19,19 +20,19 @@ FRICTION_STEPS = 2  # a period of that loop: bristles are stiff
 class ElasticArm:
     """M, G: n x n, kg m², N m/rad; the others one a joint."""
 
-    M: np.ndarray
-    B: np.ndarray
-    K: np.ndarray
-    D: np.ndarray
-    G: np.ndarray | float = 0.0  # stiffness of gravity
-    link_damping: np.ndarray | float = 0.0
-    motor_damping: np.ndarray | float = 0.0
+    M: Floats
+    B: Floats
+    K: Floats
+    D: Floats
+    G: Floats | float = 0.0  # stiffness of gravity
+    link_damping: Floats | float = 0.0
+    motor_damping: Floats | float = 0.0
 
     @property
     def size(self) -> int:
         return len(self.B)
 
-    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(self) -> tuple[Floats, Floats]:
         """ẋ = A x + E (τ_m, τ_ext) with x = (q, θ, q̇, θ̇)."""
         n, zero, one = self.size, np.zeros((self.size,) * 2), np.eye(self.size)
         K, D = np.diag(self.K), np.diag(self.D)
@@ -58,30 +59,30 @@ class Drives:
     rho: float = 1.0
     rate_hz: float = 4000.0  # of the loop
     kappa: float = 1.0  # true torque constant over the one assumed
-    coulomb: np.ndarray | float = 0.0  # N m
+    coulomb: Floats | float = 0.0  # N m
     bristle_rad: float = 1e-4
 
 
 class State(NamedTuple):
-    q: np.ndarray
-    theta: np.ndarray
-    v: np.ndarray
-    theta_dot: np.ndarray
+    q: Floats
+    theta: Floats
+    v: Floats
+    theta_dot: Floats
 
 
 @dataclass
 class Track:
     """One row a period: time, state, torque of the spring and of the motor; n each."""
 
-    t: np.ndarray
+    t: Floats
     x: State
-    tau: np.ndarray
-    tau_m: np.ndarray
+    tau: Floats
+    tau_m: Floats
 
 
-Law = Callable[[float, State], np.ndarray]
+Law = Callable[[float, State], Floats]
 # x a period later, of x, the controller's torque and that of a push
-Advance = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+Advance = Callable[[Floats, Floats, Floats], Floats]
 
 
 @dataclass
@@ -90,9 +91,9 @@ class Motors:
 
     arm: ElasticArm
     drives: Drives
-    bristle: np.ndarray = field(init=False)
+    bristle: Floats = field(init=False)
     of_u: float = field(init=False)
-    of_x: np.ndarray = field(init=False)  # n x 4n: τ_m = of_u u + of_x x
+    of_x: Floats = field(init=False)  # n x 4n: τ_m = of_u u + of_x x
 
     def __post_init__(self) -> None:
         rho, kappa = self.drives.rho, self.drives.kappa
@@ -101,10 +102,10 @@ class Motors:
         self.of_u = kappa * rho
         self.of_x = kappa * (1 - rho) * np.hstack([-K, K, -D, D])
 
-    def torque(self, u: np.ndarray, x: np.ndarray) -> np.ndarray:
+    def torque(self, u: Floats, x: Floats) -> Floats:
         return self.of_u * u + self.of_x @ x
 
-    def linear(self, A: np.ndarray, E: np.ndarray, loops: int) -> Advance:
+    def linear(self, A: Floats, E: Floats, loops: int) -> Advance:
         """Without friction: all loops of a period at once, from the matrices of one."""
         n = self.arm.size
         one = A + E[:, :n] @ self.of_x
@@ -113,11 +114,11 @@ class Motors:
         of_u, of_push = self.of_u * inputs[:, :n], inputs[:, n:]
         return lambda x, u, tau_ext: whole @ x + of_u @ u + of_push @ tau_ext
 
-    def rubbed(self, A: np.ndarray, E: np.ndarray, loops: int, step_s: float) -> Advance:
+    def rubbed(self, A: Floats, E: Floats, loops: int, step_s: float) -> Advance:
         """With friction in each step of each loop; A and E are of a step."""
         n = self.arm.size
 
-        def advance(x: np.ndarray, u: np.ndarray, tau_ext: np.ndarray) -> np.ndarray:
+        def advance(x: Floats, u: Floats, tau_ext: Floats) -> Floats:
             pushed = E[:, n:] @ tau_ext
             for _ in range(loops):
                 tau_m = self.torque(u, x)
@@ -127,7 +128,7 @@ class Motors:
 
         return advance
 
-    def friction(self, speed: np.ndarray, step_s: float) -> np.ndarray:
+    def friction(self, speed: Floats, step_s: float) -> Floats:
         """Bristles that bend up to bristle_rad, where they slip; exact for a constant speed."""
         z_max = self.drives.bristle_rad
         slip = np.abs(speed) / z_max
@@ -140,7 +141,7 @@ def run(
     arm: ElasticArm,
     law: Law,
     seconds: float,
-    push: Callable[[float], np.ndarray] | None = None,
+    push: Callable[[float], Floats] | None = None,
     drives: Drives | None = None,
     start: State | None = None,
 ) -> Track:
@@ -150,8 +151,10 @@ def run(
     loops = round(PERIOD_S * drives.rate_hz) if drives.rho != 1 or steps > 1 else 1
     step_s = PERIOD_S / loops / steps
     A, E = held(*arm.matrices(), step_s)
-    x = np.zeros(4 * n) if start is None else np.concatenate(start)
-    motors, u, rows = Motors(arm, drives), np.zeros(n), []
+    x: Floats = np.zeros(4 * n) if start is None else np.concatenate(start)
+    motors = Motors(arm, drives)
+    u: Floats = np.zeros(n)
+    rows: list[tuple[float, Floats, Floats]] = []
     advance = motors.linear(A, E, loops) if steps == 1 else motors.rubbed(A, E, loops, step_s)
     for k in range(round(seconds / PERIOD_S)):
         t, now = k * PERIOD_S, State(*x.reshape(4, n))

@@ -3,18 +3,22 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from limber.arrays import Floats
 from limber.plot.style import COLORS, STYLE, note
 from limber.plot.style import name_axes as name_axes
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
 BLUE, ORANGE, GREEN, PINK, AMBER, SKY, BLACK, _ = COLORS
-LOOK = {
+LOOK: dict["RcKeyType", Any] = {
     **STYLE,
     "font.size": 10,
     "axes.titlesize": 10.5,
@@ -25,8 +29,11 @@ LOOK = {
 ARROW = {"arrowprops": {"arrowstyle": "->"}, "color": "black"}  # of a note
 # In every picture a formula is a line and a measurement an open circle. Where both have been
 # measured, the circle is the robot on its bus and a cross its equations.
-MEASURED = {"marker": "o", "mfc": "white", "ls": "none", "mew": 1.5}
-MARKS = {"ideal": {"marker": "x", "ls": "none", "mew": 1.5, "ms": 6.5}, "bus": MEASURED}
+MEASURED: dict[str, Any] = {"marker": "o", "mfc": "white", "ls": "none", "mew": 1.5}
+MARKS: dict[str, dict[str, Any]] = {
+    "ideal": {"marker": "x", "ls": "none", "mew": 1.5, "ms": 6.5},
+    "bus": MEASURED,
+}
 WAYS = {"ideal": "on the joint's equations", "bus": "measured on the bus"}
 
 
@@ -54,11 +61,12 @@ def plot_marks(ax: Axes, at: ArrayLike, ideal: ArrayLike, bus: ArrayLike, **styl
             ax.plot([], [], **MARKS[where], color="0.3", label=WAYS[where])
 
 
-def ellipse(K: np.ndarray) -> np.ndarray:
+def ellipse(K: Floats) -> Floats:
     """2 x N points: stiffness along each direction, of the symmetric part of a 2 x 2 matrix."""
     angle = np.linspace(0, 2 * np.pi, 120)
     values, axes = np.linalg.eigh((K + K.T) / 2)
-    return axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))
+    found: Floats = axes @ (values[:, None] * np.array([np.cos(angle), np.sin(angle)]))
+    return found
 
 
 def level(

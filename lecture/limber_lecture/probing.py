@@ -46,4 +46,5 @@ class Probing:
         start = self.first_at + self.each_s * probe
         end = start + self.each_s - self.ramp_s
         status(log, start, end)
-        return motion(log, end - 0.02, end)["p_BT"].mean(axis=0)
+        place: np.ndarray = motion(log, end - 0.02, end)["p_BT"].mean(axis=0)
+        return place

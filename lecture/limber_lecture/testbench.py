@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.errors import RunError
 from limber.log.reader import Log, time_s
 from limber.model.robot import read_yaml
@@ -30,12 +31,13 @@ SETTLED_S = 1.6  # the law of the run, which begins at GAINS_S, has settled
 FREE = {"law": "gravity_compensation"}  # no torque at all: the bench lies
 FAST_KGM2 = 1e6  # a rotor or link of this inertia, behind the gear, stays where it is
 
-Plant = tuple[np.ndarray, np.ndarray]
+Plant = tuple[Floats, Floats]
 
 
 def weight(q: float, gravity: float) -> float:
     """Torque that holds the link; it hangs at zero."""
-    return LINK_MASS_M * gravity * np.sin(q)
+    torque: float = LINK_MASS_M * gravity * np.sin(q)
+    return torque
 
 
 def rigid(inertia: float, damping: float = 0.0) -> Plant:
@@ -67,18 +69,18 @@ def held_link(spring: float = K_J, damper: float = D_J, rotor: float = B) -> Pla
     return A, np.array([[0.0, 0.0], [1 / rotor, 0.0]])
 
 
-def looped(plant: Plant, gains: list[float], T: float, late: int) -> np.ndarray:
+def looped(plant: Plant, gains: list[float], T: float, late: int) -> Floats:
     """One sample of the loop τ_m = -gains x, held over T, `late` samples after it was measured."""
     A, inputs = plant
     A, inputs = with_delay(*held(A, inputs[:, :1], T), late)
     return A - inputs @ _row(gains, len(A))
 
 
-def _row(gains: list[float], size: int) -> np.ndarray:
+def _row(gains: list[float], size: int) -> Floats:
     return np.pad(gains, (0, size - len(gains)))[None]
 
 
-def slowest(loop: np.ndarray, T: float) -> Mode:
+def slowest(loop: Floats, T: float) -> Mode:
     """The mode of a sampled loop that dies out last of those that swing."""
     steps = np.linalg.eigvals(loop).astype(complex)
     roots = np.log(steps[abs(steps) > 1e-9]) / T  # 0: a state that is forgotten at once
@@ -86,7 +88,7 @@ def slowest(loop: np.ndarray, T: float) -> Mode:
     return Mode.of(s)
 
 
-def at_rest(plant: Plant, gains: list[float], push: float) -> np.ndarray:
+def at_rest(plant: Plant, gains: list[float], push: float) -> Floats:
     """State that the loop under a constant push comes to: (A - B gains) x + B_push push = 0."""
     A, inputs = plant
     return np.linalg.solve(A - inputs[:, :1] @ _row(gains, len(A)), -inputs[:, 1] * push)
@@ -130,7 +132,7 @@ def on_bus(
     return context.run_law(name, robot, gains, more, end_s, **head)
 
 
-def truth(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
+def truth(log: Log, start_s: float, end_s: float) -> dict[str, Floats]:
     """What the joint really did while the law alone was at work."""
     status(log, start_s, end_s, RAMP)
     rows = motion(log, start_s, end_s)
@@ -138,13 +140,13 @@ def truth(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
     return {"t": time_s(rows), **seen, "tau": rows["tau_joint"][:, 0]}
 
 
-def sensed(log: Log, start_s: float, end_s: float) -> dict[str, np.ndarray]:
+def sensed(log: Log, start_s: float, end_s: float) -> dict[str, Floats]:
     """Link encoder, its velocity, and torque sensor, as they came over the bus."""
     rows = between(log, "JOINT_STATE", start_s, end_s)
     return {"t": time_s(rows), **{name: rows[name][:, 0] for name in ("q", "v", "tau")}}
 
 
-def goal(log: Log, start_s: float, end_s: float) -> tuple[np.ndarray, np.ndarray]:
+def goal(log: Log, start_s: float, end_s: float) -> tuple[Floats, Floats]:
     """Times, and the angles that the law was to follow then."""
     rows = status(log, start_s, end_s, RAMP)
     w, z = rows["quat_BD"][:, 0], rows["quat_BD"][:, 3]
@@ -203,7 +205,8 @@ def torque_constant(kappa: float) -> dict[str, Any]:
 
 
 def motor_yaml() -> dict[str, Any]:
-    return read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"][MOTOR]
+    found: dict[str, Any] = read_yaml(robot_folder(ROBOT) / "robot.yaml")["motors"][MOTOR]
+    return found
 
 
 # In plant_overrides, whatever the motor is told; its torque at the joint is as before

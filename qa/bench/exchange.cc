@@ -3,7 +3,7 @@
 // of their own that sends the seven replies as soon as it has the seven commands. Prints one JSON
 // line; the figure that travels between machines is the ratio.
 //
-//   limber-bench-exchange [--rounds 20000] [--vcan]
+//   limber-bench-exchange [--rounds 20000] [--vcan] [--rate 1000]
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -237,10 +237,11 @@ std::int64_t bare_exchange(BareEnd* end) {
   return monotonic_ns() - start_ns;
 }
 
-int run(std::int64_t rounds, bool vcan) {
+int run(std::int64_t rounds, bool vcan, double rate_hz) {
   const BusName own{vcan, vcan ? "vcan0" : "bench-own"};
   const BusName peer{vcan, vcan ? "vcan1" : "bench-bare"};
-  const LoadedRobot robot = load_robot("openarm");
+  LoadedRobot robot = load_robot("openarm");
+  robot.robot.rate_hz = rate_hz;
   DrivenArm arm(robot);
   const std::vector<CanFrame> commands = arm.bus().commands;
   const std::vector<CanFrame> replies = arm.bus().replies;
@@ -285,5 +286,7 @@ int main(int argc, char** argv) {
   line.integer("--rounds", &rounds, 200, 10'000'000, "exchanges of each kind");
   bool vcan = false;
   line.flag("--vcan", &vcan, "over the interfaces vcan0 and vcan1 instead of virtual buses");
-  return run_program(line, argc, argv, [&] { return run(rounds, vcan); });
+  double rate_hz = 1000.0;
+  line.number("--rate", &rate_hz, 1.0, 1000.0, "a reply is late after 0.6 of its period");
+  return run_program(line, argc, argv, [&] { return run(rounds, vcan, rate_hz); });
 }

@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -114,7 +115,8 @@ def _kernels() -> dict:
         export = [sys.executable, "-m", "limber", "export", "mjcf", "openarm", "--out", str(arm)]
         run(export, None, "limber export mjcf")
         env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm)}
-        return json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+        found: dict[str, Any] = json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+    return found
 
 
 def _reading() -> list[Figure]:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from typing import Any
 
 from rich.console import Console
 
@@ -35,6 +36,7 @@ def released(name: str) -> str:
     return str(RELEASE / name)
 
 
-def report(prefix: list[str], name: str, *options: str) -> dict:
+def report(prefix: list[str], name: str, *options: str) -> dict[str, Any]:
     """The JSON that a program of the release build prints."""
-    return json.loads(run([*prefix, released(name), *options], None))
+    found: dict[str, Any] = json.loads(run([*prefix, released(name), *options], None))
+    return found

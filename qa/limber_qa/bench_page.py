@@ -24,6 +24,7 @@ import numpy as np
 import viser
 import zstandard
 from websockets.asyncio.client import connect
+from websockets.typing import Subprotocol
 
 from limber import messages
 from limber.model.robot import load_robot
@@ -85,13 +86,15 @@ def _content(window: bytes) -> bytes:
 
 async def view(address: str, joint: str) -> tuple[list[float], float]:
     """Seconds from each jump to its arrival; when the page told that nothing comes any more."""
-    protocol = f"viser-v{viser.__version__}"
+    protocol = Subprotocol(f"viser-v{viser.__version__}")
     latencies: list[float] = []
     shown = None
     async with connect(address, subprotocols=[protocol], max_size=None) as socket:
         await socket.send(msgspec.msgpack.encode(CAMERA))  # a viewer counts once it has one
         while True:
-            content = _content(await asyncio.wait_for(socket.recv(), GIVE_UP_S))
+            window = await asyncio.wait_for(socket.recv(), GIVE_UP_S)
+            assert isinstance(window, bytes)
+            content = _content(window)
             now = time.monotonic()
             if latencies and DEAD in content:
                 return latencies, now
@@ -120,7 +123,7 @@ def _processor_s(process: int) -> float:
 class Monitor:
     """`limber monitor` and, once it has ended, its last line."""
 
-    process: subprocess.Popen
+    process: subprocess.Popen[str]
     address: str
     last_line: str = ""
 
@@ -129,6 +132,7 @@ class Monitor:
 def monitor(robot: str) -> Iterator[Monitor]:
     command = [sys.executable, "-m", "limber", "monitor", "--robot", robot]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
     served = Monitor(process, process.stdout.readline().split()[0].replace("http", "ws"))
     try:
         yield served
@@ -145,6 +149,7 @@ def main(seconds: float) -> None:
         publisher = subprocess.Popen(own, stdout=subprocess.PIPE, text=True)
         joint = load_robot(ROBOT).chain.joints[0].child
         latencies, told_s = asyncio.run(view(page.address, joint))
+        assert publisher.stdout is not None
         dead_s = told_s - float(publisher.stdout.read())
         lasted, end = time.monotonic() - begun, _processor_s(page.process.pid)
     p50, p99 = np.quantile(latencies, [0.5, 0.99]) * 1e3

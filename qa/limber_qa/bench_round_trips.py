@@ -5,6 +5,7 @@ real controller, and a cycle of the three processes in lock step, each beside a 
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 from limber.paths import RELEASE, ROOT
 from limber_qa.bench_command import released, run
@@ -58,5 +59,6 @@ def _over(
     ]
 
 
-def _measure(command: list[str], chosen: dict[str, str]) -> dict:
-    return json.loads(run(command, None, env={**os.environ, **chosen}))
+def _measure(command: list[str], chosen: dict[str, str]) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(run(command, None, env={**os.environ, **chosen}))
+    return found

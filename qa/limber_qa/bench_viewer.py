@@ -16,6 +16,7 @@ from pathlib import Path
 import msgspec
 import viser
 from websockets.asyncio.client import connect
+from websockets.typing import Subprotocol
 
 from limber.live.receiver import Receiver
 from limber.model.robot import load_robot
@@ -29,7 +30,7 @@ COUNTS = ("cycles", "late_cycles", "overrun_cycles")
 
 
 async def _look(address: str) -> None:
-    protocol = f"viser-v{viser.__version__}"
+    protocol = Subprotocol(f"viser-v{viser.__version__}")
     async with connect(address, subprotocols=[protocol], max_size=None) as socket:
         await socket.send(msgspec.msgpack.encode(CAMERA))
         while True:
@@ -60,6 +61,7 @@ def main(windows: int) -> None:
 
         def counts() -> list[int]:
             status = receiver.newest("DRIVER_STATUS")
+            assert status is not None
             return [int(status[name]) for name in COUNTS]
 
         for window in range(windows):

@@ -20,7 +20,8 @@ def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]
     command = [str(program("limber-faults")), "--phases", str(phases)]
     command += ["--place", "bus"] if fault is None else [fault]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)["faults"]
+    rows: list[dict[str, Any]] = json.loads(done.stdout)["faults"]
+    return rows
 
 
 def reaction_text(cell: dict[str, Any] | None) -> str:

@@ -8,6 +8,7 @@ import json
 import os
 import re
 import subprocess
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import takewhile
@@ -125,13 +126,13 @@ def search(names: list[str], console: Console, inputs: int, minutes: float) -> b
     return _report(outcomes, console)
 
 
-def _run(command: list) -> subprocess.CompletedProcess:
+def _run(command: Sequence[object]) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False
     )
 
 
-def _several(one, names: list[str]) -> list[Outcome]:
+def _several(one: Callable[[str], Outcome], names: list[str]) -> list[Outcome]:
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(one, names))
 

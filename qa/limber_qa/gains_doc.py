@@ -31,7 +31,8 @@ def _meaning(row: dict[str, Any]) -> str:
     if row["kind"] == "periods":
         words = ", ".join(f"`{word['word']}`" for word in row["words"])
         return f"{row['meaning']}: a map of {words}"
-    return row["meaning"]
+    meaning: str = row["meaning"]
+    return meaning
 
 
 def _words(row: dict[str, Any]) -> str:

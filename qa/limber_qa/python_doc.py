@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable
 
+from limber.errors import InputError
 from limber.live import arm_errors
 from limber.live.arm import Arm
 from limber.live.arm_base import ArmBase
@@ -24,13 +25,21 @@ CALLS = {
 OTHERS = (Pose, State, Recording)
 
 
+def _doc(thing: object) -> str:
+    """Its docstring; all that this page lists has one."""
+    text = inspect.getdoc(thing)
+    if text is None:
+        raise InputError(f"{thing} has no docstring")
+    return text
+
+
 def _public(owner: type) -> dict[str, object]:
     return {name: value for name, value in vars(owner).items() if not name.startswith("_")}
 
 
 def _properties(owner: type) -> list[str]:
     rows = [
-        f"| `{name}` | {' '.join(inspect.getdoc(value).split())} |"
+        f"| `{name}` | {' '.join(_doc(value).split())} |"
         for name, value in _public(owner).items()
         if isinstance(value, property)
     ]
@@ -50,26 +59,26 @@ def _calls(owner: type) -> list[str]:
     lines: list[str] = []
     for value in _public(owner).values():
         if inspect.isfunction(value):
-            lines += [f"**`{_signature(value)}`**", "", *inspect.getdoc(value).splitlines(), ""]
+            lines += [f"**`{_signature(value)}`**", "", *_doc(value).splitlines(), ""]
     return lines
 
 
 def _errors() -> list[str]:
     found = [e for e in vars(arm_errors).values() if inspect.isclass(e)]
     own = [error for error in found if error.__module__ == arm_errors.__name__]
-    rows = [f"| `{e.__name__}` | {' '.join(inspect.getdoc(e).split())} |" for e in own]
+    rows = [f"| `{e.__name__}` | {' '.join(_doc(e).split())} |" for e in own]
     return ["### Errors", "", "| error | |", "|---|---|", *rows]
 
 
 def _lines() -> list[str]:
-    lines = ["### Arm", "", *inspect.getdoc(Arm).splitlines(), ""]
-    lines += ["#### Quantities", "", *inspect.getdoc(Quantities).splitlines(), ""]
+    lines = ["### Arm", "", *_doc(Arm).splitlines(), ""]
+    lines += ["#### Quantities", "", *_doc(Quantities).splitlines(), ""]
     lines += _properties(Quantities)
     for title, owner in CALLS.items():
         lines += [f"#### {title}", "", *_properties(owner), *_calls(owner)]
-    for owner in OTHERS:
-        lines += [f"### {owner.__name__}", "", *inspect.getdoc(owner).splitlines(), ""]
-        lines += [*_properties(owner), *_calls(owner)]
+    for other in OTHERS:
+        lines += [f"### {other.__name__}", "", *_doc(other).splitlines(), ""]
+        lines += [*_properties(other), *_calls(other)]
     return lines + _errors()
 
 

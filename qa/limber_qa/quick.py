@@ -31,7 +31,7 @@ def _git(*words: str) -> list[str]:
 
 def unit_tests(files: list[str]) -> list[str]:
     """Test programs in C++ of the folders these files lie in."""
-    wanted = set()
+    wanted: set[str] = set()
     for file in files:
         if not file.endswith((".h", ".cc", ".yaml", "CMakeLists.txt")):
             continue

@@ -96,7 +96,8 @@ def run(name: str, hours: float, seed: int, out: Path, console: Console) -> int:
     with ExitStack() as stack:
         watchers = stack.enter_context(Watchers(folder))
         children = [stack.enter_context(started(name, robot, folder)) for name in PROGRAMS]
-        stack.callback(lambda: [child.terminate() for child in children])
+        for child in children:
+            stack.callback(child.terminate)
         _listen(bus, START_S / 2)
         arm = stack.enter_context(Arm())
         begin_s = time.monotonic()
@@ -157,9 +158,10 @@ class _Use:
         with suppress(FaultError, RefusedError):  # a stop that is seen below
             self.arm.set_goal(joints_rad=goal, duration_s=PAUSE_S)
         _listen(self.bus, PAUSE_S)
-        dead = [child.args[0] for child in self.children if child.poll() is not None]
+        pairs = zip(PROGRAMS, self.children, strict=True)
+        dead = [name for name, child in pairs if child.poll() is not None]
         if dead:
-            self.end = f"{Path(dead[0]).name} ended by itself: see its log"
+            self.end = f"{dead[0]} ended by itself: see its log"
         elif not self.watch.drives_on or self.arm.mode != "active":
             self.stops.append(self._stopped())
 

@@ -108,7 +108,7 @@ PARTS: dict[str, Part] = {
     ),
     "coverage": Part(lambda: _limber("coverage"), Lane.BUILDS),
     "format": Part(lambda: check_format(cxx_files()), Lane.SIMULATED),
-    "lint": Part(lambda: [sys.executable, "-m", "ruff", "check", "."], Lane.SIMULATED),
+    "lint": Part(lambda: [sys.executable, "-m", "limber_qa.lint"], Lane.SIMULATED),
     "repo": Part(lambda: [*PYTEST, "tests/repo"], Lane.SIMULATED),
     "lockstep": Part(lambda: _system("lockstep"), Lane.SIMULATED),
     "pytest": Part(

@@ -6,6 +6,7 @@ frames connects the two.
 
 import configparser
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -17,11 +18,10 @@ import yaml
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
+from slow_arm import slow_arm
 from stack import BIN, ROOT
 
-# Realtime on a machine that others use: a pause longer than the driver bridges is not our fault.
-pytestmark = pytest.mark.flaky(reruns=2)
-DESKTOP2R = ROOT / "robots" / "desktop2r"
+STOOD_STILL = re.compile(r"^(driver|controller)\.\w+ at .* s: limber-\w+ stood still", re.MULTILINE)
 CABLE = "ip link add can0 type vxcan peer name can0 netns {pid}"
 LOOPBACK = "ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo"
 
@@ -30,25 +30,22 @@ def sh(command: str) -> None:
     subprocess.run(command, shell=True, check=True, timeout=30)
 
 
+def network_of(pid: int) -> str:
+    return os.readlink(f"/proc/{pid}/ns/net")
+
+
 @pytest.fixture
 def folder(stack):
-    """my_arm and my_scenario.yaml, at a rate that any machine holds."""
-    robot = yaml.safe_load((DESKTOP2R / "robot.yaml").read_text(encoding="utf-8"))
-    robot["name"] = "my_arm"
-    robot["rate_hz"] = 100
-    robot["watchdog"]["timeout_s"] = 0.2
-    robot["buses"][0]["can"] = "virtual:my_arm"
-    arm = stack.directory / "my_arm"
-    arm.mkdir()
-    (arm / "robot.urdf").write_text((DESKTOP2R / "robot.urdf").read_text())
-    (arm / "robot.yaml").write_text(yaml.safe_dump(robot), encoding="utf-8")
+    """my_arm and my_scenario.yaml; the arm has eight seconds to become ready, which takes four."""
+    bus = {"name": "arm", "can": "virtual:my_arm", "fd": False, "bitrate_bps": 1_000_000}
+    slow_arm(stack.directory / "my_arm", name="my_arm", buses=[bus])
     scenario = {
         "format": "limber-scenario/1",
         "name": "my_scenario",
         "robot": "my_arm",
         "mode": "realtime",
-        "duration_s": 6.0,
-        "timeline": [{"at_s": 1.0, "mode": "hold"}, {"at_s": 2.0, "mode": "active"}],
+        "duration_s": 12.0,
+        "timeline": [{"at_s": 8.0, "mode": "hold"}, {"at_s": 9.0, "mode": "active"}],
     }
     (stack.directory / "my_scenario.yaml").write_text(yaml.safe_dump(scenario), encoding="utf-8")
     return stack.directory
@@ -62,7 +59,8 @@ def arm(folder):
     command = ["unshare", "-n", "sh", "-c", f"{LOOPBACK}; {wait}; exec {program}"]
     with open(folder / "arm.log", "w", encoding="utf-8") as log:
         process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
-        time.sleep(0.5)
+        while network_of(process.pid) == network_of(os.getpid()):
+            time.sleep(0.01)
         sh(CABLE.format(pid=process.pid) + " && ip link set can0 mtu 72 up")
         yield process
         process.kill()
@@ -85,14 +83,18 @@ def change_the_word(folder) -> None:
 
 
 def test_the_readmes_commands(folder, arm):
+    """Once more, twice at most, if the run's own verdict is that this machine stood still."""
     change_the_word(folder)
-    run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", "out")
-    said = run.stdout + run.stderr
+    for out in ("first", "second", "third"):
+        run = limber(folder, "run", "my_scenario.yaml", "--no-sim", "--out", out)
+        said = run.stdout + run.stderr
+        if run.returncode == 0 or not STOOD_STILL.search(said):
+            break
     assert "whatever is on socketcan:can0 will move" in said
     assert "private network" not in said
     assert arm.poll() is None
     assert run.returncode == 0, said + (folder / "arm.log").read_text()
-    assert (folder / "out" / "run.lcmlog.zst").exists()
+    assert (folder / out / "run.lcmlog.zst").exists()
 
 
 def test_without_a_multicast_route_the_cure_is_named(folder, arm):

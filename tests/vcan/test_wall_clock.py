@@ -14,19 +14,16 @@ from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from test_disturbed_bus import start
 
-pytestmark = [
-    pytest.mark.flaky(reruns=2),
-    pytest.mark.skipif(
-        "User Mode Linux" not in Path("/proc/cpuinfo").read_text(encoding="ascii"),
-        reason="would step the clock of this machine",
-    ),
-]
+pytestmark = pytest.mark.skipif(
+    "User Mode Linux" not in Path("/proc/cpuinfo").read_text(encoding="ascii"),
+    reason="would step the clock of this machine",
+)
 HOUR_s = 3600
 
 
 @pytest.fixture
 def arm(stack):
-    return start(stack, "vxcan0", "vxcan1")
+    return start(stack, "vxcan0", "vxcan1", "--realtime")
 
 
 @pytest.mark.parametrize("step_s", [HOUR_s, -HOUR_s])

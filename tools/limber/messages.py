@@ -62,7 +62,8 @@ def _types() -> Any:
 def table_file(name: str) -> dict[str, Any]:
     """A table that C++ and Python share, such as channels.yaml; the build copies it here."""
     with open(os.path.join(_types().__path__[0], name), encoding="utf-8") as file:
-        return yaml.safe_load(file)
+        table: dict[str, Any] = yaml.safe_load(file)
+        return table
 
 
 def _table() -> dict[str, Any]:
@@ -83,7 +84,8 @@ def channels() -> dict[str, Channel]:
 
 def plane_url(plane: str) -> str:
     """The channel table's address of a plane: `arm` or `user`."""
-    return _table()["planes"][plane]
+    url: str = _table()["planes"][plane]
+    return url
 
 
 def user_plane_url() -> str:
@@ -143,7 +145,7 @@ def fingerprint_of(type_name: str) -> int:
 @cache
 def native_dtype_of(type_name: str) -> np.dtype:
     wire = dtype_of(type_name)
-    assert wire is not None
+    assert wire is not None and wire.names is not None
     return np.dtype([(name, wire[name].newbyteorder("=")) for name in wire.names])
 
 
@@ -151,7 +153,7 @@ def native_dtype_of(type_name: str) -> np.dtype:
 def _runs_of(type_name: str) -> np.dtype:
     """The wire layout with neighbours of one size as one field: numpy turns field by field."""
     wire = dtype_of(type_name)
-    assert wire is not None
+    assert wire is not None and wire.names is not None
     runs = groupby((wire[name] for name in wire.names), key=lambda kind: kind.base.itemsize)
     counts = [(size, sum(field.itemsize for field in run) // size) for size, run in runs]
     return np.dtype([(f"run{i}", f"u{size}", (n,)) for i, (size, n) in enumerate(counts)])
@@ -162,7 +164,7 @@ def view(type_name: str, data: bytes) -> np.void:
     wire = dtype_of(type_name)
     if wire is None or len(data) != wire.itemsize:
         raise ValueError(f"not a {type_name}")
-    record = views(type_name, [data])[0]
+    record: np.void = views(type_name, [data])[0]
     if int(record[FINGERPRINT]) != fingerprint_of(type_name):
         raise ValueError(f"not a {type_name} of this version")
     return record

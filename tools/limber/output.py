@@ -15,9 +15,9 @@ from limber.errors import InputError, LimberError, RunError
 
 def new_file(path: Path, mode: str = "w") -> IO[Any]:
     """Opened for writing, as text in UTF-8 or, with `mode` "wb", as bytes. Raises InputError."""
-    text = {} if "b" in mode else {"encoding": "utf-8"}
+    encoding = None if "b" in mode else "utf-8"
     try:
-        return open(path, mode.replace("w", "x"), **text)
+        return open(path, mode.replace("w", "x"), encoding=encoding)
     except FileExistsError as error:
         kind = "is a link" if path.is_symlink() else "exists already"
         raise InputError(f"{path} {kind}: give another --out, or remove it") from error

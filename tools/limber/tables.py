@@ -4,7 +4,7 @@ from typing import Any
 
 from rich.table import Table
 
-KINDS = {
+KINDS: dict[str, dict[str, Any]] = {
     "<": {"no_wrap": True},
     ">": {"no_wrap": True, "justify": "right"},
     "~": {},
@@ -13,7 +13,12 @@ KINDS = {
 
 def table(*columns: str, **style: Any) -> Table:
     """How a column's name begins tells what it holds: `<` words, `>` numbers, `~` long words."""
-    look = {"box": None, "padding": (0, 2, 0, 0), "header_style": "dim", "title_justify": "left"}
+    look: dict[str, Any] = {
+        "box": None,
+        "padding": (0, 2, 0, 0),
+        "header_style": "dim",
+        "title_justify": "left",
+    }
     made = Table(**{**look, **style})
     for column in columns:
         made.add_column(column[1:], **KINDS[column[0]])

@@ -7,7 +7,7 @@ from typing import Any
 
 from limber.errors import InputError
 from limber.model.robot import load_robot, read_yaml
-from limber.model.xml_file import read_xml
+from limber.model.xml_file import attribute, read_xml
 
 TURN_rad = 2.0 * math.pi
 PERMILLE_MOST = 32.767  # of the rated torque, in 16 bits
@@ -88,10 +88,11 @@ def _urdf_limits(urdf: Path, joints: dict[str, Any]) -> dict[str, tuple[float, f
     """Velocity and effort of those joints of robot.yaml that do not ignore them."""
     found = {}
     for joint in read_xml(urdf).findall("joint"):
-        limit = joint.find("limit")
-        own = joints.get(joint.get("name"), {"urdf_limits": "ignore"})
+        name, limit = attribute(joint, "name", urdf), joint.find("limit")
+        own = joints.get(name, {"urdf_limits": "ignore"})
         if limit is not None and own.get("urdf_limits") != "ignore":
-            found[joint.get("name")] = (float(limit.get("velocity")), float(limit.get("effort")))
+            velocity, effort = (attribute(limit, key, urdf) for key in ("velocity", "effort"))
+            found[name] = (float(velocity), float(effort))
     return found
 
 

@@ -163,7 +163,8 @@ def _test(entry: Any, where: str) -> NamedTest:
 
 
 def _kind(annotation: Any) -> type:
-    return {"str": str, "int": int, "float": float}.get(annotation, annotation)
+    kind: type = {"str": str, "int": int, "float": float}.get(annotation, annotation)
+    return kind
 
 
 def _table(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from limber.paths import ROOT
 from limber_qa.faults.lockstep import RunResult, run_row
-from limber_qa.faults.matrix import TESTS, Row, read_matrix
+from limber_qa.faults.matrix import TESTS, LockStepRun, NamedTest, Row, read_matrix
 
 PAGE = ROOT / "qa" / "fault_matrix.md"
 
@@ -73,7 +73,8 @@ def verdict(row: Row, results: list[RunResult]) -> str:
         return "not run"
     if any(map(_unexpected, results)):
         return "NOT AS EXPECTED"
-    known = any(run.known_failing for run in [*row.lock_step, *row.tests])
+    runs: list[LockStepRun | NamedTest] = [*row.lock_step, *row.tests]
+    known = any(run.known_failing for run in runs)
     return "failing" if known else "ok"
 
 

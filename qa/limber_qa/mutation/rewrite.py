@@ -75,6 +75,13 @@ class _Rewriter:
     def raw(self, node: Node) -> str:
         return self.source[node.start_byte : node.end_byte].decode()
 
+    def part(self, node: Node, field: str) -> Node:
+        """The child that the grammar has under this name in each node of this type."""
+        found = node.child_by_field_name(field)
+        if found is None:
+            raise ValueError(f"{self.file}: no {field} in {self.raw(node)}")
+        return found
+
     def add(self, node: Node, *become: str) -> int:
         """New mutants that change what `node` says; the number of the first."""
         first = self.next
@@ -152,14 +159,14 @@ class _Rewriter:
 
     def _if_statement(self, node: Node) -> str:
         if any(child.type == "constexpr" for child in node.children):
-            condition = node.child_by_field_name("condition")
+            condition = self.part(node, "condition")
             head = self.source[node.start_byte : condition.end_byte].decode()
             rest = [child for child in node.children if child.start_byte >= condition.end_byte]
             return head + " ".join(["", *(self.visit(child) for child in rest)])
         return self.inside(node)
 
     def _condition_clause(self, node: Node) -> str:
-        value = node.child_by_field_name("value")
+        value = self.part(node, "value")
         of_if = node.parent is not None and node.parent.type == "if_statement"
         if not of_if or value.type == "declaration" or len(node.named_children) > 1:
             return self.inside(node)
@@ -167,7 +174,7 @@ class _Rewriter:
 
     def _conditional_expression(self, node: Node) -> str:
         test, yes, no = (
-            node.child_by_field_name(name) for name in ("condition", "consequence", "alternative")
+            self.part(node, name) for name in ("condition", "consequence", "alternative")
         )
         return f"({self._test(test)} ? {self.visit(yes)} : {self.visit(no)})"
 
@@ -182,7 +189,7 @@ class _Rewriter:
         return self.raw(operator) if node.type == "binary_expression" and operator else ""
 
     def _binary_expression(self, node: Node) -> str:
-        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        left, right = self.part(node, "left"), self.part(node, "right")
         operator = self._operator(node)
         if operator in ("&&", "||"):
             word = "and" if operator == "&&" else "or"
@@ -196,14 +203,14 @@ class _Rewriter:
             others = (">=",)  # one more element may be nobody's memory
         if not others:
             return self.inside(node)
-        number = self.add(node.child_by_field_name("operator"), *others)
+        number = self.add(self.part(node, "operator"), *others)
         functors = ", ".join(_FUNCTORS[each] for each in (operator, *others))
         operands = f"{self.visit(left)}, {self.visit(right)}"
         return f"limber::mutants::Binary<{number}, {functors}>::of({operands})"
 
     def _unary_expression(self, node: Node) -> str:
-        argument = node.child_by_field_name("argument")
-        sign = self.raw(node.child_by_field_name("operator"))
+        argument = self.part(node, "argument")
+        sign = self.raw(self.part(node, "operator"))
         function = {"!": "negated", "-": "minus"}.get(sign)
         if function is None:
             return self.inside(node)
@@ -260,9 +267,9 @@ class _Rewriter:
     def _statement(self, node: Node) -> str:
         operator = node.child_by_field_name("operator")
         found = _ASSIGNMENTS.get(self.raw(operator)) if operator else None
-        if node.type != "assignment_expression" or not found:
+        if node.type != "assignment_expression" or operator is None or not found:
             return self.visit(node)
-        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        left, right = self.part(node, "left"), self.part(node, "right")
         number = self.add(operator, found[1])
         functors = f"limber::mutants::{found[0]}, limber::mutants::{_ASSIGNMENTS[found[1]][0]}"
         operands = f"{self.raw(left)}, {self.visit(right)}"

@@ -91,3 +91,9 @@ def test_a_missing_joint(tmp_path):
     (tmp_path / "robot.yaml").write_text(TEXT, encoding="utf-8")
     with pytest.raises(InputError, match=r"joints\.elbow is missing"):
         read_keys(tmp_path / "robot.yaml", ["elbow"])
+
+
+def test_of_an_empty_file_the_joint_is_named(tmp_path):
+    (tmp_path / "robot.yaml").write_text("")
+    with pytest.raises(InputError, match=r"joints\.lift is missing"):
+        read_keys(tmp_path / "robot.yaml", NAMES)

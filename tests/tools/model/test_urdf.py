@@ -1,5 +1,7 @@
 """Kinematics from a URDF against closed forms and against differences."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -92,3 +94,19 @@ def test_broken_file(tmp_path):
     path.write_text("<robot><link")
     with pytest.raises(InputError, match="cannot be read as URDF"):
         Chain(path, "a", "b")
+
+
+@pytest.mark.parametrize(
+    ("whole", "cut", "complaint"),
+    [
+        ('<parent link="b"/>', "", '<joint name="turn"> has no <parent>'),
+        ('<child link="c"/>', "<child/>", 'a <child> has no link=""'),
+        ('<joint name="turn" type="continuous">', '<joint name="turn">', 'has no type=""'),
+    ],
+)
+def test_what_a_joint_lacks_is_named(tmp_path, whole, cut, complaint):
+    assert URDF.count(whole) == 1
+    path = tmp_path / "r.urdf"
+    path.write_text(URDF.replace(whole, cut))
+    with pytest.raises(InputError, match=re.escape(f"{path}: ") + ".*" + re.escape(complaint)):
+        Chain(path, "base", "c")

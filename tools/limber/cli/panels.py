@@ -1,10 +1,12 @@
 """The commands in `limber --help`, by what a person wants, and the words that they had before."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import click
 import typer
 from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from typer._click.core import Command  # typer's own click: no other is installed with limber
 
 PANELS = {
     "Run an arm": ("demo", "run", "lab", "sim", "doctor"),
@@ -40,7 +42,7 @@ class Commands(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         return sorted(super().list_commands(ctx), key=lambda name: PLACES.get(name, len(PLACES)))
 
-    def get_command(self, ctx: Any, name: str) -> click.Command | None:
+    def get_command(self, ctx: Any, name: str) -> "Command | None":
         group, _, inside = ELSEWHERE.get(name, name).partition(" ")
         found = super().get_command(ctx, group)
         return found.get_command(ctx, inside) if inside and isinstance(found, TyperGroup) else found
@@ -50,9 +52,11 @@ def put_in_panels(app: typer.Typer) -> None:
     """Each command of `app`, and of the groups without a name in it, into its panel."""
     panel_of = {name: panel for panel, names in PANELS.items() for name in names}
     for command in app.registered_commands:
-        command.rich_help_panel = panel_of[command.name or command.callback.__name__]
+        function = command.callback
+        name = command.name or (function.__name__ if function is not None else "")
+        command.rich_help_panel = panel_of[name]
     for group in app.registered_groups:
         if group.name:
             group.rich_help_panel = panel_of[group.name]
-        else:
+        elif group.typer_instance is not None:
             put_in_panels(group.typer_instance)

@@ -86,14 +86,14 @@ def _bodies(arm: Arm, parent: ElementTree.Element) -> None:
         X = X @ joint.X_PF
         if joint.kind not in MOVING:
             continue
-        parent = ElementTree.SubElement(parent, "body", name=joint.child, **_pose(X))
+        parent = ElementTree.SubElement(parent, "body", {"name": joint.child, **_pose(X)})
         _inertial(next(bodies), parent)
         info = next(limits)
         element = _joint(next(beliefs), joint.axis, parent)
         if np.isfinite([info.low, info.high]).all():
             element.set("range", _numbers([info.low, info.high]))
         X = np.eye(4)
-    ElementTree.SubElement(parent, "site", name=arm.robot.tip, size="0.01", **_pose(X))
+    ElementTree.SubElement(parent, "site", {"name": arm.robot.tip, "size": "0.01", **_pose(X)})
 
 
 def _joint(

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from limber.arrays import Floats, Integers
 from limber.errors import InputError
 from limber.identify.arm import Arm
 from limber.identify.recording import LEAST_S, Recording
@@ -75,7 +76,7 @@ def _check(content: dict[str, Any], table: Path) -> None:
         raise InputError(f"{table}: scale: of {', '.join(SCALED)} only, as a mapping")
 
 
-def _numbers(path: Path) -> tuple[np.ndarray, list[str]]:
+def _numbers(path: Path) -> tuple[Floats, list[str]]:
     """One row a line, and the names of a header, if there is one."""
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -146,11 +147,11 @@ def _is_number(text: str) -> bool:
 def _signal(
     content: dict[str, Any],
     key: str,
-    numbers: np.ndarray,
+    numbers: Floats,
     names: list[str],
     count: int,
     table: Path,
-) -> np.ndarray:
+) -> Floats:
     columns = content[key]
     if isinstance(columns, str) and "{}" in columns:
         columns = [columns.replace("{}", str(i + 1)) for i in range(count)]
@@ -159,10 +160,11 @@ def _signal(
     if len(columns) != count:
         raise InputError(f"{table}: {key}: {len(columns)} columns, the arm has {count} joints")
     where = [_column(column, key, numbers, names, table) for column in columns]
-    return numbers[:, where] * _factors(content, key, count, table)
+    values: Floats = numbers[:, where] * _factors(content, key, count, table)
+    return values
 
 
-def _factors(content: dict[str, Any], key: str, count: int, table: Path) -> np.ndarray:
+def _factors(content: dict[str, Any], key: str, count: int, table: Path) -> Floats:
     scale = content.get("scale", {}).get(key, 1.0)
     try:
         factors = np.broadcast_to(np.asarray(scale, float), count)
@@ -174,7 +176,7 @@ def _factors(content: dict[str, Any], key: str, count: int, table: Path) -> np.n
     return factors
 
 
-def _column(column: Any, key: str, numbers: np.ndarray, names: list[str], table: Path) -> int:
+def _column(column: Any, key: str, numbers: Floats, names: list[str], table: Path) -> int:
     if isinstance(column, int) and not isinstance(column, bool):
         if not 1 <= column <= numbers.shape[1]:
             raise InputError(f"{table}: {key}: column {column} of {numbers.shape[1]}")
@@ -185,9 +187,7 @@ def _column(column: Any, key: str, numbers: np.ndarray, names: list[str], table:
     return names.index(column)
 
 
-def _times(
-    content: dict[str, Any], numbers: np.ndarray, names: list[str], table: Path
-) -> np.ndarray:
+def _times(content: dict[str, Any], numbers: Floats, names: list[str], table: Path) -> Floats:
     if "rate_hz" in content:
         rate = content["rate_hz"]
         if not isinstance(rate, int | float) or not SLOWEST_HZ <= rate <= FASTEST_HZ:
@@ -204,12 +204,12 @@ def _times(
 
 
 def _recording(
-    time_s: np.ndarray, rate_hz: float, signals: dict[str, np.ndarray], rows: np.ndarray, arm: Arm
+    time_s: Floats, rate_hz: float, signals: dict[str, Floats], rows: Integers, arm: Arm
 ) -> Recording:
     """At even times, between the samples linear."""
     even = np.arange(time_s[0], time_s[-1], 1.0 / rate_hz)
 
-    def at_even(values: np.ndarray) -> np.ndarray:
+    def at_even(values: Floats) -> Floats:
         return np.column_stack([np.interp(even, time_s, column) for column in values[rows].T])
 
     found = {key: at_even(values) for key, values in signals.items()}

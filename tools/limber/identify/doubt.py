@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.identify.arm import Arm
 from limber.identify.motion import Motion
 from limber.identify.motor_torque import sensed
@@ -20,7 +21,7 @@ ROTOR_SHARE = 0.3  # and of a rotor's inertia
 LEAST_NM = 1e-5  # rms of what counts
 
 
-def prior_std(arm: Arm, share: float = MASS_SHARE) -> np.ndarray:
+def prior_std(arm: Arm, share: float = MASS_SHARE) -> Floats:
     """Of dynamics.parameters(); `share`: how well masses are known."""
     bodies = arm.robot.dynamics.bodies
     return np.concatenate(
@@ -44,24 +45,24 @@ class Loads:
     weights_share: float = MASS_SHARE
 
     @cached_property
-    def model(self) -> np.ndarray:
+    def model(self) -> Floats:
         motion = self.motion
         return self.arm.robot.dynamics.torque(motion.q, motion.v, motion.a)
 
     @cached_property
-    def torque(self) -> np.ndarray:
+    def torque(self) -> Floats:
         return np.where(self.motion.torque_sensor, sensed(self.arm, self.motion), self.model)
 
     @cached_property
-    def gravity(self) -> np.ndarray:
+    def gravity(self) -> Floats:
         return self.arm.robot.dynamics.gravity_torque(self.motion.q)
 
     @cached_property
-    def regressor(self) -> np.ndarray:
+    def regressor(self) -> Floats:
         motion = self.motion
         return self.arm.robot.dynamics.regressor(motion.q, motion.v, motion.a)
 
-    def errors(self, rows: np.ndarray, i: int) -> np.ndarray:
+    def errors(self, rows: Floats, i: int) -> Floats:
         """Likely errors of the torque at joint i as independent columns, each with a standard
         deviation of one: of the rotor and, without a torque sensor, of the links.
         """
@@ -70,12 +71,13 @@ class Loads:
             return independent(rotor[:, None])
         return independent(np.column_stack([rotor, self.errors_of_links(rows, i)]))
 
-    def errors_of_links(self, rows: np.ndarray, i: int) -> np.ndarray:
+    def errors_of_links(self, rows: Floats, i: int) -> Floats:
         """The same of the model alone."""
         return independent(self.regressor[rows, i] * prior_std(self.arm, self.weights_share))
 
 
-def independent(columns: np.ndarray) -> np.ndarray:
+def independent(columns: Floats) -> Floats:
     """The same Gaussian process from as few columns as show it (principal components)."""
     values, vectors = np.linalg.eigh(columns.T @ columns / max(len(columns), 1))
-    return columns @ vectors[:, values > LEAST_NM**2]
+    found: Floats = columns @ vectors[:, values > LEAST_NM**2]
+    return found

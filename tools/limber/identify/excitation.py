@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from limber.arrays import Floats
 from limber.identify.arm import Arm
 from limber.model.scenario import active_with
 from limber.output import write_again
@@ -22,7 +23,7 @@ MARGIN = 0.05  # rad or m, from the ends of the joints
 WAYPOINTS = 20  # between two poses
 
 
-def poses(arm: Arm, spread: float, count: int, seed: int) -> np.ndarray:
+def poses(arm: Arm, spread: float, count: int, seed: int) -> Floats:
     """Within `spread` of home and the joints' limits; each joint from end to end of that range.
 
     Latin hypercube: every joint visits `count` different places (McKay, Beckman, Conover, 1979).
@@ -33,7 +34,7 @@ def poses(arm: Arm, spread: float, count: int, seed: int) -> np.ndarray:
     return low + (high - low) * np.array(share).T
 
 
-def within(arm: Arm, away: float) -> np.ndarray:
+def within(arm: Arm, away: float) -> Floats:
     """Home and so much further, as far as the joints' limits permit."""
     limits = arm.robot.joints
     return np.clip(
@@ -41,7 +42,7 @@ def within(arm: Arm, away: float) -> np.ndarray:
     )
 
 
-def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
+def timeline(arm: Arm, tour: Floats) -> tuple[list[dict], float]:
     """Entries and the time at which the last of them is over, s."""
     entries: list[dict] = [
         *active_with({"law": "joint_pd", "ramp_s": 0.2}),
@@ -61,7 +62,7 @@ def timeline(arm: Arm, tour: np.ndarray) -> tuple[list[dict], float]:
     return entries, at
 
 
-def reach(arm: Arm, tour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def reach(arm: Arm, tour: Floats) -> tuple[Floats, Floats]:
     """Corners of the box, base axes, that the tip stays in between the poses, m."""
     stops = np.array([arm.robot.home, *tour, arm.robot.home])
     share = np.linspace(0.0, 1.0, WAYPOINTS)[:, None]

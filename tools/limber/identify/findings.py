@@ -1,5 +1,6 @@
 """What an identification found: numbers with standard errors, refusals, and pictures of the fit."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -58,13 +59,11 @@ class Findings:
     notes: list[str] = field(default_factory=list)
     inertials: dict[str, tuple[float, np.ndarray]] = field(default_factory=dict)
 
-    def proposals(self) -> list[Value]:
-        """What robot.yaml should hold."""
-        return [
-            value
-            for value in self.values
-            if value.path is not None and value.proposed is not None and value.certain
-        ]
+    def proposals(self) -> Iterator[tuple[tuple[str, ...], float, Value]]:
+        """What robot.yaml should hold: keys, number, and what was found."""
+        for value in self.values:
+            if value.path is not None and value.proposed is not None and value.certain:
+                yield value.path, value.proposed, value
 
     def require_something(self) -> None:
         if not self.values:

@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.identify.arm import Arm, JointBelief
 from limber.identify.doubt import MASS_SHARE, Loads
 from limber.identify.findings import Findings, Panel, Value
@@ -112,9 +113,8 @@ def _beats_robot_yaml(joint: JointBelief, side: MotorSide, sensor: bool) -> bool
 
 def _still_better(joint: JointBelief, side: MotorSide, sensor: bool, values: list[Value]) -> bool:
     """Whether what is certain, beside what robot.yaml has of the rest, does better than that."""
-    certain = {value.path: value.proposed for value in values if value.certain}
     section = dict(joint.values.get(SECTION) or {})
-    section |= {path[-1]: number for path, number in certain.items()}
+    section |= {value.path[-1]: value.proposed for value in values if value.certain and value.path}
     mixed = replace(joint, values=joint.values | {SECTION: section})
     none, sections = side.unseen(), (SECTION,) if sensor else (SECTION, LINK_SECTION)
     left = [
@@ -124,11 +124,11 @@ def _still_better(joint: JointBelief, side: MotorSide, sensor: bool, values: lis
     return left[1] < left[0]
 
 
-def _rms(values: np.ndarray) -> float:
+def _rms(values: Floats) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _sliding(joint: JointBelief, section: str, speed: np.ndarray) -> np.ndarray:
+def _sliding(joint: JointBelief, section: str, speed: Floats) -> Floats:
     """Friction of robot.yaml on one side of the transmission, N m."""
     coulomb, viscous, static, stribeck = (
         joint.believed(section, joint.key(key)) or 0.0
@@ -137,7 +137,8 @@ def _sliding(joint: JointBelief, section: str, speed: np.ndarray) -> np.ndarray:
     total = np.sign(speed) * coulomb + viscous * speed
     if static > coulomb and stribeck > 0.0:
         total += (static - coulomb) * np.sign(speed) * np.exp(-((speed / stribeck) ** 2))
-    return total
+    friction: Floats = total
+    return friction
 
 
 def _warnings(side: MotorSide) -> list[str]:

@@ -6,6 +6,7 @@ believed: the weights are in the drives' own N m, which is what holds the arm up
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.identify.arm import Arm
 from limber.identify.doubt import Loads, prior_std
 from limber.identify.findings import Findings, Panel, Value
@@ -39,8 +40,8 @@ def identify(arm: Arm, motion: Motion) -> Findings:
     excess = _excess(loads)
     try:
         weights, before, after, kept = _best(loads, excess, used)
-    except PoorLogError as reason:
-        found.refused |= {arm.joints[i].name: str(reason) for i in used}
+    except PoorLogError as error:
+        found.refused |= {arm.joints[i].name: str(error) for i in used}
         return found
     found.values = _values(arm, weights) + _offsets(arm, weights, used)
     found.notes = _notes(arm, weights, used, before, after) + kept
@@ -60,8 +61,8 @@ def identify(arm: Arm, motion: Motion) -> Findings:
 
 
 def _best(
-    loads: Loads, excess: np.ndarray, used: list[int]
-) -> tuple[Weights, np.ndarray, np.ndarray, list[str]]:
+    loads: Loads, excess: Floats, used: list[int]
+) -> tuple[Weights, Floats, Floats, list[str]]:
     """An estimate, and what URDF and proposal leave of held-out torques; if offsets of the torques
     would take what weights have to explain, without offsets. Links whose change makes a joint worse
     stay as the URDF has them, if that helps: notes name them.
@@ -84,7 +85,7 @@ def _best(
     ]
 
 
-Judged = tuple[Weights, np.ndarray, np.ndarray]
+Judged = tuple[Weights, Floats, Floats]
 
 
 def _judged(loads: Loads, parts: list[Problem], used: list[int], kept: list[int]) -> Judged:
@@ -100,7 +101,8 @@ def _fewer(
     """Bodies left as they are, one after the other, whichever leaves least of the joints that the
     others make worse, until none is.
     """
-    arm, kept = loads.arm, []
+    arm = loads.arm
+    kept: list[int] = []
 
     def harm(judged: Judged) -> tuple[int, float]:
         share = judged[2] / judged[1]
@@ -115,7 +117,7 @@ def _fewer(
     return sorted(kept), found
 
 
-def _worse(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> list[str]:
+def _worse(arm: Arm, used: list[int], before: Floats, after: Floats) -> list[str]:
     """Joints, with what was and would be unexplained."""
     return [
         f"{arm.joints[i].name} ({after[k]:.3g} N m rms instead of {before[k]:.3g})"
@@ -124,7 +126,7 @@ def _worse(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> 
     ]
 
 
-def _no_better(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray) -> str:
+def _no_better(arm: Arm, used: list[int], before: Floats, after: Floats) -> str:
     """Why other weights than the URDF's are not proposed; empty if they are."""
     if not np.sum((after / before) ** 2) < ENOUGH * len(used):
         return "The URDF explains held-out torques as well: no other is proposed."
@@ -137,9 +139,7 @@ def _no_better(arm: Arm, used: list[int], before: np.ndarray, after: np.ndarray)
     return ""
 
 
-def _notes(
-    arm: Arm, weights: Weights, used: list[int], before: np.ndarray, after: np.ndarray
-) -> list[str]:
+def _notes(arm: Arm, weights: Weights, used: list[int], before: Floats, after: Floats) -> list[str]:
     fits = zip(used, before, after, strict=True)
     return [
         f"{weights.seen} combinations of masses, centres and inertias show in these torques. The "
@@ -190,15 +190,16 @@ def _swing(loads: Loads, i: int) -> float:
     return float(np.linalg.norm(np.ptp(Y, axis=0) * likely))
 
 
-def _excess(loads: Loads) -> np.ndarray:
+def _excess(loads: Loads) -> Floats:
     """Sensed torque or, without a sensor, motor torque, less what model and rotor need."""
     motion = loads.motion
     inertia = np.array([joint.rotor_inertia for joint in loads.arm.joints])
     driven = motion.motor - inertia * motion.theta_ddot
-    return np.where(motion.torque_sensor, loads.torque, driven) - loads.model
+    excess: Floats = np.where(motion.torque_sensor, loads.torque, driven) - loads.model
+    return excess
 
 
-def _of_urdf(arm: Arm, change: np.ndarray) -> np.ndarray:
+def _of_urdf(arm: Arm, change: Floats) -> Floats:
     """The change of all parameters that other masses and centres of the heaviest links make, their
     inertias about their centres left as they are.
     """
@@ -214,12 +215,13 @@ def _of_urdf(arm: Arm, change: np.ndarray) -> np.ndarray:
     return found
 
 
-def _about(mass: float, p: np.ndarray) -> np.ndarray:
+def _about(mass: float, p: Floats) -> Floats:
     """Inertia of a point mass."""
-    return mass * (p @ p * np.eye(3) - np.outer(p, p))
+    inertia: Floats = mass * (p @ p * np.eye(3) - np.outer(p, p))
+    return inertia
 
 
-def changed_link(arm: Arm, change: np.ndarray, i: int) -> tuple[str, float, np.ndarray]:
+def changed_link(arm: Arm, change: Floats, i: int) -> tuple[str, float, Floats]:
     """The heaviest link of body i with the mass and centre (its own frame) it should have."""
     body = arm.robot.dynamics.bodies[i]
     d_mass, d_moment = change[PARAMETERS * i], change[PARAMETERS * i + 1 : PARAMETERS * i + 4]
@@ -256,7 +258,7 @@ def _offsets(arm: Arm, weights: Weights, used: list[int]) -> list[Value]:
     ]
 
 
-def _panel(name: str, measured: np.ndarray, before: np.ndarray, after: np.ndarray) -> Panel:
+def _panel(name: str, measured: Floats, before: Floats, after: Floats) -> Panel:
     ends = np.array([after.min(), after.max()])
     return Panel(
         name,

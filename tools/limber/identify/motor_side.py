@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from limber.arrays import Floats, Integers
 from limber.identify.doubt import Loads
 from limber.identify.regression import Fit, PoorLogError, Unknowns, fit, held_out, unexplained
 
@@ -36,11 +37,11 @@ class MotorSide:
     """
 
     fit: Fit
-    load: np.ndarray  # with the rotor's inertia
-    motor: np.ndarray
-    speed: np.ndarray
-    block: np.ndarray
-    errors: np.ndarray
+    load: Floats  # with the rotor's inertia
+    motor: Floats
+    speed: Floats
+    block: Integers
+    errors: Floats
     known: bool
     stribeck_speed: float | None = None  # None: not seen
 
@@ -52,15 +53,16 @@ class MotorSide:
     def kappa_std(self) -> float:
         return float(self.fit.std[LOAD] * self.kappa**2)
 
-    def friction(self, speed: np.ndarray) -> np.ndarray:
+    def friction(self, speed: Floats) -> Floats:
         """In steady sliding, N m; true ones as far as kappa is."""
         x, sign = self.fit.x, np.sign(speed)
         believed = x[COULOMB] * sign + x[VISCOUS] * speed
         if self.stribeck_speed is not None:
             believed += x[STRIBECK] * sign * np.exp(-((speed / self.stribeck_speed) ** 2))
-        return self.kappa * believed
+        friction: Floats = self.kappa * believed
+        return friction
 
-    def unseen(self, *laws: int, errors: bool = False) -> np.ndarray:
+    def unseen(self, *laws: int, errors: bool = False) -> Floats:
         """What load, offset and these terms leave of the motor's torque, each sample by a fit to
         other parts of the recording. `errors`: with what was found to be wrong with the model.
         """
@@ -98,7 +100,7 @@ def balance(loads: Loads, i: int, known: bool = False) -> MotorSide:
     return _with_stribeck(replace(side, fit=_fit(side, None)))
 
 
-def _columns(side: MotorSide, speed: float | None, rise: float | None = None) -> np.ndarray:
+def _columns(side: MotorSide, speed: float | None, rise: float | None = None) -> Floats:
     """With `rise` the derivative by the Stribeck speed is a column, too: its standard error comes
     out.
     """
@@ -114,7 +116,7 @@ def _columns(side: MotorSide, speed: float | None, rise: float | None = None) ->
 
 def _problem(
     side: MotorSide, speed: float | None, rise: float | None = None
-) -> tuple[np.ndarray, np.ndarray, Unknowns]:
+) -> tuple[Floats, Floats, Unknowns]:
     """A x = y and what is allowed: friction does not drive, errors of the model have priors."""
     A, y = _columns(side, speed, rise), side.motor
     found = Unknowns.free(A.shape[1])
@@ -155,8 +157,8 @@ def _with_stribeck(side: MotorSide) -> MotorSide:
             return np.inf
 
     low, high = np.log(lowest), np.log(HIGHEST_STRIBECK)
-    options = {"xatol": STEP * (high - low)}
-    search = minimize_scalar(left, bounds=(low, high), method="bounded", options=options)
+    xatol = STEP * (high - low)
+    search = minimize_scalar(left, bounds=(low, high), method="bounded", options={"xatol": xatol})
     log_speed = float(search.x)
     if not EDGE < (log_speed - low) / (high - low) < 1.0 - EDGE:
         return _with_doubt(side)

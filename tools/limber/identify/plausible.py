@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from limber.arrays import Flags, Floats
 from limber.errors import InputError
 from limber.identify.arm import Arm
 from limber.identify.recording import Recording
@@ -29,10 +30,10 @@ SLIDING = {"millimetres": 1e-3, "centimetres": 1e-2}
 class Limits:
     """Of each joint, infinite where nobody knows: rad, rad/s, N m; m, m/s, N."""
 
-    low: np.ndarray
-    high: np.ndarray
-    speed: np.ndarray
-    torque: np.ndarray
+    low: Floats
+    high: Floats
+    speed: Floats
+    torque: Floats
 
 
 def check(recordings: list[Recording], arm: Arm) -> list[str]:
@@ -49,7 +50,7 @@ def check(recordings: list[Recording], arm: Arm) -> list[str]:
     return doubts
 
 
-def _require_positions(q: np.ndarray, limits: Limits, arm: Arm) -> None:
+def _require_positions(q: Floats, limits: Limits, arm: Arm) -> None:
     margin = BEYOND_ENDS * (limits.high - limits.low) + SLACK
     bad = (q.min(axis=0) < limits.low - margin) | (q.max(axis=0) > limits.high + margin)
     if not bad.any():
@@ -58,7 +59,7 @@ def _require_positions(q: np.ndarray, limits: Limits, arm: Arm) -> None:
     def fits(i: int, scale: float) -> bool:
         low, high = scale * q[:, i].min(), scale * q[:, i].max()
         inside = limits.low[i] - margin[i] <= low and high <= limits.high[i] + margin[i]
-        return inside and high - low > LEAST_SHARE * (limits.high[i] - limits.low[i])
+        return bool(inside and high - low > LEAST_SHARE * (limits.high[i] - limits.low[i]))
 
     told = [
         f"{joint.name} from {q[:, i].min():.4g} to {q[:, i].max():.4g}, its ends are "
@@ -79,7 +80,7 @@ def _require_speeds(recordings: list[Recording], limits: Limits, arm: Arm) -> No
 
     def fits(i: int, scale: float) -> bool:
         speed = scale * fastest[i]
-        return LEAST_SHARE * limits.speed[i] < speed < BEYOND_MOST * limits.speed[i]
+        return bool(LEAST_SHARE * limits.speed[i] < speed < BEYOND_MOST * limits.speed[i])
 
     told = [
         f"{joint.name} at up to {fastest[i]:.4g}, its limit is {limits.speed[i]:.4g} "
@@ -92,13 +93,14 @@ def _require_speeds(recordings: list[Recording], limits: Limits, arm: Arm) -> No
     )
 
 
-def _fastest(recording: Recording) -> np.ndarray:
+def _fastest(recording: Recording) -> Floats:
     steps = max(round(SPEED_OVER_s * recording.rate_hz), 1)
     moved = np.abs(recording.q[steps:] - recording.q[:-steps])
-    return np.percentile(moved, 99.9, axis=0) * recording.rate_hz / steps
+    fastest: Floats = np.percentile(moved, 99.9, axis=0) * recording.rate_hz / steps
+    return fastest
 
 
-def _torques(recordings: list[Recording]) -> list[tuple[str, np.ndarray]]:
+def _torques(recordings: list[Recording]) -> list[tuple[str, Floats]]:
     found = []
     if all(recording.motor_known for recording in recordings):
         found.append(("motor_torque", np.concatenate([r.motor for r in recordings])))
@@ -107,9 +109,7 @@ def _torques(recordings: list[Recording]) -> list[tuple[str, np.ndarray]]:
     return found
 
 
-def _require_torques(
-    name: str, values: np.ndarray, q: np.ndarray, limits: Limits, arm: Arm
-) -> None:
+def _require_torques(name: str, values: Floats, q: Floats, limits: Limits, arm: Arm) -> None:
     most = np.abs(values).max(axis=0)
     bad = most > BEYOND_MOST * limits.torque
     if not bad.any():
@@ -126,11 +126,12 @@ def _require_torques(
 
 
 def _torque_proposal(
-    name: str, most: np.ndarray, limits: Limits, values: np.ndarray, q: np.ndarray, arm: Arm
+    name: str, most: Floats, limits: Limits, values: Floats, q: Floats, arm: Arm
 ) -> str:
     """Thousandths of the rated torque, or mN m: what lies nearer to the weights' need."""
     needed = arm.robot.dynamics.gravity_torque(q)
-    ratios, scales = [], {"thousandths of the rated torque": [], "mN m": []}
+    ratios: list[tuple[int, float]] = []
+    scales: dict[str, list[float]] = {"thousandths of the rated torque": [], "mN m": []}
     for i, joint in enumerate(arm.joints):
         rated = float(joint.motor_values.get(joint.key("rated_torque_Nm"), limits.torque[i]))
         scales["thousandths of the rated torque"].append(1e-3 * rated)
@@ -147,14 +148,14 @@ def _torque_proposal(
         return "no usual unit would fit; `scale:` of the table turns them into N m"
 
     def misfit(unit: str) -> float:
-        return sum(abs(np.log(fitting[unit][i] / ratio)) for i, ratio in ratios)
+        return float(sum(abs(np.log(fitting[unit][i] / ratio)) for i, ratio in ratios))
 
     unit = min(fitting, key=misfit)
     scale = ", ".join(f"{value:.4g}" for value in fitting[unit])
     return f"{unit}? `scale: {{{name}: [{scale}]}}` in the table of the columns would fit"
 
 
-def _doubts(name: str, values: np.ndarray, q: np.ndarray, arm: Arm) -> list[str]:
+def _doubts(name: str, values: Floats, q: Floats, arm: Arm) -> list[str]:
     """Torques that go with the weight, but have another size or sign."""
     needed = arm.robot.dynamics.gravity_torque(q)
     found = []
@@ -170,7 +171,7 @@ def _doubts(name: str, values: np.ndarray, q: np.ndarray, arm: Arm) -> list[str]
     return found
 
 
-def _ratio(measured: np.ndarray, needed: np.ndarray) -> tuple[float, float]:
+def _ratio(measured: Floats, needed: Floats) -> tuple[float, float]:
     """What `measured` is to be multiplied by, and the correlation of the two about zero."""
     square = float(measured @ measured) * float(needed @ needed)
     if not square > 0.0:
@@ -179,9 +180,9 @@ def _ratio(measured: np.ndarray, needed: np.ndarray) -> tuple[float, float]:
     return product / float(measured @ measured), product / float(np.sqrt(square))
 
 
-def _proposal(key: str, bad: np.ndarray, fits: Callable[[int, float], bool], arm: Arm) -> str:
+def _proposal(key: str, bad: Flags, fits: Callable[[int, float], bool], arm: Arm) -> str:
     """A usual unit that all joints would fit in."""
-    chosen = np.flatnonzero(bad)
+    chosen = np.flatnonzero(bad).tolist()
     kinds = [SLIDING if arm.joints[i].prismatic else ROTARY for i in range(len(arm.joints))]
     for rotary, sliding in zip(ROTARY, SLIDING, strict=True):
         names = [sliding if kind is SLIDING else rotary for kind in kinds]

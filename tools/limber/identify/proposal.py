@@ -10,6 +10,7 @@ In the folder of the results, for an identification called NAME:
 
 import difflib
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -32,13 +33,14 @@ def write(found: Findings, arm: Arm, name: str, folder: Path) -> list[Path]:
 
 def _yaml(found: Findings, arm: Arm, name: str) -> dict[str, str]:
     text = arm.yaml.read_text(encoding="utf-8")
-    changes, merged = {}, text
-    for value in found.proposals():
-        if value.path in changes:
+    changes: dict[tuple[str, ...], Any] = {}
+    merged = text
+    for path, proposed, _ in found.proposals():
+        if path in changes:
             continue
-        number = f"{value.proposed:.{DIGITS}g}"
-        changes[value.path] = yaml.safe_load(number)
-        merged = set_number(merged, value.path, number)
+        number = f"{proposed:.{DIGITS}g}"
+        changes[path] = yaml.safe_load(number)
+        merged = set_number(merged, path, number)
     if not changes:
         return {}
     return {

@@ -20,6 +20,8 @@ from scipy.linalg import cho_factor, cholesky, solve_triangular
 from scipy.linalg import cho_solve as solve_factored
 from scipy.optimize import lsq_linear
 
+from limber.arrays import Flags, Floats, Integers
+
 WORST_CONDITION = 1000.0
 FLOOR = 1e-4  # no torque is known better, N m; no deflection matters below it, either
 ROUNDS = 3
@@ -34,12 +36,12 @@ class PoorLogError(Exception):
 
 @dataclass(frozen=True)
 class Fit:
-    x: np.ndarray
-    covariance: np.ndarray
-    residual: np.ndarray
+    x: Floats
+    covariance: Floats
+    residual: Floats
 
     @property
-    def std(self) -> np.ndarray:
+    def std(self) -> Floats:
         return np.sqrt(np.diag(self.covariance))
 
     @property
@@ -51,9 +53,9 @@ class Fit:
 class Unknowns:
     """Of a fit, one entry each: how far from 0 they are likely to be, and what is allowed."""
 
-    prior: np.ndarray  # inf: nothing is known
-    low: np.ndarray
-    high: np.ndarray
+    prior: Floats  # inf: nothing is known
+    low: Floats
+    high: Floats
 
     @classmethod
     def free(cls, count: int) -> "Unknowns":
@@ -61,9 +63,9 @@ class Unknowns:
 
 
 def fit(
-    A: np.ndarray,
-    y: np.ndarray,
-    block: np.ndarray,
+    A: Floats,
+    y: Floats,
+    block: Integers,
     unknowns: Unknowns | None = None,
     together: float | None = None,
 ) -> Fit:
@@ -82,15 +84,15 @@ def fit(
     return Fit(x, covariance, residual)
 
 
-def unexplained(A: np.ndarray, y: np.ndarray, block: np.ndarray, unknowns: Unknowns) -> float:
+def unexplained(A: Floats, y: Floats, block: Integers, unknowns: Unknowns) -> float:
     """rms."""
     x, _, _ = solve(A, y, len(y) / len(np.unique(block)), unknowns)
     return float(np.sqrt(np.mean((y - A @ x) ** 2)))
 
 
 def held_out(
-    A: np.ndarray, y: np.ndarray, block: np.ndarray, unknowns: Unknowns, shown: np.ndarray
-) -> np.ndarray:
+    A: Floats, y: Floats, block: Integers, unknowns: Unknowns, shown: Integers | Flags
+) -> Floats:
     """What is left of y by the columns `shown`, each sample by a fit that has not seen its part of
     the recording.
     """
@@ -103,23 +105,23 @@ def held_out(
     return left
 
 
-def folds(block: np.ndarray) -> Iterator[np.ndarray]:
+def folds(block: Integers) -> Iterator[Flags]:
     """Rows of each of FOLDS parts of the recording, one after the other in time."""
     for part in np.array_split(np.unique(block), FOLDS):
         yield np.isin(block, part)
 
 
-def _require_different(A: np.ndarray) -> None:
+def _require_different(A: Floats) -> None:
     scale = np.linalg.norm(A, axis=0)
     if not np.all(scale > 0) or not np.linalg.cond(A / scale) <= WORST_CONDITION:
         raise PoorLogError("the motion is too uniform to separate the unknowns")
 
 
 def solve(
-    A: np.ndarray, y: np.ndarray, together: float, unknowns: Unknowns
-) -> tuple[np.ndarray, float, np.ndarray]:
+    A: Floats, y: Floats, together: float, unknowns: Unknowns
+) -> tuple[Floats, float, Floats]:
     """Estimate, 1/(s² T) and H; s follows from what stays unexplained. `together`: T."""
-    x = np.zeros(A.shape[1])
+    x: Floats = np.zeros(A.shape[1])
     gram, moment = A.T @ A, A.T @ y
     prior = np.diag(unknowns.prior**-2.0)
     sigma = max(float(np.std(y)), FLOOR)
@@ -131,7 +133,7 @@ def solve(
     return x, weight, H
 
 
-def bounded(H: np.ndarray, h: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def bounded(H: Floats, h: Floats, low: Floats, high: Floats) -> Floats:
     """The x within bounds that minimises xᵀ H x / 2 - hᵀ x."""
     scale = np.sqrt(np.diag(H))
     try:
@@ -146,26 +148,27 @@ def bounded(H: np.ndarray, h: np.ndarray, low: np.ndarray, high: np.ndarray) -> 
 
 
 def _covariance(
-    A: np.ndarray,
-    residual: np.ndarray,
-    block: np.ndarray,
+    A: Floats,
+    residual: Floats,
+    block: Integers,
     weight: float,
-    H: np.ndarray,
-    prior: np.ndarray,
-) -> np.ndarray:
+    H: Floats,
+    prior: Floats,
+) -> Floats:
     inverse = np.linalg.inv(H)
-    found = [_jackknife(A, residual, block // length, weight, H) for length in JOINED]
-    found = [cov for cov in found if cov is not None]
+    tried = [_jackknife(A, residual, block // length, weight, H) for length in JOINED]
+    found = [cov for cov in tried if cov is not None]
     if not found:
         raise PoorLogError("too little motion: its parts cannot be compared with each other")
     scale = np.sqrt(np.diag(inverse))
     largest = max(found, key=lambda cov: float(np.sum(np.diag(cov) / scale**2)))
-    return largest + inverse @ np.diag(prior**-2.0) @ inverse
+    covariance: Floats = largest + inverse @ np.diag(prior**-2.0) @ inverse
+    return covariance
 
 
 def _jackknife(
-    A: np.ndarray, residual: np.ndarray, group: np.ndarray, weight: float, H: np.ndarray
-) -> np.ndarray | None:
+    A: Floats, residual: Floats, group: Integers, weight: float, H: Floats
+) -> Floats | None:
     """None if there are too few groups, or one of them alone shows an unknown."""
     order = np.argsort(group, kind="stable")
     A, residual, group = A[order], residual[order], group[order]
@@ -182,7 +185,8 @@ def _jackknife(
             return None
         steps.append(solve_factored(factor, weight * part.T @ residual[rows]))
     d = np.array(steps)
-    return (count - 1) / count * d.T @ d
+    covariance: Floats = (count - 1) / count * d.T @ d
+    return covariance
 
 
 def ratio(fitted: Fit, above: tuple[int, ...], below: int) -> tuple[float, float]:

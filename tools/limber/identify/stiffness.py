@@ -11,6 +11,7 @@ then biases nothing. For two motors with quadratic springs, preload c and equili
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.identify.arm import Arm, JointBelief
 from limber.identify.findings import AGAINST_URDF, Findings, Panel, Value
 from limber.identify.motion import Motion
@@ -58,13 +59,14 @@ def _key(joint: JointBelief, link_encoder: bool) -> str:
     return joint.key(KEYS[kind])
 
 
-def _bend(joint: JointBelief, motion: Motion, i: int) -> np.ndarray:
+def _bend(joint: JointBelief, motion: Motion, i: int) -> Floats:
     """What the torque is proportional to."""
     deflection = motion.theta[:, i] - motion.q[:, i]
-    return 2.0 * motion.preload[:, i] * deflection if joint.two_motors else deflection
+    bend: Floats = 2.0 * motion.preload[:, i] * deflection if joint.two_motors else deflection
+    return bend
 
 
-def _fit(motion: Motion, tau: np.ndarray, bend: np.ndarray, i: int, sensed: bool) -> Fit:
+def _fit(motion: Motion, tau: Floats, bend: Floats, i: int, sensed: bool) -> Fit:
     columns, block = [tau, np.ones_like(tau)], motion.block
     if motion.moving[:, i].any():
         columns.append(_travel(motion, columns, bend, i))
@@ -83,11 +85,12 @@ def _fit(motion: Motion, tau: np.ndarray, bend: np.ndarray, i: int, sensed: bool
     return fitted
 
 
-def _travel(motion: Motion, columns: list[np.ndarray], bend: np.ndarray, i: int) -> np.ndarray:
+def _travel(motion: Motion, columns: list[Floats], bend: Floats, i: int) -> Floats:
     """How far the link goes during a delay, per second of it, to second order."""
     v = motion.v[:, i]
     first = fit(np.column_stack([*columns, v]), bend, motion.block)
-    return v + first.x[DELAY] / 2.0 * motion.a[:, i]
+    travel: Floats = v + first.x[DELAY] / 2.0 * motion.a[:, i]
+    return travel
 
 
 def _value(joint: JointBelief, key: str, fitted: Fit) -> Value:
@@ -111,7 +114,7 @@ def _delay(joint: JointBelief, fitted: Fit) -> list[Value]:
 
 
 def _panel(
-    joint: JointBelief, tau: np.ndarray, bend: np.ndarray, fitted: Fit, believed: float | None
+    joint: JointBelief, tau: Floats, bend: Floats, fitted: Fit, believed: float | None
 ) -> Panel:
     ends = np.array([tau.min(), tau.max()])
     offset = fitted.x[1]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from limber.model.xml_file import read_xml
+from limber.model.xml_file import attribute, inside, read_xml
 
 DIGITS = 5
 
@@ -16,11 +16,12 @@ def with_inertials(urdf: Path, changes: dict[str, tuple[float, np.ndarray]]) -> 
     """
     root = read_xml(urdf, comments=True)
     for link in root.findall("link"):
-        if link.get("name") not in changes:
+        name = attribute(link, "name", urdf)
+        if name not in changes:
             continue
-        mass, com = changes[link.get("name")]
-        inertial = link.find("inertial")
-        inertial.find("mass").set("value", f"{mass:.{DIGITS}g}")
+        mass, com = changes[name]
+        inertial = inside(link, "inertial", urdf)
+        inside(inertial, "mass", urdf).set("value", f"{mass:.{DIGITS}g}")
         origin = inertial.find("origin")
         if origin is None:
             origin = ElementTree.SubElement(inertial, "origin")

@@ -28,11 +28,13 @@ from limber.paths import captured, program
 
 @dataclass(frozen=True)
 class Proposal:
-    """`folder`: the robot as it is proposed; `changed`: numbers of robot.yaml that differ."""
+    """`folder`: the robot as it is proposed; `changed`: keys of robot.yaml whose
+    numbers differ -> the number, and what was found.
+    """
 
     folder: Path
     found: list[Findings]
-    changed: list[Value]
+    changed: dict[tuple[str, ...], tuple[float, Value]]
 
 
 def propose(arm: Arm, motion: Motion, weights_known: float | None, folder: Path) -> Proposal:
@@ -50,14 +52,14 @@ def propose(arm: Arm, motion: Motion, weights_known: float | None, folder: Path)
         friction.identify(changed_arm, motion, weights_known),
         stiffness.identify(changed_arm, motion),
     ]
-    changed: dict[tuple[str, ...], Value] = {}
+    changed: dict[tuple[str, ...], tuple[float, Value]] = {}
     text = (folder / "robot.yaml").read_text(encoding="utf-8")
-    for value in (value for findings in found for value in findings.proposals()):
-        if value.path not in changed:
-            changed[value.path] = value
-            text = set_number(text, value.path, f"{value.proposed:.{DIGITS}g}")
+    for path, number, value in (change for findings in found for change in findings.proposals()):
+        if path not in changed:
+            changed[path] = number, value
+            text = set_number(text, path, f"{number:.{DIGITS}g}")
     write_again(folder / "robot.yaml", text)
-    return Proposal(folder, found, list(changed.values()))
+    return Proposal(folder, found, changed)
 
 
 def expected_sag(arm: Arm, poses: StaticPoses) -> float:
@@ -117,8 +119,8 @@ def scenario_with(scenario: Path, arm: Arm, proposal: Proposal, path: Path) -> P
     beside = arm.robot.folder / overrides.get("urdf", arm.robot.urdf.name)
     copy_new(beside, proposal.folder / "as_it_was.urdf")
     truth: dict[str, Any] = {}
-    for value in proposal.changed:
-        _put(truth, value.path, _as_it_was(arm, value))
+    for keys, (number, value) in proposal.changed.items():
+        _put(truth, keys, _as_it_was(arm, keys, number, value))
     _merge(truth, overrides)
     content |= {
         "robot": str(proposal.folder.resolve()),
@@ -128,14 +130,14 @@ def scenario_with(scenario: Path, arm: Arm, proposal: Proposal, path: Path) -> P
     return path
 
 
-def _as_it_was(arm: Arm, value: Value) -> float:
+def _as_it_was(arm: Arm, path: tuple[str, ...], proposed: float, value: Value) -> float:
     """Breakaway that robot.yaml did not name was Coulomb's."""
     if value.believed is not None:
         return value.believed
     joint = next(joint for joint in arm.joints if joint.name == value.joint)
-    if value.path[-1] == joint.key(friction.STATIC_KEY):
-        return joint.believed(value.path[-2], joint.key(friction.COULOMB_KEY)) or 0.0
-    return value.proposed if value.path[-1] == joint.key(friction.STRIBECK_KEY) else 0.0
+    if path[-1] == joint.key(friction.STATIC_KEY):
+        return joint.believed(path[-2], joint.key(friction.COULOMB_KEY)) or 0.0
+    return proposed if path[-1] == joint.key(friction.STRIBECK_KEY) else 0.0
 
 
 def _put(tree: dict[str, Any], path: tuple[str, ...], value: float) -> None:

@@ -13,6 +13,8 @@ from enum import Enum
 
 import numpy as np
 
+from limber.arrays import Flags, Floats
+
 STILL_S = 0.5  # at rest: in that time no joint changes by more than ...
 STILL = 0.05  # ... this share of its amount
 SAG_PER_S = 0.05  # shares of the amount, by which the start follows a joint that is not turned
@@ -39,9 +41,10 @@ class Finding:
     joints: tuple[int, ...]
 
 
-def amounts(slides: np.ndarray, ranges: np.ndarray, angle: float, length: float) -> np.ndarray:
+def amounts(slides: Flags, ranges: Floats, angle: float, length: float) -> Floats:
     """By how much each joint is to be turned, rad or m; less where its range is small."""
-    return np.minimum(np.where(slides, length, angle), SHARE_OF_RANGE * ranges)
+    found: Floats = np.minimum(np.where(slides, length, angle), SHARE_OF_RANGE * ranges)
+    return found
 
 
 def direction(q: float, low: float, high: float, amount: float) -> int:
@@ -56,13 +59,13 @@ class Step:
     rest); `amounts`: of each joint. `q`: the newest readings, not finite where there is none.
     """
 
-    def __init__(self, joint: int, way: int, amounts: np.ndarray) -> None:
+    def __init__(self, joint: int, way: int, amounts: Floats) -> None:
         self.joint, self.way = joint, way
         self.amounts = np.asarray(amounts, float)
         self.missing: tuple[int, ...] = ()  # joints without a reading
         self.moving: tuple[int, ...] = ()  # joints whose rest is awaited
-        self._window: deque[tuple[float, np.ndarray]] = deque()
-        self._start: np.ndarray | None = None
+        self._window: deque[tuple[float, Floats]] = deque()
+        self._start: Floats | None = None
         self._apart = self._start_apart = np.zeros(len(self.amounts))
         self.q = np.full(len(self.amounts), np.nan)
         self._time_s = -np.inf
@@ -74,17 +77,19 @@ class Step:
         return self._start is not None
 
     @property
-    def change(self) -> np.ndarray:
+    def change(self) -> Floats:
         """Of each joint since the step began, rad or m; not finite where nothing is known."""
-        return self.q - (self.q if self._start is None else self._start)
+        change: Floats = self.q - (self.q if self._start is None else self._start)
+        return change
 
     @property
-    def shares(self) -> np.ndarray:
+    def shares(self) -> Floats:
         """The same in shares of the amounts."""
-        return self.change / self.amounts
+        shares: Floats = self.change / self.amounts
+        return shares
 
     def take(
-        self, time_s: float, q: np.ndarray, fresh: np.ndarray, apart: np.ndarray | None = None
+        self, time_s: float, q: Floats, fresh: Flags, apart: Floats | None = None
     ) -> Finding | None:
         """Readings of all joints; those that are not fresh or not finite do not count. `apart`: of
         the link's encoders, by how much they read more than the motors'.

@@ -60,7 +60,8 @@ class JointKeys:
 def read_keys(path: Path, names: list[str]) -> list[JointKeys]:
     """Of the joints of robot.yaml, in the order of `names`."""
     root = yaml.compose(path.read_text(encoding="utf-8"))
-    joints = next((v for k, v in root.value if k.value == "joints"), None)
+    entries = root.value if isinstance(root, yaml.MappingNode) else []
+    joints = next((v for k, v in entries if k.value == "joints"), None)
     found = {k.value: (k, v) for k, v in joints.value} if joints is not None else {}
     missing = [name for name in names if name not in found]
     if missing:

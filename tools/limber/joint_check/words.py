@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.model.robot import Robot
 from limber.model.urdf import MOVING
 
@@ -12,7 +13,7 @@ VERTICAL = 0.9
 SEEN_M = 0.01  # a way of the tip that can be seen
 
 
-def direction_words(v: np.ndarray, gravity: np.ndarray) -> str:
+def direction_words(v: Floats, gravity: Floats) -> str:
     """Such as "forward (+x) and up (+z)", base axes, the longest component first."""
     length = np.abs(v)
     named = [int(i) for i in np.argsort(-length, kind="stable") if length[i] > SIDE * length.max()]
@@ -20,7 +21,7 @@ def direction_words(v: np.ndarray, gravity: np.ndarray) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _axis_word(axis: int, positive: bool, gravity: np.ndarray) -> str:
+def _axis_word(axis: int, positive: bool, gravity: Floats) -> str:
     letter = f"{'+' if positive else '-'}{LETTERS[axis]}"
     weight = float(np.linalg.norm(gravity))
     upright = -gravity / weight if weight > 0 else np.zeros(3)
@@ -43,7 +44,7 @@ def amount_words(amount: float, slide: bool) -> str:
     return f"{abs(amount):.2g} rad ({np.degrees(abs(amount)):.0f}°)"
 
 
-def motion_words(robot: Robot, joint: int, q: np.ndarray, change: float) -> str:
+def motion_words(robot: Robot, joint: int, q: Floats, change: float) -> str:
     """What a hand is to do for this change of a joint at this pose, and what moves where."""
     axis = robot.dynamics.frames(q[None]).z[joint, 0]
     pointing = direction_words(axis, robot.gravity)
@@ -60,7 +61,7 @@ def motion_words(robot: Robot, joint: int, q: np.ndarray, change: float) -> str:
     )
 
 
-def _moves(robot: Robot, joint: int, q: np.ndarray, change: float) -> str:
+def _moves(robot: Robot, joint: int, q: Floats, change: float) -> str:
     there = np.array(q, float)
     there[joint] += change
     before, after = (robot.chain.forward(pose)[:3, 3] for pose in (q, there))
@@ -74,7 +75,7 @@ def _moves(robot: Robot, joint: int, q: np.ndarray, change: float) -> str:
     return f"the tip stays where it is; {_turned_side(robot, joint, q, change)}"
 
 
-def _way_words(way: np.ndarray, gravity: np.ndarray) -> str:
+def _way_words(way: Floats, gravity: Floats) -> str:
     far = float(np.linalg.norm(way))
     length = f"{100 * far:.0f} cm" if far >= 0.03 else f"{1e3 * far:.0f} mm"
     return f"{direction_words(way, gravity)}, {length}"
@@ -84,14 +85,15 @@ def _child(robot: Robot, joint: int) -> str:
     return [j.child for j in robot.chain.joints if j.kind in MOVING][joint]
 
 
-def _centre(robot: Robot, joint: int, q: np.ndarray) -> np.ndarray:
+def _centre(robot: Robot, joint: int, q: Floats) -> Floats:
     """Centre of mass of what is between this joint and the next, base axes."""
     frames, body = robot.dynamics.frames(q[None]), robot.dynamics.bodies[joint]
     centre = body.moment / body.mass if body.mass > 0 else np.zeros(3)
-    return frames.p[joint, 0] + frames.R[joint, 0] @ centre
+    found: Floats = frames.p[joint, 0] + frames.R[joint, 0] @ centre
+    return found
 
 
-def _turned_side(robot: Robot, joint: int, q: np.ndarray, change: float) -> str:
+def _turned_side(robot: Robot, joint: int, q: Floats, change: float) -> str:
     """That axis of the tip which is farthest from the joint's, and where its end goes."""
     z = robot.dynamics.frames(q[None]).z[joint, 0]
     R = robot.chain.forward(q)[:3, :3]

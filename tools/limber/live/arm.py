@@ -13,7 +13,7 @@ from limber.live.arm_world import World
 from limber.live.gains_message import gains as gains_message
 
 
-class Arm(Modes, Motions, World, AbstractContextManager):
+class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
     """The arm of the stack that runs on this machine.
 
         from limber import Arm

@@ -1,5 +1,6 @@
 """Modes of a running arm: enabled, held, soft, stopped."""
 
+from collections.abc import Callable
 from typing import Any
 
 from limber.live.arm_base import POWER_S, ArmBase, check_fault
@@ -89,9 +90,12 @@ class Modes(ArmBase):
         arm without brakes sinks. `release` permits that; None: on simulated arms only. Raises
         RecoveryError with the step that failed and why.
         """
-        release = self.simulated if release is None else release
-        steps = {"acknowledge": self._acknowledge_steady, "active": self.activate}
-        steps["hold"] = lambda limit_s: self._hold_again(limit_s, release)
+        may = self.simulated if release is None else release
+        steps: dict[str, Callable[[float], None]] = {
+            "acknowledge": self._acknowledge_steady,
+            "hold": lambda limit_s: self._hold_again(limit_s, may),
+            "active": self.activate,
+        }
         step = "wait"
         try:
             self.wait(until=lambda state: bool(TAKES[state.mode.upper()]), timeout_s=timeout_s)

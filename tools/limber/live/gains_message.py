@@ -113,4 +113,5 @@ def _within(row: dict[str, Any], given: np.ndarray) -> np.ndarray:
 
 def _field(message: Any, key: str) -> str:
     """Of the message; the key adds a unit to its name."""
-    return next(name for name in message.__slots__ if key == name or key.startswith(f"{name}_"))
+    names: list[str] = message.__slots__
+    return next(name for name in names if key == name or key.startswith(f"{name}_"))

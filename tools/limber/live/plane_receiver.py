@@ -67,7 +67,8 @@ class PlaneReceiver:
 
     def malformed(self) -> int:
         """Datagrams that are no messages of LCM's, and were left out."""
-        return _library().limber_receiver_malformed(self._receiver)
+        count: int = _library().limber_receiver_malformed(self._receiver)
+        return count
 
     def close(self) -> None:
         if self._receiver is not None:

@@ -9,7 +9,7 @@ import struct
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
@@ -77,7 +77,7 @@ class ChannelState:
     def __post_init__(self) -> None:
         wire = messages.dtype_of(self.type_name)
         self._fingerprint = messages.fingerprint_of(self.type_name).to_bytes(8, "big")
-        self._counts = self.numbered and wire is not None and "seq" in wire.fields
+        self._counts = self.numbered and wire is not None and "seq" in (wire.fields or {})
         self._head = _head_of(wire, self._counts)
         self._next_seq: dict[int | bytes, int] = {}  # of each sender
 
@@ -113,7 +113,7 @@ class ChannelState:
         return time.monotonic() - self.last_s if self.count else float("inf")
 
 
-def _head_of(wire: np.dtype | None, counts: bool) -> Callable[[bytes], tuple]:
+def _head_of(wire: np.dtype | None, counts: bool) -> Callable[[bytes], tuple[Any, ...]]:
     """Reads fingerprint, seq and the run of the sender of a message, the latter two if they count
     and are there, else empty bytes; struct.error if its size is another.
     """
@@ -121,7 +121,8 @@ def _head_of(wire: np.dtype | None, counts: bool) -> Callable[[bytes], tuple]:
         return struct.Struct(">8s0s0s").unpack_from
     head = ">8s0s0s"
     if counts:  # seq is the first field
-        sender_at = next((wire.fields[name][1] for name in SENDERS if name in wire.fields), None)
+        fields: Mapping[str, tuple[Any, ...]] = wire.fields or {}
+        sender_at = next((fields[name][1] for name in SENDERS if name in fields), None)
         head = ">8sq0s" if sender_at is None else f">8sq{sender_at - 16}xq"
     return struct.Struct(f"{head}{wire.itemsize - struct.calcsize(head)}x").unpack
 

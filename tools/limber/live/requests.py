@@ -83,7 +83,7 @@ def _accepted(answer: Any, link: StackLink) -> Any:
     if cause is None:
         raise RefusedError("request", answer.reason)
     if answer.code == answer.REFUSED_MODE:
-        mode = int(link.receiver.newest("CONTROLLER_STATUS")["mode"])
+        mode = int(link.records()[1]["mode"])
         words = in_words_of(answer, messages.constants("controller_status_t", "MODE_")[mode])
         raise RefusedError(cause.code, words)
     raise RefusedError(cause.code, answer.reason, cause.remedy)

@@ -6,11 +6,14 @@ from difflib import get_close_matches
 import numpy as np
 from numpy.typing import ArrayLike
 
+from limber.arrays import Floats
 from limber.errors import InputError
 from limber.live.meant import meant
 
 
-def numbers(key: str, value: ArrayLike, shape: tuple[int, ...], one_for_all: bool = False):
+def numbers(
+    key: str, value: ArrayLike, shape: tuple[int, ...], one_for_all: bool = False
+) -> Floats:
     """`value` as finite floats of `shape`; with `one_for_all` a single number stands for each."""
     try:
         given = np.asarray(value, float)
@@ -34,13 +37,14 @@ def number(key: str, value: float, low: float = -np.inf, high: float = np.inf) -
     return given
 
 
-def unit(key: str, value: ArrayLike, size: int) -> np.ndarray:
+def unit(key: str, value: ArrayLike, size: int) -> Floats:
     """A vector of length 1 within rounding, made exactly so."""
     given = numbers(key, value, (size,))
     length = float(np.linalg.norm(given))
     if not abs(length - 1.0) <= 1e-3:
         raise InputError(f"{key}: has length {length:g}; expected 1")
-    return given / length
+    exact: Floats = given / length
+    return exact
 
 
 def one_of(what: str, word: str, known: Iterable[str]) -> str:

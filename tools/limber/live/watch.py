@@ -135,7 +135,7 @@ class View:
     def _drives_on(state: np.void) -> bool:
         """A fault of before is over."""
         kinds = messages.message_class("joint_state_t")
-        return int(state["drive_state"]) == kinds.DRIVE_ON
+        return bool(state["drive_state"] == kinds.DRIVE_ON)
 
     def _stale(self, channel: str) -> bool:
         last = self.receiver.channels[channel]

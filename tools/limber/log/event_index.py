@@ -9,6 +9,7 @@ import mmap
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from limber.log.event_file import (
     HEADER,
@@ -99,7 +100,8 @@ def _sync_words(data: np.ndarray) -> np.ndarray:
     return np.concatenate(pieces) if pieces else np.empty(0, np.int64)
 
 
-def bytes_of(data: mmap.mmap | np.ndarray, begins: np.ndarray, size: int) -> np.ndarray:
+def bytes_of(data: mmap.mmap | np.ndarray, begins: np.ndarray, size: int) -> NDArray[np.uint8]:
     """The `size` bytes from each of these places on, uint8, one row a place."""
     overlapping = np.ndarray(max(len(data) - size + 1, 0), f"V{size}", data, strides=(1,))
-    return overlapping[begins].view(np.uint8).reshape(len(begins), size)
+    found: NDArray[np.uint8] = overlapping[begins].view(np.uint8).reshape(len(begins), size)
+    return found

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.log.reader import Log, time_s
 from limber.log.rows import stretches
 from limber.messages import CLIENTS, constants, message_class
 from limber.problems import Problem, groups, problem
 
 # What of the messages tells of events: a long log fits into memory
-STATE_FIELDS = ("num_joints", "joint_flags", "sensor_state", "emergency_stop")
+STATE_FIELDS: tuple[str, ...] = ("num_joints", "joint_flags", "sensor_state", "emergency_stop")
 STATE_FIELDS += ("drive_state", "fault", "fault_joint")
 STATUS_FIELDS = ("mode", "reason", "reason_joint", "law", "limits")
 TRUTH_FIELDS = ("F_push", "contact", "F_contact")
@@ -163,10 +164,11 @@ def _refused_commands(driver: np.ndarray) -> Iterator[Event]:
                 yield Event(float(t[row]), "driver", text, bad=True)
 
 
-def _requested_s(state: np.ndarray) -> np.ndarray:
+def _requested_s(state: np.ndarray) -> Floats:
     """When the drives hold or brake because somebody wanted it."""
     requested = state["fault"] == message_class("joint_state_t").FAULT_REQUESTED
-    return time_s(state)[requested]
+    times_s: Floats = time_s(state)[requested]
+    return times_s
 
 
 def _modes(status: np.ndarray, names: Names, requested_s: np.ndarray) -> Iterator[Event]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.lib import recfunctions
 
 from limber import messages
+from limber.arrays import Flags
 from limber.errors import InputError
 from limber.log import runs
 from limber.log.event_file import Damage, contents, events
@@ -47,8 +48,8 @@ class Log:
         by = next((channel for channel in runs.BY if channel in self.channels), None)
         if by is None:
             return [begin, end]
-        wire = messages.dtype_of(self.type_of(by))
-        fields = [name for name in ("time_ns", "session") if name in wire.names]
+        known = self._wire(by).names or ()
+        fields = [name for name in ("time_ns", "session") if name in known]
         records = self.fields(by, *fields)
         fits = self._good(by)
         offsets = self.channels[by].offsets[fits]
@@ -150,7 +151,7 @@ class Log:
         """
         type_name = self.type_of(channel)
         wire = messages.dtype_of(type_name) if type_name else None
-        if wire is None:
+        if type_name is None or wire is None:
             raise InputError(
                 f"channel '{channel}' has no fixed-size limber type; this log has: "
                 + ", ".join(sorted(self.channels))
@@ -201,13 +202,25 @@ class Log:
             return count - int(np.count_nonzero(self._good(channel)))
         return count - sum(1 for _ in self.each(channel))
 
-    def _good(self, channel: str) -> np.ndarray:
+    def _good(self, channel: str) -> Flags:
         """Which messages of a fixed-size channel are of this version."""
-        events, type_name = self.channels[channel], self.type_of(channel)
-        good = events.sizes == messages.dtype_of(type_name).itemsize
+        events = self.channels[channel]
+        good: Flags = events.sizes == self._wire(channel).itemsize
         starts = bytes_of(self._data, events.offsets[good], 8).view(">u8")[:, 0]
-        good[good] = starts == messages.fingerprint_of(type_name)
+        good[good] = starts == messages.fingerprint_of(self._type(channel))
         return good
+
+    def _type(self, channel: str) -> str:
+        """Of one of limber's channels."""
+        type_name = self.type_of(channel)
+        assert type_name is not None
+        return type_name
+
+    def _wire(self, channel: str) -> np.dtype[np.void]:
+        """Layout of a fixed-size channel."""
+        wire = messages.dtype_of(self._type(channel))
+        assert wire is not None
+        return wire
 
     def lost(self, channel: str) -> int:
         """Messages that never arrived, by gaps in the sequence number (the first field of each) of
@@ -284,7 +297,7 @@ def time_s(records: np.ndarray) -> np.ndarray:
     return records["time_ns"] * 1e-9
 
 
-def count_gaps(sequence: np.ndarray) -> tuple[int, int]:
+def count_gaps(sequence: np.ndarray) -> int:
     """Missing numbers. A number that goes back is a new run of the sender, not a loss."""
     steps = np.diff(sequence)[~_far(sequence)]
     return int((steps[steps > 1] - 1).sum())

@@ -4,12 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from limber.arrays import Flags, Records
 from limber.messages import message_class
 
 
-def active(status: np.ndarray) -> np.ndarray:
+def active(status: Records) -> Flags:
     """True where a control law runs, for each row of CONTROLLER_STATUS."""
-    return status["mode"] == message_class("controller_status_t").MODE_ACTIVE
+    acts: Flags = status["mode"] == message_class("controller_status_t").MODE_ACTIVE
+    return acts
 
 
 def stretches(t: np.ndarray, acts: np.ndarray, pause_s: float) -> Iterator[slice]:

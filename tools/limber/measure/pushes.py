@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from limber.arrays import Floats, Records
 from limber.log.reader import Log, time_s
 from limber.measure import statics
 from limber.measure.results import Result, close_to
@@ -121,13 +122,15 @@ class _Rests:
         end = push.at_s + push.duration_s - push.ramp_s
         return _Rests((push.at_s - BEFORE_S, push.at_s), (end - PLATEAU_SHARE * plateau, end))
 
-    def mean(self, records: np.ndarray, field: str, when: str = "during") -> np.ndarray:
+    def mean(self, records: Records, field: str, when: str = "during") -> Floats:
         low, high = getattr(self, when)
         t = time_s(records)
-        return records[field][(t >= low) & (t < high)].mean(axis=0)
+        mean: Floats = records[field][(t >= low) & (t < high)].mean(axis=0)
+        return mean
 
-    def change(self, records: np.ndarray, field: str) -> np.ndarray:
-        return self.mean(records, field) - self.mean(records, field, "before")
+    def change(self, records: Records, field: str) -> Floats:
+        change: Floats = self.mean(records, field) - self.mean(records, field, "before")
+        return change
 
     def covered_by(self, records: np.ndarray) -> bool:
         t = time_s(records)

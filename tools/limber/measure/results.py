@@ -113,6 +113,7 @@ def load_header(folder: Path) -> dict[str, Any]:
     """The summary a run left; used to measure it again."""
     path = folder / "summary.json"
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        header: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, json.JSONDecodeError) as error:
         raise InputError(f"{folder} holds no readable summary.json: give a run's folder") from error
+    return header

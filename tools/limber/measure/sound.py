@@ -2,21 +2,24 @@
 
 import numpy as np
 
+from limber.arrays import Flags, Records
+
 UNIT = 1e-3  # how far from 1 a quaternion's length may be
 
 
-def sound(records: np.ndarray) -> np.ndarray:
+def sound(records: Records) -> Records:
     """The messages whose numbers are all finite and whose attitude, if any, is one."""
-    return records[~(_damaged(records) | _unknown(records))]
+    kept: Records = records[~(_damaged(records) | _unknown(records))]
+    return kept
 
 
-def damaged(records: np.ndarray) -> int:
+def damaged(records: Records) -> int:
     """Messages with numbers that cannot be. An attitude that is all zero is none: nobody has
     computed one before the first usable state of the arm."""
     return int(np.count_nonzero(_damaged(records) & ~_unknown(records)))
 
 
-def _damaged(records: np.ndarray) -> np.ndarray:
+def _damaged(records: Records) -> Flags:
     bad = np.zeros(len(records), dtype=bool)
     if not len(records):
         return bad
@@ -30,7 +33,8 @@ def _damaged(records: np.ndarray) -> np.ndarray:
     return bad
 
 
-def _unknown(records: np.ndarray) -> np.ndarray:
+def _unknown(records: Records) -> Flags:
     if not len(records) or "quat_BT" not in (records.dtype.names or ()):
         return np.zeros(len(records), dtype=bool)
-    return (records["quat_BT"] == 0).all(axis=1)
+    zero: Flags = (records["quat_BT"] == 0).all(axis=1)
+    return zero

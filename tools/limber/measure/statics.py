@@ -13,6 +13,7 @@ weight g changes as the joints bend:      (diag σ + ∂g/∂q) Δq = Jᵀ F + �
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.model.robot import SpringPair
 
 CARTESIAN = "cartesian_impedance"
@@ -20,7 +21,7 @@ JOINT = "joint_pd"
 SPRINGS = "variable_stiffness"
 
 
-def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> np.ndarray | None:
+def tip_response(law: str, J: Floats, K_x: Floats, K_q: Floats) -> Floats | None:
     """G, 6xn: tip displacement per joint torque; None for laws that hold no pose."""
     if law == JOINT:
         return J / K_q
@@ -29,9 +30,7 @@ def tip_response(law: str, J: np.ndarray, K_x: np.ndarray, K_q: np.ndarray) -> n
     return None
 
 
-def springs_fitted(
-    J: np.ndarray, K_x: np.ndarray, weight: np.ndarray, pairs: list[SpringPair]
-) -> np.ndarray:
+def springs_fitted(J: Floats, K_x: Floats, weight: Floats, pairs: list[SpringPair]) -> Floats:
     """σ, N m/rad: the diagonal nearest to Jᵀ K_x J that two quadratic springs a joint can give.
 
     Both springs pull while σ² >= 2 k2 |τ| for the torque τ that the joint carries, here its weight.
@@ -41,25 +40,21 @@ def springs_fitted(
     return np.clip(np.diag(J.T @ K_x @ J), np.sqrt(2.0 * k2 * np.abs(weight)), most)
 
 
-def springs_response(J: np.ndarray, sigma: np.ndarray, weight_slope: np.ndarray) -> np.ndarray:
+def springs_response(J: Floats, sigma: Floats, weight_slope: Floats) -> Floats:
     """G, 6xn, of springs σ in the joints; `weight_slope` is ∂g/∂q, N m/rad."""
     return J @ np.linalg.inv(np.diag(sigma) + weight_slope)
 
 
-def stiffness_along(C: np.ndarray, direction: np.ndarray) -> float:
+def stiffness_along(C: Floats, direction: Floats) -> float:
     """Force per displacement along a unit direction (force or torque), the others being free."""
     return float(1.0 / (direction @ C @ direction))
 
 
-def force_of_torque(
-    G: np.ndarray, C: np.ndarray, direction: np.ndarray, torque: np.ndarray
-) -> float:
+def force_of_torque(G: Floats, C: Floats, direction: Floats, torque: Floats) -> float:
     """The push along a direction that moves the tip as far along it as these joint torques do."""
     return float(direction @ G @ torque) * stiffness_along(C, direction)
 
 
-def greatest_friction_force(
-    G: np.ndarray, C: np.ndarray, direction: np.ndarray, friction: np.ndarray
-) -> float:
+def greatest_friction_force(G: Floats, C: Floats, direction: Floats, friction: Floats) -> float:
     """How much of a push joint friction can hold: all joints' friction against it at once."""
     return float(np.abs(direction @ G) @ friction) * stiffness_along(C, direction)

@@ -10,8 +10,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.model.urdf import MOVING, Chain, carrier, numbers_of, pose_of, read_joints
-from limber.model.xml_file import read_xml
+from limber.model.xml_file import attribute, read_xml
 
 
 @dataclass(frozen=True)
@@ -19,8 +20,8 @@ class Inertial:
     """Of one link, in its own frame: kg, m, kg m² about the centre of mass."""
 
     mass: float
-    com: np.ndarray
-    inertia: np.ndarray
+    com: Floats
+    inertia: Floats
 
 
 @dataclass(frozen=True)
@@ -32,21 +33,23 @@ class Body:
     """
 
     mass: float  # kg
-    moment: np.ndarray  # mass times centre of mass, kg m
-    inertia: np.ndarray  # 3x3 about the origin, kg m²
+    moment: Floats  # mass times centre of mass, kg m
+    inertia: Floats  # 3x3 about the origin, kg m²
     heaviest: str
     inertial: Inertial
-    X_CH: np.ndarray
+    X_CH: Floats
 
 
 def bodies(urdf: Path, chain: Chain) -> list[Body]:
     """One for each moving joint of the chain, in order."""
     joints = read_joints(urdf)
     children = [joint.child for joint in chain.joints if joint.kind in MOVING]
-    parts: dict[str, list[tuple[str, Inertial, np.ndarray]]] = {child: [] for child in children}
+    parts: dict[str, list[tuple[str, Inertial, Floats]]] = {child: [] for child in children}
     for link, element in _inertial_elements(urdf):
         owner, X = carrier(link, parts, joints)
-        inertial = _inertial(element) if owner is not None else None
+        if owner is None:
+            continue
+        inertial = _inertial(element)
         if inertial is not None:
             parts[owner].append((link, inertial, X))
     return [_lump(child, parts[child]) for child in children]
@@ -60,7 +63,7 @@ def read_inertials(urdf: Path) -> dict[str, Inertial]:
 
 def _inertial_elements(urdf: Path) -> list[tuple[str, Element]]:
     links = read_xml(urdf).findall("link")
-    found = ((link.get("name"), link.find("inertial")) for link in links)
+    found = ((attribute(link, "name", urdf), link.find("inertial")) for link in links)
     return [(link, element) for link, element in found if element is not None]
 
 
@@ -77,7 +80,7 @@ def _inertial(element: Element) -> Inertial | None:
     return Inertial(mass, X[:3, 3], R @ inertia @ R.T)
 
 
-def _lump(child: str, parts: list[tuple[str, Inertial, np.ndarray]]) -> Body:
+def _lump(child: str, parts: list[tuple[str, Inertial, Floats]]) -> Body:
     if not parts:  # a frame between two joints
         parts = [(child, Inertial(0.0, np.zeros(3), np.zeros((3, 3))), np.eye(4))]
     mass, moment, inertia = 0.0, np.zeros(3), np.zeros((3, 3))

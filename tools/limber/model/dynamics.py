@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from limber.arrays import Floats
 from limber.model.bodies import Body, bodies
 from limber.model.urdf import MOVING, Chain
 
@@ -26,15 +27,15 @@ UPPER = np.triu_indices(3)
 class Frames:
     """Of the child link of each moving joint; first index the joint, second the sample."""
 
-    R: np.ndarray  # n x N x 3 x 3
-    p: np.ndarray  # n x N x 3, origins
-    z: np.ndarray  # n x N x 3, joint axes
+    R: Floats  # n x N x 3 x 3
+    p: Floats  # n x N x 3, origins
+    z: Floats  # n x N x 3, joint axes
 
 
 class ArmDynamics:
     """`gravity`: acceleration in base axes, m/s²."""
 
-    def __init__(self, urdf: Path, chain: Chain, gravity: np.ndarray) -> None:
+    def __init__(self, urdf: Path, chain: Chain, gravity: Floats) -> None:
         self.chain, self.gravity = chain, np.asarray(gravity, float)
         self.bodies = bodies(urdf, chain)
         self._slides = [j.kind == "prismatic" for j in chain.joints if j.kind in MOVING]
@@ -43,37 +44,37 @@ class ArmDynamics:
     def size(self) -> int:
         return len(self.bodies)
 
-    def torque(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    def torque(self, q: Floats, v: Floats, a: Floats) -> Floats:
         """N x n from N x n: one row a sample."""
         frames = self.frames(q)
         F, N = self._wrenches(frames, v, a)
         return self._project(frames, F, N)
 
-    def gravity_torque(self, q: np.ndarray) -> np.ndarray:
+    def gravity_torque(self, q: Floats) -> Floats:
         zero = np.zeros_like(q)
         return self.torque(q, zero, zero)
 
-    def gravity_rate(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def gravity_rate(self, q: Floats, v: Floats) -> Floats:
         """(∂g/∂q) v, N x n, N m/s, by central differences."""
         step = STEP_RAD * v
         return (self.gravity_torque(q + step) - self.gravity_torque(q - step)) / (2 * STEP_RAD)
 
-    def gravity_slope(self, q: np.ndarray) -> np.ndarray:
+    def gravity_slope(self, q: Floats) -> Floats:
         """∂g/∂q of one posture, n x n, N m/rad."""
         return self.gravity_rate(np.tile(q, (len(q), 1)), np.eye(len(q))).T
 
-    def inertia(self, q: np.ndarray) -> np.ndarray:
+    def inertia(self, q: Floats) -> Floats:
         """M(q) of one posture, n x n, kg m²: column i is what the acceleration e_i takes."""
         still, unit = np.tile(q, (len(q), 1)), np.eye(len(q))
         return (self.torque(still, 0.0 * unit, unit) - self.gravity_torque(still)).T
 
-    def gravity_regressor(self, q: np.ndarray) -> np.ndarray:
+    def gravity_regressor(self, q: Floats) -> Floats:
         """N x n x 4n: gravity torque per [mass, mass times centre] of each body."""
         zero = np.zeros_like(q)
         Y = self.regressor(q, zero, zero).reshape(len(q), self.size, self.size, PARAMETERS)
         return Y[..., :4].reshape(len(q), self.size, 4 * self.size)
 
-    def regressor(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    def regressor(self, q: Floats, v: Floats, a: Floats) -> Floats:
         """N x n x 10n: torque(q, v, a) per `parameters()`, in which it is linear (Atkeson, An,
         Hollerbach, "Estimation of inertial parameters of manipulator loads and links", 1986).
         """
@@ -89,7 +90,7 @@ class ArmDynamics:
                     Y[:, i, k] = np.einsum("nx,npx->np", z, N) + np.einsum("nx,npx->np", arm, F)
         return Y.reshape(len(q), n, n * PARAMETERS)
 
-    def parameters(self) -> np.ndarray:
+    def parameters(self) -> Floats:
         """10n, by body: mass, kg; mass times centre, kg m; xx, xy, xz, yy, yz, zz of the inertia
         about the origin of the joint's child link, in its axes, kg m².
         """
@@ -97,10 +98,10 @@ class ArmDynamics:
             [[body.mass, *body.moment, *body.inertia[UPPER]] for body in self.bodies]
         )
 
-    def frames(self, q: np.ndarray) -> Frames:
+    def frames(self, q: Floats) -> Frames:
         R = np.tile(np.eye(3), (len(q), 1, 1))
         p, columns = np.zeros((len(q), 3)), iter(np.asarray(q, float).T)
-        found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        found: list[tuple[Floats, Floats, Floats]] = []
         for joint in self.chain.joints:
             p = p + R @ joint.X_PF[:3, 3]
             R = R @ joint.X_PF[:3, :3]
@@ -115,8 +116,8 @@ class ArmDynamics:
         return Frames(*(np.array(part) for part in zip(*found, strict=True)))
 
     def _moved(
-        self, frames: Frames, v: np.ndarray, a: np.ndarray
-    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        self, frames: Frames, v: Floats, a: Floats
+    ) -> Iterator[tuple[Floats, Floats, Floats]]:
         """Of each body, outwards from the base: acceleration of its origin less gravity, angular
         velocity and angular acceleration.
         """
@@ -134,16 +135,14 @@ class ArmDynamics:
             yield acceleration, w, wd
             before = frames.p[i]
 
-    def _wrenches(
-        self, frames: Frames, v: np.ndarray, a: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _wrenches(self, frames: Frames, v: Floats, a: Floats) -> tuple[Floats, Floats]:
         """Force and moment about its origin that each body needs."""
         F, N = np.zeros((2, self.size, len(v), 3))
         for i, moved in enumerate(self._moved(frames, v, a)):
             F[i], N[i] = _body_wrench(self.bodies[i], frames.R[i], *moved)
         return F, N
 
-    def _project(self, frames: Frames, F: np.ndarray, N: np.ndarray) -> np.ndarray:
+    def _project(self, frames: Frames, F: Floats, N: Floats) -> Floats:
         """On the joint axes, inwards from the tip."""
         tau = np.zeros((F.shape[1], self.size))
         force, moment = np.zeros((2, F.shape[1], 3))
@@ -157,8 +156,8 @@ class ArmDynamics:
 
 
 def _body_wrench(
-    body: Body, R: np.ndarray, acceleration: np.ndarray, w: np.ndarray, wd: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+    body: Body, R: Floats, acceleration: Floats, w: Floats, wd: Floats
+) -> tuple[Floats, Floats]:
     moment = R @ body.moment
     inertia = R @ body.inertia @ R.transpose(0, 2, 1)
     force = body.mass * acceleration + np.cross(wd, moment) + np.cross(w, np.cross(w, moment))
@@ -167,9 +166,7 @@ def _body_wrench(
     return force, np.cross(moment, acceleration) + turn + np.cross(w, spin)
 
 
-def _unit_wrenches(
-    R: np.ndarray, acceleration: np.ndarray, w: np.ndarray, wd: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _unit_wrenches(R: Floats, acceleration: Floats, w: Floats, wd: Floats) -> tuple[Floats, Floats]:
     """N x 10 x 3: force and moment of a body per parameter."""
     F, N = np.zeros((2, len(w), PARAMETERS, 3))
     F[:, 0] = acceleration

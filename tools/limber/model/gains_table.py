@@ -20,7 +20,8 @@ def listing(robot: str | None = None) -> dict[str, Any]:
     done = captured(command)
     if done.returncode != 0:
         raise RunError(f"limber-controller does not list its laws: {done.stderr.strip()}")
-    return json.loads(done.stdout)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
 
 
 def law_names() -> list[str]:

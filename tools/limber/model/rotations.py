@@ -3,8 +3,10 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from limber.arrays import Floats
 
-def rotation_error(quat_BT: np.ndarray, quat_BD: np.ndarray) -> np.ndarray:
+
+def rotation_error(quat_BT: Floats, quat_BD: Floats) -> Floats:
     """Log(R_BT R_BDᵀ) of rows of quaternions w, x, y, z; rows without a pose give zero."""
     known = (np.linalg.norm(quat_BT, axis=1) > 0.5) & (np.linalg.norm(quat_BD, axis=1) > 0.5)
     vectors = np.zeros((len(quat_BT), 3))
@@ -15,15 +17,16 @@ def rotation_error(quat_BT: np.ndarray, quat_BD: np.ndarray) -> np.ndarray:
     return vectors
 
 
-def cross(r: np.ndarray) -> np.ndarray:
+def cross(r: Floats) -> Floats:
     """[r]×, so that cross(r) x is r × x."""
     return np.cross(np.eye(3), r)
 
 
-def left_jacobian_inverse(r: np.ndarray) -> np.ndarray:
+def left_jacobian_inverse(r: Floats) -> Floats:
     """ṙ = J_l⁻¹(r) ω."""
-    angle, X = np.linalg.norm(r), cross(r)
+    angle, X = float(np.linalg.norm(r)), cross(r)
     if angle < 1e-4:
         return np.eye(3) - X / 2 + X @ X / 12
     last = 1 / angle**2 - (1 + np.cos(angle)) / (2 * angle * np.sin(angle))
-    return np.eye(3) - X / 2 + last * X @ X
+    inverse: Floats = np.eye(3) - X / 2 + last * X @ X
+    return inverse

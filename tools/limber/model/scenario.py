@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.errors import InputError
 from limber.model.names import require_name
 from limber.model.robot import Robot, load_robot, read_yaml
@@ -21,7 +22,7 @@ class Push:
     """
 
     at_s: float
-    wrench: np.ndarray
+    wrench: Floats
     ramp_s: float
     duration_s: float
     link: str = ""  # empty: the tip
@@ -35,13 +36,13 @@ class Gains:
 
     at_s: float
     law: str
-    K_x: np.ndarray
-    K_q: np.ndarray
+    K_x: Floats
+    K_q: Floats
     friction_compensation: str = "none"
     friction_share: float = 0.0
     frame: str = "base"
 
-    def in_base(self, R_BD: np.ndarray) -> np.ndarray:
+    def in_base(self, R_BD: Floats) -> Floats:
         """K_x in base axes, with the goal's orientation."""
         if self.frame == "base":
             return self.K_x
@@ -62,8 +63,8 @@ class Gains:
 @dataclass(frozen=True)
 class Wall:
     at_s: float
-    point: np.ndarray
-    normal: np.ndarray
+    point: Floats
+    normal: Floats
     stiffness_N_per_m: float
 
 

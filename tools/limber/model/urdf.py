@@ -13,8 +13,9 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from limber.arrays import Floats
 from limber.errors import InputError
-from limber.model.xml_file import read_xml
+from limber.model.xml_file import attribute, inside, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
 
@@ -30,12 +31,12 @@ class Joint:
     element: Element
 
     @cached_property
-    def X_PF(self) -> np.ndarray:
+    def X_PF(self) -> Floats:
         """4x4, joint frame in the parent link at zero."""
         return pose_of(self.element.find("origin"))
 
     @cached_property
-    def axis(self) -> np.ndarray:
+    def axis(self) -> Floats:
         """Unit, joint frame; of a joint that moves."""
         axis = numbers_of(self.element.find("axis"), "xyz", "1 0 0")
         return axis / np.linalg.norm(axis)
@@ -70,11 +71,11 @@ class Chain:
     def limits(self, name: str) -> tuple[float, float]:
         return self.joint(name).limits
 
-    def forward(self, q: np.ndarray) -> np.ndarray:
+    def forward(self, q: Floats) -> Floats:
         """X_BT, 4x4."""
         return self._frames(q)[0]
 
-    def jacobian(self, q: np.ndarray) -> np.ndarray:
+    def jacobian(self, q: Floats) -> Floats:
         """J_BT, 6xn: twist [v; w] of the tip in base axes, tip origin as reference point."""
         X_BT, axes = self._frames(q)
         columns = []
@@ -86,9 +87,9 @@ class Chain:
                 columns.append(np.concatenate([np.cross(a, X_BT[:3, 3] - X_BJ[:3, 3]), a]))
         return np.array(columns).T.reshape(6, -1)
 
-    def _frames(self, q: np.ndarray) -> tuple[np.ndarray, list[tuple[str, np.ndarray, np.ndarray]]]:
-        X = np.eye(4)
-        axes = []
+    def _frames(self, q: Floats) -> tuple[Floats, list[tuple[str, Floats, Floats]]]:
+        X: Floats = np.eye(4)
+        axes: list[tuple[str, Floats, Floats]] = []
         values = iter(np.asarray(q, float)[: len(self.joint_names)])
         for joint in self.joints:
             X = X @ joint.X_PF
@@ -99,7 +100,7 @@ class Chain:
         return X, axes
 
 
-def _motion(joint: Joint, value: float) -> np.ndarray:
+def _motion(joint: Joint, value: float) -> Floats:
     X = np.eye(4)
     if joint.kind == "prismatic":
         X[:3, 3] = value * joint.axis
@@ -108,12 +109,12 @@ def _motion(joint: Joint, value: float) -> np.ndarray:
     return X
 
 
-def numbers_of(element: Element | None, key: str, default: str) -> np.ndarray:
+def numbers_of(element: Element | None, key: str, default: str) -> Floats:
     text = element.get(key, default) if element is not None else default
     return np.array([float(part) for part in text.split()])
 
 
-def pose_of(origin: Element | None) -> np.ndarray:
+def pose_of(origin: Element | None) -> Floats:
     """4x4, of an <origin>: rpy turns by roll about x, then pitch about y, then yaw about z, all of
     the parent's axes; quat_xyzw, of URDF 1.1, stands in its place.
     """
@@ -129,22 +130,19 @@ def pose_of(origin: Element | None) -> np.ndarray:
 
 def read_joints(urdf: Path) -> dict[str, Joint]:
     """Joints by the name of their child link."""
-    return {
-        child: Joint(
-            element.get("name"),
-            element.get("type"),
-            element.find("parent").get("link"),
-            child,
-            element,
+    found = {}
+    for element in read_xml(urdf).findall("joint"):
+        name, kind = (attribute(element, key, urdf) for key in ("name", "type"))
+        parent, child = (
+            attribute(inside(element, key, urdf), "link", urdf) for key in ("parent", "child")
         )
-        for element in read_xml(urdf).findall("joint")
-        for child in [element.find("child").get("link")]
-    }
+        found[child] = Joint(name, kind, parent, child, element)
+    return found
 
 
 def carrier(
     link: str, links: Collection[str], joints: dict[str, Joint]
-) -> tuple[str | None, np.ndarray]:
+) -> tuple[str | None, Floats]:
     """Which of `links` carries `link` with all joints between them at zero, and the pose of `link`
     in it, 4x4; None if none does.
     """
@@ -168,7 +166,7 @@ def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> 
     return path[::-1]
 
 
-def _rotation_of(joints: dict[str, Joint], link: str) -> np.ndarray:
+def _rotation_of(joints: dict[str, Joint], link: str) -> Floats:
     """Axes of a link in those of the root link."""
     R = np.eye(3)
     while link in joints:

@@ -30,3 +30,24 @@ def read_xml(path: Path, comments: bool = False) -> Element:
             f"{path}:{error.lineno}: cannot be read as URDF: not well-formed XML: {problem}"
         ) from error
     return builder.close()
+
+
+def inside(element: Element, tag: str, path: Path) -> Element:
+    """The first element with this tag in `element`, a named one of the file. Raises InputError."""
+    found = element.find(tag)
+    if found is None:
+        raise InputError(f"{path}: {_words(element)} has no <{tag}>")
+    return found
+
+
+def attribute(element: Element, key: str, path: Path) -> str:
+    """Raises InputError if it is absent."""
+    value = element.get(key)
+    if value is None:
+        raise InputError(f'{path}: {_words(element)} has no {key}=""')
+    return value
+
+
+def _words(element: Element) -> str:
+    name = element.get("name")
+    return f"a <{element.tag}>" if name is None else f'<{element.tag} name="{name}">'

@@ -4,6 +4,7 @@ import numpy as np
 import viser
 from scipy.spatial.transform import Rotation
 
+from limber.arrays import Floats
 from limber.monitor.shapes import Figure, Shape
 
 THINNER = 0.94
@@ -13,11 +14,12 @@ def wxyz(R: np.ndarray) -> np.ndarray:
     return Rotation.from_matrix(R).as_quat(scalar_first=True)
 
 
-def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def product(a: Floats, b: Floats) -> Floats:
     """Of two quaternions w, x, y, z: the turn b, then a."""
     w, x, y, z = a
     left = np.array([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
-    return left @ b
+    both: Floats = left @ b
+    return both
 
 
 class ArmView:

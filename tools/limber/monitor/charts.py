@@ -60,13 +60,16 @@ class Keeper:
 
     def __init__(self, joint_names: list[str], windows_s: tuple[float, ...]) -> None:
         self._names, self._windows = joint_names, windows_s
+        self._begin()
+
+    def _begin(self) -> None:
         self.kept: dict[str, dict[str, Kept]] = {topic: {} for topic in TOPICS}
         self._tail: Tail | None = None  # none in lock step, or before it is known
         self._tails: dict[str, np.ndarray] = {}
 
     def add(self, batch: Batch) -> None:
         if batch.restart:
-            self.__init__(self._names, self._windows)
+            self._begin()
         joined = self._with_tails(batch)
         for topic, what in TOPICS.items():
             if what == "timing" and not len(joined.read("DRIVER_STATUS")):
@@ -105,8 +108,8 @@ class Keeper:
         new = chart.t_s > one.newest_s
         if new.any():
             values = np.array(list(chart.series.values()))[:, new]
-            for bins in one.bins.values():
-                bins.add(chart.t_s[new], values)
+            for kept_bins in one.bins.values():
+                kept_bins.add(chart.t_s[new], values)
             one.newest_s = float(chart.t_s[-1])
 
 

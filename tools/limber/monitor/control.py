@@ -12,6 +12,7 @@ import viser
 
 from limber.model.robot import Robot, read_yaml
 from limber.monitor.feed import Feed
+from limber.monitor.field_values import show
 from limber.monitor.laws import Gain, Law, LawList
 from limber.monitor.pending import REPORTED, UNITS, Pending, in_effect, several
 from limber.monitor.requests import Requests
@@ -106,7 +107,7 @@ class ControlPanel:
         """The numbers that mean something to this law first."""
         self.shown_law = law.name
         if law.name in self._laws.usable:
-            self._law.value = law.name
+            show(self._law, law.name)
         self._summary.content = f'<div style="{WORDS}">{escape(law.summary)}</div>'
         for widget_folder in self._folders:
             widget_folder.remove()

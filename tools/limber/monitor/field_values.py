@@ -7,13 +7,14 @@ from typing import Any
 
 import viser
 from viser import _messages
+from viser.infra import ClientId
 
 
 def keep_possible(gui: viser.GuiApi) -> None:
     """Other values are dropped before viser sees them."""
     interface, take = gui._websock_interface, gui._handle_gui_updates
 
-    async def checked(viewer: int, message: _messages.GuiUpdateMessage) -> None:
+    async def checked(viewer: ClientId, message: _messages.GuiUpdateMessage) -> None:
         field = gui._gui_input_handle_from_uuid.get(message.uuid)
         updates = message.updates
         if field is None or not isinstance(updates, dict) or set(updates) != {"value"}:
@@ -35,3 +36,8 @@ def possible(present: Any, options: Any, value: Any) -> bool:
         return isinstance(value, bool)
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return number and isinstance(present, int | float) and math.isfinite(value)
+
+
+def show(field: Any, value: object) -> None:
+    """`field` is one of viser's, to whose values mypy finds no setter."""
+    field.value = value

@@ -34,7 +34,7 @@ class LogFeed:
         if channel not in self._log.channels:
             return empty(channel)
         rows = self._log.read(channel)
-        if "session" in rows.dtype.names:
+        if "session" in (rows.dtype.names or ()):
             rows = rows[rows["session"] == self._session]
         return rows[np.argsort(rows["time_ns"], kind="stable")]
 

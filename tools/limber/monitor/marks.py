@@ -69,7 +69,8 @@ class StiffnessEllipsoid:
         if not self._ball.visible or not np.isfinite(center).all():
             return
         axes, R = ellipsoid(K)
-        self._ball.scale = tuple(float(a) for a in axes)
+        x, y, z = (float(a) for a in axes)
+        self._ball.scale = x, y, z
         self._ball.wxyz = wxyz(R)
         self._ball.position = center
 

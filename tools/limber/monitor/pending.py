@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from limber.arrays import Floats
 from limber.messages import message_class
 from limber.monitor.feed import Batch
 
@@ -81,7 +82,8 @@ def in_effect(status: np.void, key: str) -> np.ndarray | None:
     if key in BLOCKS:
         return np.diag(status["K_x"])[BLOCKS[key]]
     if key == "K_q_Nm_per_rad":
-        return status["K_q"][: int(status["num_joints"])]
+        K_q: Floats = status["K_q"][: int(status["num_joints"])]
+        return K_q
     return None
 
 
@@ -99,6 +101,6 @@ def _value(message: Any, key: str) -> Any:
     value = getattr(message, field, None) if field else None
     if isinstance(value, float):
         return np.array(value)
-    if field in ("K_q", "D_q", "K_null", "D_null"):
+    if isinstance(value, list | tuple) and field in ("K_q", "D_q", "K_null", "D_null"):
         return np.array(value[: message.num_joints])
     return None

@@ -6,6 +6,7 @@ import viser
 
 from limber.log.events import Event, Names, events
 from limber.log.reader import Log
+from limber.monitor.field_values import show
 from limber.monitor.laws import LawList
 from limber.monitor.log_feed import SPEEDS, LogFeed
 from limber.monitor.server import Server
@@ -84,7 +85,7 @@ class PlaybackPanel:
 
     def draw(self) -> None:
         feed = self._feed
-        self._slider.value = round(feed.position_s, 2)
+        show(self._slider, round(feed.position_s, 2))
         word = "pause" if feed.playing else "play"
         if self._play.label != word:
             self._play.label = word

@@ -137,7 +137,8 @@ class Requests:
                 message.controller = 0 if status is None else int(status["controller"])
                 message.client = self.client
             self._feed.receiver.publish(channel, message)
-        return message.seq
+        seq: int = message.seq
+        return seq
 
     def _joints(self) -> int:
         status = self._feed.newest.get("CONTROLLER_STATUS")

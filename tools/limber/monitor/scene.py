@@ -144,10 +144,11 @@ class Scene:
         at = nothing if truth is None else truth["p_BT"]
         self._push.set(at, truth["F_push"][:3] if truth is not None and seen else nothing)
         self._contact.set(at, truth["F_contact"][:3] if truth is not None and seen else nothing)
-        felt = status is not None and bool(status["contact"]) and seen
-        self._believed.set(
-            nothing if status is None else status["p_BT"], status["F_ext"][:3] if felt else nothing
-        )
+        place = believed = nothing
+        if status is not None:
+            place, felt = status["p_BT"], bool(status["contact"]) and seen
+            believed = status["F_ext"][:3] if felt else nothing
+        self._believed.set(place, believed)
 
     def _draw_wall(self, batch: Batch, state: np.void | None) -> None:
         """The last one sent, else the scenario's."""

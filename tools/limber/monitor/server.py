@@ -77,7 +77,8 @@ def security_headers(port: int) -> dict[str, str]:
 def _closed(link: PageLink) -> Iterator[None]:
     """viser calls `serve` while it is constructed, once for each port that it tries."""
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a refusal is no error
-    serve = websockets.asyncio.server.serve
+    server: Any = websockets.asyncio.server  # one of its names is replaced
+    serve = server.serve
 
     def checked(handler: Any, host: str, port: int, **options: Any) -> Any:
         options["process_request"] = _own_page(options["process_request"], port)
@@ -93,11 +94,11 @@ def _closed(link: PageLink) -> Iterator[None]:
         options["select_subprotocol"] = protocol
         return serve(serve_both, host, port, origins=allowed_origins(port), **options)
 
-    websockets.asyncio.server.serve = checked
+    server.serve = checked
     try:
         yield
     finally:
-        websockets.asyncio.server.serve = serve
+        server.serve = serve
 
 
 def _own_page(answer: Callable, port: int) -> Callable:
@@ -106,7 +107,7 @@ def _own_page(answer: Callable, port: int) -> Callable:
     bodies["gzip"] = gzip.compress(bodies["identity"])
 
     def process(connection: Any, request: Any) -> Response | None:
-        response = answer(connection, request)
+        response: Response | None = answer(connection, request)
         if response is None:
             return None
         response.headers.update(security_headers(port))

@@ -4,6 +4,7 @@ joint.
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -11,7 +12,7 @@ import trimesh
 
 from limber.model.robot import Robot
 from limber.model.urdf import MOVING, Joint, carrier, numbers_of, pose_of, read_joints
-from limber.model.xml_file import read_xml
+from limber.model.xml_file import attribute, inside, read_xml
 
 LIMB, JOINT, TIP = (222, 226, 232), (62, 70, 84), (240, 140, 45)
 THICKNESS = (0.062, 0.034)  # radius of the limbs at shoulder and tip over the arm's reach
@@ -70,18 +71,20 @@ def _skeleton(robot: Robot) -> Figure:
 
 
 def _visuals(urdf: Path, made: Figure) -> list[Shape]:
-    joints, shapes = read_joints(urdf), []
+    joints = read_joints(urdf)
+    shapes: list[Shape] = []
     root = read_xml(urdf)
     materials = {m.get("name"): m for m in root.findall("material")}
     for link in root.findall("link"):
-        owner, X = carrier(link.get("name"), made.links, joints)
+        name = attribute(link, "name", urdf)
+        owner, X = carrier(name, made.links, joints)
         if owner is None:
             continue
         for visual in link.findall("visual"):
             try:
-                mesh = _mesh(visual.find("geometry"), urdf)
+                mesh = _mesh(inside(visual, "geometry", urdf), urdf)
             except Exception as error:  # trimesh raises whatever its file readers raise
-                made.troubles.append(f"visual of {link.get('name')}: {error}")
+                made.troubles.append(f"visual of {name}: {error}")
                 continue
             mesh.apply_transform(X @ pose_of(visual.find("origin")))
             shapes.append(Shape(owner, mesh, _color(visual, materials)))
@@ -90,21 +93,27 @@ def _visuals(urdf: Path, made: Figure) -> list[Shape]:
 
 def _mesh(geometry: Element, urdf: Path) -> trimesh.Trimesh:
     if (box := geometry.find("box")) is not None:
-        return trimesh.creation.box(numbers_of(box, "size", "0 0 0"))
+        return _made("box", numbers_of(box, "size", "0 0 0"))
     if (cylinder := geometry.find("cylinder")) is not None:
-        return trimesh.creation.cylinder(*_round(cylinder), sections=32)
+        return _made("cylinder", *_round(cylinder), sections=32)
     if (capsule := geometry.find("capsule")) is not None:
         radius, length = _round(capsule)  # of the cylinder between its two half balls
-        ends = [[0.0, 0.0, -0.5 * length], [0.0, 0.0, 0.5 * length]]
-        return _hull(*ends, radius, radius, 2)
+        end = np.array([0.0, 0.0, 0.5 * length])
+        return _hull(-end, end, radius, radius, 2)
     if (sphere := geometry.find("sphere")) is not None:
-        return trimesh.creation.icosphere(2, numbers_of(sphere, "radius", "0")[0])
-    element = geometry.find("mesh")
-    path = _mesh_file(element.get("filename"), urdf)
-    mesh = trimesh.load(path, force="mesh")
+        return _made("icosphere", 2, numbers_of(sphere, "radius", "0")[0])
+    element = inside(geometry, "mesh", urdf)
+    path = _mesh_file(attribute(element, "filename", urdf), urdf)
+    mesh = trimesh.load_mesh(path)
     if len(mesh.faces) > BUSY_FACES:
         raise ValueError(f"{path.name} has {len(mesh.faces)} faces; up to {BUSY_FACES} are drawn")
     mesh.apply_scale(numbers_of(element, "scale", "1 1 1"))
+    return mesh
+
+
+def _made(kind: str, *sizes: Any, **more: Any) -> trimesh.Trimesh:
+    """By trimesh's maker of this name, none of which has types."""
+    mesh: trimesh.Trimesh = getattr(trimesh.creation, kind)(*sizes, **more)
     return mesh
 
 
@@ -148,7 +157,7 @@ def _limbs(robot: Robot, made: Figure) -> list[Shape]:
         shapes.append(Shape(joint.child, _housing(joint, r), JOINT))
         if np.linalg.norm(to) > LEAST_LIMB_M:
             shapes.append(Shape(joint.child, _limb(to, 0.82 * r, 0.82 * radii[i + 1]), LIMB))
-    flange = trimesh.creation.cylinder(0.8 * thin, 0.5 * thin, sections=32)
+    flange = _made("cylinder", 0.8 * thin, 0.5 * thin, sections=32)
     flange.apply_transform(made.X_tip)
     return [*shapes, Shape(made.links[-1], flange, TIP)]
 
@@ -156,7 +165,7 @@ def _limbs(robot: Robot, made: Figure) -> list[Shape]:
 def _base(made: Figure, r: float, robot: Robot) -> list[Shape]:
     """A foot, and a column from it to the first joint."""
     up = -robot.gravity if np.linalg.norm(robot.gravity) > 0 else np.array([0.0, 0.0, 1.0])
-    foot = trimesh.creation.cylinder(1.8 * r, 0.4 * r, sections=48)
+    foot = _made("cylinder", 1.8 * r, 0.4 * r, sections=48)
     foot.apply_transform(trimesh.geometry.align_vectors([0, 0, 1], up))
     to = made.X_PF[0][:3, 3]
     shapes = [Shape(made.base, foot, JOINT)]
@@ -167,9 +176,9 @@ def _base(made: Figure, r: float, robot: Robot) -> list[Shape]:
 
 def _housing(joint: Joint, r: float) -> trimesh.Trimesh:
     if joint.kind == "prismatic":
-        mesh = trimesh.creation.box([1.8 * r, 1.8 * r, 2.4 * r])
+        mesh = _made("box", [1.8 * r, 1.8 * r, 2.4 * r])
     else:
-        mesh = trimesh.creation.cylinder(r, 2.3 * r, sections=40)
+        mesh = _made("cylinder", r, 2.3 * r, sections=40)
     mesh.apply_transform(trimesh.geometry.align_vectors([0, 0, 1], joint.axis))
     return mesh
 
@@ -183,5 +192,7 @@ def _hull(
     one: np.ndarray, other: np.ndarray, r_one: float, r_other: float, fineness: int
 ) -> trimesh.Trimesh:
     """The hull of two balls, by their centres."""
-    near, far = (trimesh.creation.icosphere(fineness, r) for r in (r_one, r_other))
-    return trimesh.convex.convex_hull(np.vstack([near.vertices + one, far.vertices + other]))
+    near, far = (_made("icosphere", fineness, r) for r in (r_one, r_other))
+    points = np.vstack([near.vertices + one, far.vertices + other])
+    hull: trimesh.Trimesh = trimesh.convex.convex_hull(points)
+    return hull

@@ -3,6 +3,7 @@
 import numpy as np
 import viser
 
+from limber.arrays import Floats
 from limber.model.urdf import Joint
 from limber.monitor.arm_view import ArmView
 
@@ -32,7 +33,7 @@ class Springs:
         ]
         self._labels = [scene.add_label(f"{name}_label", "", visible=False) for name in names]
 
-    def set(self, deflection: np.ndarray, preload: np.ndarray) -> None:
+    def set(self, deflection: Floats, preload: Floats) -> None:
         """Motor less link, and preload, per joint; rad or m."""
         drawn = zip(self._joints, self._lines, self._labels, deflection, preload, strict=False)
         for joint, line, label, bent, tight in drawn:
@@ -48,7 +49,7 @@ class Springs:
         self.set(np.zeros(len(self._joints)), np.zeros(len(self._joints)))
 
 
-def arc(joint: Joint, bent: float, radius: float) -> np.ndarray:
+def arc(joint: Joint, bent: float, radius: float) -> Floats:
     """Points in the child link's frame, from the link to the motor."""
     axis = joint.axis
     beside = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
@@ -57,7 +58,8 @@ def arc(joint: Joint, bent: float, radius: float) -> np.ndarray:
     if joint.kind == "prismatic":
         return radius * beside + share * LARGER * bent * axis
     angle = share * np.clip(LARGER * bent, -MOST, MOST)
-    return radius * (np.cos(angle) * beside + np.sin(angle) * np.cross(axis, beside))
+    bow: Floats = radius * (np.cos(angle) * beside + np.sin(angle) * np.cross(axis, beside))
+    return bow
 
 
 def words(joint: Joint, bent: float, preload: float) -> str:

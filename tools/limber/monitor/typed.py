@@ -7,6 +7,7 @@ from typing import Any
 
 import viser
 
+from limber.monitor.field_values import show
 from limber.monitor.page_link import PageLink
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
@@ -55,5 +56,5 @@ class TypedFields:
         rounded = round(value, field.slider.precision)
         if rounded != value:
             self._tell(field.name, f"{text} was rounded to {rounded:.12g}", True)
-        field.slider.value = rounded
+        show(field.slider, rounded)
         field.take(rounded)

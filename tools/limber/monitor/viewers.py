@@ -67,12 +67,9 @@ class Viewers:
     def _place(self, client: viser.ClientHandle, width: float, folded: bool) -> None:
         """viser has no call that places a panel of all viewers for one of them."""
         gui, panel = client.gui, self._charts._placement_uuid
-        stamps = (
-            {"counter": gui._next_layout_counter(), "run_id": gui._layout_run_id} for _ in "12"
-        )
-        send = gui._websock_interface.queue_message
-        send(GuiSetPanelWidthMessage(panel, float(width), **next(stamps)))
-        send(GuiSetPanelCollapsedMessage(panel, folded, **next(stamps)))
+        send, run = gui._websock_interface.queue_message, gui._layout_run_id
+        send(GuiSetPanelWidthMessage(panel, float(width), gui._next_layout_counter(), run))
+        send(GuiSetPanelCollapsedMessage(panel, folded, gui._next_layout_counter(), run))
 
 
 def note(viewer: int, software: bool) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 import viser
 
+from limber.monitor.field_values import show
 from limber.monitor.laws import Gain
 from limber.monitor.pending import several
 from limber.monitor.typed import Field, TypedFields
@@ -90,7 +91,7 @@ class _Number:
                 self._shown = float(value)
                 changed(float(value))
             else:
-                self.slider.value = self._shown
+                show(self.slider, self._shown)
                 typed.refused(field, value)
 
         self._shown = float(self.slider.value)
@@ -105,7 +106,7 @@ class _Number:
         if value > self.slider.max:
             self.slider.max = float(min(max(self._gain.high, value), REACH * value))
         self._shown = round(float(value), self.slider.precision)
-        self.slider.value = self._shown
+        show(self.slider, self._shown)
 
 
 class _Several:

@@ -1,5 +1,7 @@
 """A first scenario: hold, joint impedance, one small push."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from limber.new.facts import ArmFacts, wall
@@ -51,10 +53,11 @@ def _free(arm: ArmFacts, guesses: Guesses, torque: np.ndarray) -> float:
         min(home - joint.low, joint.high - home) - wall(joint.low, joint.high)
         for joint, home in zip(guesses.joints, arm.home, strict=True)
     ]
-    return min(
+    forces: Iterator[float] = (
         FREE_SHARE * room * joint.K_q / max(abs(one), 1e-9)
         for joint, room, one in zip(guesses.joints, rooms, torque, strict=True)
     )
+    return min(forces)
 
 
 def _push(arm: ArmFacts, guesses: Guesses) -> tuple[np.ndarray, float]:

@@ -11,7 +11,7 @@ from limber.errors import OK, InputError
 from limber.model.protocols import Protocol, protocol, protocols
 from limber.model.validation import run_checker
 from limber.new import facts, robot_text, scenario_text
-from limber.new.guesses import guess
+from limber.new.guesses import Guesses, guess
 from limber.output import write_new
 from limber.paths import existing_file
 
@@ -51,7 +51,9 @@ def write(
     return OK
 
 
-def _write_robot(folder: Path, name: str, arm, guesses, drives: Protocol) -> int:
+def _write_robot(
+    folder: Path, name: str, arm: facts.ArmFacts, guesses: Guesses, drives: Protocol
+) -> int:
     """At the highest rate that the buses carry, which is returned."""
     complaint = ""
     with tempfile.TemporaryDirectory() as scratch:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -9,6 +10,14 @@ ARM_TIME = "arm time (s)"
 
 
 RESTART_S = 1.0
+
+
+class Messages(Protocol):
+    """A log, or what has arrived of a running arm."""
+
+    def read(self, channel: str) -> np.ndarray:
+        """Messages of a fixed-size channel as one structured array."""
+        ...
 
 
 def went_back(t_s: np.ndarray) -> np.ndarray:

@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from limber.log.reader import Log, time_s
+from limber.arrays import Flags, Floats
+from limber.log.reader import time_s
 from limber.log.rows import active
 from limber.messages import message_class
 from limber.model.gains_table import acts_at_joints, law_names
 from limber.model.rotations import rotation_error
-from limber.plot.chart import Chart
+from limber.plot.chart import Chart, Messages
 from limber.plot.compliance import compliance_charts
 
 AXES = ("x", "y", "z")
@@ -34,7 +35,7 @@ TERMS = {  # tau_TERM of CONTROLLER_STATUS, in the words of all pictures
 QUANTILES = {"p50": "median", "p99": "99 %", "p999": "99.9 %", "max": "greatest"}
 
 
-def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Chart]:
+def build(log: Messages, what: str, joint_names: list[str] | None = None) -> list[Chart]:
     """Charts of a topic from the first answer of all drives on, leaving out what the log does not
     hold: none if it holds nothing of it.
     """
@@ -43,7 +44,7 @@ def build(log: Log, what: str, joint_names: list[str] | None = None) -> list[Cha
     return [chart for chart in charts if len(chart.t_s) > 1 and chart.series]
 
 
-def begin_s(log: Log) -> float:
+def begin_s(log: Messages) -> float:
     """When every drive has answered for the first time: before, positions are zeros."""
     state = log.read("JOINT_STATE")
     fresh = message_class("joint_state_t").JOINT_FRESH
@@ -51,9 +52,10 @@ def begin_s(log: Log) -> float:
     return float(time_s(state)[np.argmax(answered)]) if answered.any() else -np.inf
 
 
-def is_pose(quat: np.ndarray) -> np.ndarray:
+def is_pose(quat: Floats) -> Flags:
     """Which of the quaternions, n x 4, are one: before there is a pose they are zeros."""
-    return np.linalg.norm(quat, axis=1) > 0.5
+    poses: Flags = np.linalg.norm(quat, axis=1) > 0.5
+    return poses
 
 
 def _joint_count(records: np.ndarray) -> int:
@@ -68,7 +70,7 @@ def _columns(values: np.ndarray, labels: list[str]) -> dict[str, np.ndarray]:
     return {label: values[:, i] for i, label in enumerate(labels)}
 
 
-def _joint_charts(log: Log, names: list[str]) -> list[Chart]:
+def _joint_charts(log: Messages, names: list[str]) -> list[Chart]:
     state = log.read("JOINT_STATE")
     t, labels = time_s(state), _labels(_joint_count(state), names)
     fields = (
@@ -83,7 +85,7 @@ def _joint_charts(log: Log, names: list[str]) -> list[Chart]:
     ]
 
 
-def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
+def _overview_charts(log: Messages, names: list[str]) -> list[Chart]:
     """What was asked for, what came of it, and what acted on the arm."""
     status = log.read("CONTROLLER_STATUS")
     t, n = time_s(status), _joint_count(status)
@@ -104,7 +106,7 @@ def _overview_charts(log: Log, names: list[str]) -> list[Chart]:
     return [*moved, *stiffness, torque, *compliance_charts(log)]
 
 
-def _cartesian_charts(log: Log, _names: list[str]) -> list[Chart]:
+def _cartesian_charts(log: Messages, _names: list[str]) -> list[Chart]:
     all_status, truth = log.read("CONTROLLER_STATUS"), log.read("SIM_TRUTH")
     status = all_status[is_pose(all_status["quat_BT"])]  # from the tip's start
     t, wanted = time_s(status), is_pose(status["quat_BD"])
@@ -175,7 +177,7 @@ def _contact_charts(status: np.ndarray) -> list[Chart]:
     ]
 
 
-def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
+def _torque_charts(log: Messages, names: list[str]) -> list[Chart]:
     """The terms of every joint's torque on top of each other; one chart a joint. Contact, if it has
     a source.
     """
@@ -192,7 +194,7 @@ def _torque_charts(log: Log, names: list[str]) -> list[Chart]:
     return charts
 
 
-def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
+def _spring_charts(log: Messages, names: list[str]) -> list[Chart]:
     """What springs between motor and link do; nothing for arms whose joints show no such sides."""
     state = log.read("JOINT_STATE")
     flags = message_class("joint_state_t")
@@ -219,7 +221,7 @@ def _spring_charts(log: Log, names: list[str]) -> list[Chart]:
     ]
 
 
-def _timing_charts(log: Log, _names: list[str]) -> list[Chart]:
+def _timing_charts(log: Messages, _names: list[str]) -> list[Chart]:
     """Nothing in lock step: without a clock nothing is early or late."""
     status, driver = log.read("CONTROLLER_STATUS"), log.read("DRIVER_STATUS")
     state = log.read("JOINT_STATE")
@@ -263,7 +265,7 @@ def _tail(step_ms: np.ndarray, cycle_ns: np.ndarray) -> list[Chart]:
     return [Chart(TAIL_TITLE, "1", x, shown, x=TAIL_X, log=True)]
 
 
-def _bus_charts(log: Log, _names: list[str]) -> list[Chart]:
+def _bus_charts(log: Messages, _names: list[str]) -> list[Chart]:
     driver = log.read("DRIVER_STATUS")
     t, n = time_s(driver), _joint_count(driver)
     buses = [f"bus {i + 1}" for i in range(int(driver["num_buses"].max(initial=0)))]
@@ -292,7 +294,7 @@ SOURCES = {
     "timing": ("JOINT_STATE, DRIVER_STATUS and CONTROLLER_STATUS of a run that had a clock",),
     "bus": ("DRIVER_STATUS",),
 }
-TOPICS: dict[str, Callable[[Log, list[str]], list[Chart]]] = {
+TOPICS: dict[str, Callable[[Messages, list[str]], list[Chart]]] = {
     "overview": _overview_charts,
     "joint": _joint_charts,
     "cartesian": _cartesian_charts,

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from limber.log.reader import Log, time_s
+from limber.log.reader import time_s
 from limber.log.rows import active
 from limber.model.gains_table import law_names
-from limber.plot.chart import Chart
+from limber.plot.chart import Chart, Messages
 
 TITLE = "push along its direction over displacement"
 AFTER_S = 0.5  # where the tip stays
@@ -14,7 +14,7 @@ MOST = 6  # pushes
 SAME = 0.02  # of two stiffnesses
 
 
-def compliance_charts(log: Log) -> list[Chart]:
+def compliance_charts(log: Messages) -> list[Chart]:
     """One way a push under a law, and, dashed, the line of the stiffness in effect. The simulator
     alone knows what pushes.
     """

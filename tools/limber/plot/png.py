@@ -105,9 +105,9 @@ def _draw(ax: plt.Axes, chart: Chart, other: Chart | None) -> bool:
             ax.fill_between(line.t_s, line.low, line.high, color=color, alpha=0.22, linewidth=0)
             t, values, bands = line.t_s, line.steady(span), True
         ax.plot(t, values, style, label=name, color=color)
-    for name, values in other.series.items() if other else ():
-        if name not in chart.dashed and name in color_of:
-            t, values = binned(other.t_s, values, BINS).outline
+    if other is not None:
+        for name in [n for n in other.series if n not in chart.dashed and n in color_of]:
+            t, values = binned(other.t_s, other.series[name], BINS).outline
             ax.plot(t, values, ":", color=color_of[name], linewidth=1.6)
     _set_range(ax, chart)
     ax.set_ylabel(_wrapped(chart), fontsize=8, parse_math=False)

@@ -4,14 +4,16 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
+from limber.arrays import Floats
 from limber.model.robot import Robot
 
 DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])  # of a Braille cell
 BLANK = 0x2800
 
 
-def arm_points(robot: Robot, q: np.ndarray) -> np.ndarray:
+def arm_points(robot: Robot, q: Floats) -> Floats:
     """Base, joints and tip, m in base axes: (n + 2) x 3."""
     frames = robot.dynamics.frames(np.asarray(q, float)[None])
     tip = robot.chain.forward(q)[:3, 3]
@@ -24,13 +26,13 @@ class View:
     arm moves.
     """
 
-    right: np.ndarray
-    up: np.ndarray
-    low: np.ndarray  # 2, m
-    high: np.ndarray  # 2, m
+    right: Floats
+    up: Floats
+    low: Floats  # 2, m
+    high: Floats  # 2, m
 
     @staticmethod
-    def of(points: np.ndarray, up: np.ndarray, margin_m: float = 0.1) -> "View":
+    def of(points: Floats, up: Floats, margin_m: float = 0.1) -> "View":
         """Looks at the plane of `up` and that base axis along which the points spread most."""
         up = up / np.linalg.norm(up)
         axes = np.eye(3) - np.outer(np.eye(3) @ up, up)
@@ -40,8 +42,9 @@ class View:
         places = points @ np.column_stack([right, up])
         return View(right, up, places.min(axis=0) - margin_m, places.max(axis=0) + margin_m)
 
-    def project(self, points: np.ndarray) -> np.ndarray:
-        return np.asarray(points) @ np.column_stack([self.right, self.up])
+    def project(self, points: Floats) -> Floats:
+        places: Floats = points @ np.column_stack([self.right, self.up])
+        return places
 
 
 @dataclass
@@ -50,18 +53,18 @@ class Canvas:
 
     columns: int
     rows: int
-    cells: np.ndarray = field(init=False)
+    cells: NDArray[np.int_] = field(init=False)
 
     def __post_init__(self) -> None:
         self.cells = np.zeros((self.rows, self.columns), int)
 
-    def line(self, view: View, start: np.ndarray, end: np.ndarray) -> None:
+    def line(self, view: View, start: Floats, end: Floats) -> None:
         """Between two points of the view's plane, m."""
         a, b = self._dots(view, start), self._dots(view, end)
         for share in np.linspace(0.0, 1.0, int(np.abs(b - a).max()) + 2):
             self._dot(*np.round(a + share * (b - a)).astype(int))
 
-    def _dots(self, view: View, place: np.ndarray) -> np.ndarray:
+    def _dots(self, view: View, place: Floats) -> Floats:
         """Both axes to one scale, the window in the middle."""
         size = np.array([2 * self.columns - 1, 4 * self.rows - 1])
         scale = (size / (view.high - view.low)).min()
@@ -76,7 +79,7 @@ class Canvas:
         return ["".join(chr(BLANK + cell) for cell in row) for row in self.cells]
 
 
-def draw(view: View, points: np.ndarray, columns: int, rows: int) -> list[str]:
+def draw(view: View, points: Floats, columns: int, rows: int) -> list[str]:
     """Lines of text with the arm in them; joints are small crosses of dots."""
     canvas = Canvas(columns, rows)
     places = view.project(points)

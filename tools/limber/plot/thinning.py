@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from limber.arrays import Flags, Floats
 from limber.plot.chart import Chart
 
 SEEN = 0.02  # of the whole range of a chart: what is wider is more than a thick line
@@ -19,18 +20,18 @@ class Binned:
     bins. NaN: no value.
     """
 
-    t_s: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    mean: np.ndarray
-    travel: np.ndarray
+    t_s: Floats
+    low: Floats
+    high: Floats
+    mean: Floats
+    travel: Floats
 
-    def swinging(self, span: float) -> np.ndarray:
+    def swinging(self, span: float) -> Flags:
         """In which bins it goes up and down, such as with dither; `span`: of the whole chart."""
         width = self.high - self.low
         return (width > SEEN * span) & (self.travel > BACK * width)
 
-    def steady(self, span: float) -> np.ndarray:
+    def steady(self, span: float) -> Floats:
         """The mean, over more than one bin where it swings."""
         where = self.swinging(span)
         if not where.any():
@@ -43,7 +44,7 @@ class Binned:
         return np.where(near & known, total / np.maximum(weight, 1e-9), self.mean)
 
     @property
-    def outline(self) -> tuple[np.ndarray, np.ndarray]:
+    def outline(self) -> tuple[Floats, Floats]:
         """One line through smallest and greatest of each bin, which looks as all points would."""
         if self.low is self.high:
             return self.t_s, self.mean
@@ -51,7 +52,7 @@ class Binned:
         return t, np.column_stack([self.low, self.high]).ravel()
 
 
-def binned(t_s: np.ndarray, values: np.ndarray, bins: int) -> Binned:
+def binned(t_s: Floats, values: Floats, bins: int) -> Binned:
     """As it is if it has no more than two points a bin."""
     count = len(t_s)
     values = np.asarray(values, float)

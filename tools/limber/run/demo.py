@@ -65,7 +65,8 @@ def demo(seconds: float | None, sensors: bool, options: RunOptions, console: Con
             f"({finished.folder}).\nHere is the same with simulated time that waits for the "
             "machine; limber doctor names cures.[/]"
         )
-        finished = _run(scenario, _beside(options, "lockstep", lockstep=None), console)
+        again = replace(options, out=_beside(options.out, "lockstep"), lockstep=None)
+        finished = _run(scenario, again, console)
         summary, pushes = commands.summarize(finished, scenario)
     folder = finished.folder
     _show(summary, pushes, scenario, folder, console)
@@ -92,14 +93,14 @@ def _run(scenario: Scenario, options: RunOptions, console: Console) -> FinishedR
         f"on a busy machine ({folder}).\nHere is the same in one process (--one-process), which "
         "needs no turns.[/]"
     )
-    again = _beside(options, "one-process", one_process=True, leave_when_behind=False)
+    out = _beside(options.out, "one-process")
+    again = replace(options, out=out, one_process=True, leave_when_behind=False)
     return _run(scenario, again, console)
 
 
-def _beside(options: RunOptions, word: str, **changed: bool | None) -> RunOptions:
-    """For a second attempt, in a folder of its own."""
-    out = options.out and options.out.with_name(f"{options.out.name}-{word}")
-    return replace(options, out=out, **changed)
+def _beside(out: Path | None, word: str) -> Path | None:
+    """The folder of a second attempt."""
+    return out and out.with_name(f"{out.name}-{word}")
 
 
 def _was_late(summary: Summary, finished: FinishedRun) -> bool:

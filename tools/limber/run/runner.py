@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -224,7 +225,7 @@ def _tell(group: ProcessGroup, console: Console, quiet: bool = False) -> list[st
     return told
 
 
-def _stop_others(group: ProcessGroup) -> dict:
+def _stop_others(group: ProcessGroup) -> dict[str, Any]:
     """Ends the rest, the recorder last, so that its log is complete; returns its report."""
     for name in (MONITOR, "limber-controller", "limber-sim"):
         if name in group.children:
@@ -236,6 +237,7 @@ def _stop_others(group: ProcessGroup) -> dict:
     if recorder is None:
         return {}
     try:
-        return json.loads(recorder.last_lines(1)[0])
+        report: dict[str, Any] = json.loads(recorder.last_lines(1)[0])
     except (IndexError, json.JSONDecodeError) as error:
         raise RunError(f"limber-record left no report: see {recorder.log}") from error
+    return report

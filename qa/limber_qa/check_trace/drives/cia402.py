@@ -17,7 +17,8 @@ FORMATS = "Hiihhii"
 
 def resolution_Nm(motor: Motor) -> float:
     """Of torque: a thousandth of the rated one."""
-    return motor.keys["rated_torque_Nm"] / 1000
+    rated: float = motor.keys["rated_torque_Nm"]
+    return rated / 1000
 
 
 def commands(motor: Motor, trace: Trace) -> list[Command]:
@@ -29,8 +30,9 @@ def states(motor: Motor, trace: Trace) -> list[State]:
     found = []
     for time_ns, values in _whole(motor, trace):
         status = values[STATUS]
-        link = LINK_ANGLE in values
-        turn = motor.link_counts_per_turn if link else motor.counts_per_turn
+        link, turn = LINK_ANGLE in values, motor.counts_per_turn
+        if link and motor.link_counts_per_turn is not None:
+            turn = motor.link_counts_per_turn
         angle = values[LINK_ANGLE if link else ANGLE] * TURN_rad / turn
         speed = values[LINK_SPEED if link else SPEED] * TURN_rad / turn
         # The link encoder counts as the joint does.

@@ -14,7 +14,8 @@ OTHER_MODES = (0x100, 0x200, 0x300)  # commands of the modes with a loop in the 
 
 def resolution_Nm(motor: Motor) -> float:
     """Of torque."""
-    return 2.0 * motor.keys["mit_range"]["torque_Nm"] / 4095
+    most: float = motor.keys["mit_range"]["torque_Nm"]
+    return 2.0 * most / 4095
 
 
 def commands(motor: Motor, trace: Trace) -> list[Command]:
@@ -36,7 +37,9 @@ def commands(motor: Motor, trace: Trace) -> list[Command]:
 
 
 def states(motor: Motor, trace: Trace) -> list[State]:
-    found = []
+    found: list[State] = []
+    if motor.reply_id is None:
+        return found
     for frame in trace.of(motor.interface, motor.reply_id):
         data = frame.data
         # An answer about a register looks alike: its third byte is the operation.
@@ -91,4 +94,4 @@ def _command(motor: Motor, frame: Frame) -> Command:
 
 def _symmetric(count: float, bits: int, end: float) -> float:
     """Counts from -end to +end; none of them is zero."""
-    return end * (2 * count / (2**bits - 1) - 1)
+    return end * (2 * count / float(2**bits - 1) - 1)

@@ -2,7 +2,7 @@
 
 import importlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -102,7 +102,7 @@ def _format(to: str | None, out: Path | None) -> str:
     raise InputError(f"--out {out}: end it in {endings}, or give --to {', '.join(FORMATS)}")
 
 
-def _writer_class(kind: str) -> type | None:
+def _writer_class(kind: str) -> Callable[..., Writer] | None:
     """None: events are copied as they are."""
     chosen = FORMATS[kind]
     if not chosen.module:
@@ -116,7 +116,8 @@ def _writer_class(kind: str) -> type | None:
             f"--to {kind} needs a package that is not installed ({error.name}): "
             f"{sys.executable} -m pip install -e '{ROOT}[{chosen.extra}]'"
         ) from error
-    return getattr(module, chosen.writer)
+    writer: Callable[..., Writer] = getattr(module, chosen.writer)
+    return writer
 
 
 def _write(

@@ -50,7 +50,8 @@ def flat(batch: Batch, joints: tuple[str, ...]) -> dict[str, Any]:
     made: dict[str, Any] = {STAMP: batch.stamps_us}
     if isinstance(batch.messages, np.ndarray):
         for column in columns(batch.type_name, joints):
-            made[column.name] = batch.messages[column.field][(slice(None), *column.index)]
+            place: tuple[slice | int, ...] = (slice(None), *column.index)
+            made[column.name] = batch.messages[column.field][place]
         return made
     rows = [dict(_leaves(as_object(message, joints))) for message in batch.messages]
     return made | {name: [row[name] for row in rows] for name in rows[0]}
@@ -65,4 +66,5 @@ def _leaves(values: dict[str, Any], before: str = "") -> Iterator[tuple[str, Any
 
 
 def _plain(column: Any) -> list[Any]:
-    return column.tolist() if isinstance(column, np.ndarray) else column
+    values: list[Any] = column.tolist() if isinstance(column, np.ndarray) else column
+    return values

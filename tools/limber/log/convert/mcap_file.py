@@ -62,7 +62,7 @@ class McapFile:
     def _encode(self, batch: Batch) -> Iterable[Message]:
         topic = f"/{batch.channel}"
         stamps = batch.stamps_us.tolist()
-        if not batch.fixed:
+        if not isinstance(batch.messages, np.ndarray):
             schema = f"limber.{batch.type_name}"
             for stamp_us, message in zip(stamps, batch.messages, strict=True):
                 yield self._json(topic, schema, as_object(message, self._joints), stamp_us)

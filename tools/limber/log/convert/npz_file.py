@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,12 +26,12 @@ class NpzFile:
         for batch in window:
             assert isinstance(batch.messages, np.ndarray)
             self._add(f"{batch.channel}.{STAMP}", batch.stamps_us)
-            for field in batch.messages.dtype.names:
+            for field in batch.messages.dtype.names or ():
                 if field != FINGERPRINT:
                     self._add(f"{batch.channel}.{field}", batch.messages[field])
 
     def close(self) -> None:
-        arrays = {name: np.concatenate(parts) for name, parts in self._parts.items()}
+        arrays: dict[str, Any] = {name: np.concatenate(p) for name, p in self._parts.items()}
         with open(self._path, "wb") as file:
             np.savez_compressed(file, **arrays)
 

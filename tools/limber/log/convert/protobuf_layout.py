@@ -55,7 +55,8 @@ class Layout:
         rows = np.tile(self._template, (len(records), 1))
         size = rows.shape[1]
         for column, start, kind in self._places:
-            values = records[column.field][(slice(None), *column.index)]
+            place: tuple[slice | int, ...] = (slice(None), *column.index)
+            values = records[column.field][place]
             if column.words:
                 values = np.where((values >= 0) & (values < UNKNOWN_WORD), values, UNKNOWN_WORD)
             stored = np.ascontiguousarray(values, dtype=kind)
@@ -64,7 +65,7 @@ class Layout:
         data = rows.tobytes()
         return [data[i : i + size] for i in range(0, len(data), size)]
 
-    def _kind(self, column: Column) -> tuple[int, int, str]:
+    def _kind(self, column: Column) -> "tuple[_Field.Type.ValueType, int, str]":
         base = self._kinds[column.field].base
         return _ENUM if column.words else _FIXED[f"{base.kind}{base.itemsize}"]
 
@@ -107,7 +108,7 @@ class Layout:
 
 
 def _fields(node: _Node) -> list[tuple[int, str, Column | _Node]]:
-    parts = [*node.columns.items(), *node.nodes.items()]
+    parts: list[tuple[str, Column | _Node]] = [*node.columns.items(), *node.nodes.items()]
     return [(number, name, part) for number, (name, part) in enumerate(parts, 1)]
 
 
@@ -126,7 +127,8 @@ def _add_enum(message: descriptor_pb2.DescriptorProto, name: str, words: tuple[s
     type_name, prefix = words
     for number, word in sorted(messages.constants(type_name, prefix).items()):
         made.value.add(name=f"{prefix}{word}", number=number)
-    return made.name
+    name_there: str = made.name
+    return name_there
 
 
 def _varint(value: int) -> bytes:
