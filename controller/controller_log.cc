@@ -75,11 +75,11 @@ void ControllerLog::note(const controller_status_t& status, const joint_state_t&
   if (!found) return;
   const auto joint = static_cast<std::size_t>(found->joint);
   spdlog::warn(
-      "warning: not ready after {:g} s: {} was late in {:.0f} % of the cycles, and {} states in a "
+      "warning: not ready after {:.3g} s: {} was late in {:.0f} % of the cycles, and {} states in "
+      "a "
       "row with every reply in time are needed; check its cable and the bus's errors, choose a "
       "lower rate_hz or a longer reply_window_s",
-      1e-9 * static_cast<double>(InitWatch::kPatience_ns),
-      joint < joints_.size() ? joints_[joint] : "a joint", 100.0 * found->share,
+      found->waited_s, joint < joints_.size() ? joints_[joint] : "a joint", 100.0 * found->share,
       controller::Supervisor::kSteadyStates);
 }
 

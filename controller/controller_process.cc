@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "common/clock.h"
@@ -85,6 +86,7 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
   arm_.publish(channels::kJointTorque, torque);
   if (torque.state_seq == answered_seq_ && torque.session == answered_session_) return;
   last_state_ns_ = monotonic_ns();
+  silence_ns_ = std::clamp(3 * state.period_ns, kSilence_ns, 3 * kSilence_ns);
   answered_seq_ = torque.state_seq;
   answered_session_ = torque.session;
   user_.publish(channels::kJointTorque, torque);
@@ -103,7 +105,7 @@ void ControllerProcess::publish_status() noexcept {
 
 void ControllerProcess::check_silence() noexcept {
   const std::int64_t now_ns = monotonic_ns();
-  if (now_ns - last_state_ns_ < kSilence_ns) return;
+  if (now_ns - last_state_ns_ < silence_ns_) return;
   last_state_ns_ = now_ns;
   controller_->on_silence();
   publish_status();

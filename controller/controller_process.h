@@ -38,7 +38,7 @@ class ControllerProcess {
   void run(const volatile std::sig_atomic_t& stop) noexcept;
 
  private:
-  /// Without a state for this long the arm counts as out of reach.
+  /// Without a state for this long, or for three cycles, the arm counts as out of reach.
   static constexpr std::int64_t kSilence_ns = 100'000'000;
 
   void on_state(const joint_state_t& state) noexcept;
@@ -58,6 +58,7 @@ class ControllerProcess {
   joint_state_t newest_{};
   bool waiting_ = false;
   std::int64_t answered_session_ = 0;
+  std::int64_t silence_ns_ = kSilence_ns;
   std::int64_t answered_seq_ = -1;
   std::int64_t last_state_ns_ = 0;  ///< that was new
 };

@@ -17,7 +17,7 @@ void define(limber::CommandLine& line, Arguments* given) {
   limber::DriverProcessOptions& options = given->options;
   line.text("--robot", &options.robot, "shipped robot or folder with robot.yaml");
   line.buses(&options.buses);
-  line.number("--rate", &options.rate_hz, 1.0, 20000.0,
+  line.number("--rate", &options.rate_hz, 10.0, 20000.0,
               "cycles per second instead of robot.yaml's");
   line.pace(&given->pace, "no clock: simulator and controller set the pace");
   line.integer("--session", &options.session, 1, kMost,

@@ -36,7 +36,7 @@ void define(CommandLine& line, Arguments* given) {
       .one_of({"ode", "reference"});
   line.number("--step", &given->step_s, 1e-6, 0.01,
               "longest integration step, s (default: 0.00025)");
-  line.number("--rate", &given->rate_hz, 1.0, 20000.0,
+  line.number("--rate", &given->rate_hz, 10.0, 20000.0,
               "control periods per second instead of robot.yaml's; as the driver's");
   line.flag("--no-friction", &given->no_friction, "joints without friction");
   line.flag("--no-stand", &given->no_stand, "nothing carries the arm before its drives do");

@@ -77,7 +77,7 @@ RobotHeader read_robot_header(const YamlMap& yaml) {
 void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   Complaints complaints(yaml.file());
   robot->rate_hz = 1000.0;
-  complaints.collect([&] { robot->rate_hz = yaml.number("rate_hz", {1.0, 10'000.0}); });
+  complaints.collect([&] { robot->rate_hz = yaml.number("rate_hz", {10.0, 10'000.0}); });
   complaints.collect([&] {
     robot->power_limit_W = yaml.number_or("power_limit_W", {1.0, 1e5}, robot->power_limit_W);
     robot->energy_limit_J = yaml.number_or("energy_limit_J", {0.1, 1e5}, robot->energy_limit_J);

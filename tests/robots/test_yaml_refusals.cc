@@ -44,7 +44,7 @@ const Mutation kSyntax[] = {
     {"NumberNan", "rate_hz: 500", "rate_hz: .nan", "'.nan' is not a number"},
     {"NumberInfinite", "rate_hz: 500", "rate_hz: .inf", "'.inf' is not a number"},
     {"NumberTooBig", "rate_hz: 500", "rate_hz: 1e999", "'1e999' is not a number"},
-    {"NumberMissing", "rate_hz: 500", "rate_hz:", "found nothing; expected a number from 1 to"},
+    {"NumberMissing", "rate_hz: 500", "rate_hz:", "found nothing; expected a number from 10 to"},
     {"NumberAsList", "rate_hz: 500", "rate_hz: [500]", "found a list; expected a number"},
     {"IntegerWithFraction", "    id: 2", "    id: 2.5", "expected a whole number from 1 to 15"},
     {"BooleanInWords", "fd: true", "fd: yes", "found 'yes'; expected true or false"},
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Syntax, RobotYamlRefusal, ::testing::ValuesIn(kSyntax),
 
 const Mutation kSections[] = {
     {"Format", "limber-robot/1", "limber-robot/2", "expected one of: limber-robot/1"},
-    {"RateTooHigh", "rate_hz: 500", "rate_hz: 20000", "expected a number from 1 to 10000"},
+    {"RateTooHigh", "rate_hz: 500", "rate_hz: 20000", "expected a number from 10 to 10000"},
     {"RateZero", "rate_hz: 500", "rate_hz: 0", "'0' is out of range"},
     {"BusKind", "virtual:left", "vcan0", "expected virtual:NAME or socketcan:INTERFACE"},
     {"BusWithoutName", "virtual:left", "socketcan:", "expected virtual:NAME or socketcan"},

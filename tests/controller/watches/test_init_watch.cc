@@ -61,7 +61,7 @@ InitWatch::Finding found(int joints, std::initializer_list<int> late) {
     told = watch.note(kInit, state);
   }
   EXPECT_TRUE(told);
-  return told.value_or(InitWatch::Finding{-1, -1.0});
+  return told.value_or(InitWatch::Finding{-1, -1.0, 0.0});
 }
 
 TEST(InitWatch, NamesTheFirstOfThoseThatAreLateAlike) {
@@ -70,6 +70,20 @@ TEST(InitWatch, NamesTheFirstOfThoseThatAreLateAlike) {
   EXPECT_EQ(found(3, {1, 2}).joint, 1);
   EXPECT_EQ(found(16, {15}).joint, 15);
   EXPECT_EQ(found(16, {15}).share, 1.0);
+}
+
+// At 40 Hz the supervisor's hundred states alone take longer than two seconds.
+TEST(InitWatch, HasPatienceForTwoHundredCycles) {
+  InitWatch watch;
+  joint_state_t state = off_at(0, 1);
+  state.period_ns = 25'000'000;
+  EXPECT_FALSE(watch.note(kInit, state));
+  state.time_ns = 200 * state.period_ns - 1;
+  EXPECT_FALSE(watch.note(kInit, state));
+  ++state.time_ns;
+  const auto told = watch.note(kInit, state);
+  ASSERT_TRUE(told);
+  EXPECT_NEAR(told->waited_s, 5.0, 1e-12);
 }
 
 TEST(InitWatch, CountsTheArmsJointsAlone) {

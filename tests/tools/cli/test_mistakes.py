@@ -93,7 +93,7 @@ FORETOLD = [
 IN_ROBOTS = [
     ("format: limber-robot/1", "format: limber-robot/2", "expected one of: limber-robot/1"),
     ("rate_hz: 1000", "rate: 1000", "is 'rate' a slip?"),
-    ("rate_hz: 1000", "rate_hz: 100000", "expected a number from 1 to 10000"),
+    ("rate_hz: 1000", "rate_hz: 100000", "expected a number from 10 to 10000"),
     ("urdf: robot.urdf", "urdf: arm.urdf", "no file 'arm.urdf'"),
     ("base: ", "basis: ", "is 'basis' a slip?"),
     ("tip: link8", "tip: hand", "no link 'hand'; there are: link0"),

@@ -90,7 +90,7 @@ def run(
     bus: Bus = None,
     rate: Annotated[
         float | None,
-        typer.Option(min=1.0, max=20000.0, help="Cycles per second instead of robot.yaml's."),
+        typer.Option(min=10.0, max=20000.0, help="Cycles per second instead of robot.yaml's."),
     ] = None,
     no_sim: Annotated[
         bool, typer.Option("--no-sim", help="A real arm (or another simulator) is on the bus.")
@@ -152,7 +152,7 @@ def sim(
     ] = None,
     rate: Annotated[
         float | None,
-        typer.Option(min=1.0, max=20000.0, help="Control periods per second."),
+        typer.Option(min=10.0, max=20000.0, help="Control periods per second."),
     ] = None,
     no_stand: Annotated[
         bool, typer.Option("--no-stand", help="Nothing carries the arm before its drives do.")
