@@ -202,6 +202,65 @@ struct Checked {
   double found = -1.0;
 };
 
+// Register requests of another master to drive 1: their answers look like states of the drive.
+class DamiaoForeign : public ::testing::Test {
+ protected:
+  void request(const std::string& bytes) { rules_->record_foreign(parse("7FF#" + bytes)); }
+  bool answers(const std::string& bytes) { return rules_->answers_foreign(parse("011#" + bytes)); }
+  void cycles(int count) {
+    for (int i = 0; i < count; ++i) rules_->begin_cycle();
+  }
+
+  DriveFamily family_ = make_drive_family(joint(), false, 1e-3);
+  IntruderRules* rules_ = family_.intruders.get();
+};
+
+TEST_F(DamiaoForeign, EachRequestHasOneAnswer) {
+  EXPECT_FALSE(answers("0100330701000000")) << "nobody has requested it";
+  request("01003307");
+  EXPECT_FALSE(answers("0100330801000000")) << "another register";
+  EXPECT_FALSE(answers("0100550701000000")) << "of a write";
+  EXPECT_TRUE(answers("0100330701000000"));
+  EXPECT_FALSE(answers("0100330701000000")) << "a second time";
+  request("0100550901000000");
+  EXPECT_TRUE(answers("0100550901000000"));
+  request("01003300");
+  EXPECT_TRUE(answers("0100330000000000"));
+}
+
+TEST_F(DamiaoForeign, OnlyReadsAndWritesOfThisDriveAreKept) {
+  request("02003307");                            // to drive 2
+  request("0100AA07");                            // store
+  request("0100CC07");                            // a state
+  rules_->record_foreign(parse("7FE#01003307"));  // no register identifier
+  for (const char* bytes : {"0100330701000000", "0100550701000000", "0100AA0701000000"})
+    EXPECT_FALSE(answers(bytes)) << bytes;
+}
+
+TEST_F(DamiaoForeign, RequestsOfStatesDisplaceNone) {
+  request("01003307");
+  for (int i = 0; i < 8; ++i) request("0100CC00");
+  EXPECT_TRUE(answers("0100330701000000"));
+}
+
+TEST_F(DamiaoForeign, AnAnswerMayTakeNinetyNineCycles) {
+  request("01003307");
+  cycles(99);
+  EXPECT_TRUE(answers("0100330701000000"));
+  request("01003307");
+  cycles(100);
+  EXPECT_FALSE(answers("0100330701000000"));
+  cycles(100);
+  EXPECT_FALSE(answers("0100330701000000")) << "nor later";
+}
+
+TEST_F(DamiaoForeign, EightAreKept) {
+  for (int reg = 1; reg <= 9; ++reg) request("0100330" + std::to_string(reg));
+  EXPECT_FALSE(answers("0100330101000000")) << "the ninth took its place";
+  for (int reg = 2; reg <= 9; ++reg)
+    EXPECT_TRUE(answers("0100330" + std::to_string(reg) + "01000000")) << reg;
+}
+
 class DamiaoStartUp : public DamiaoFamilyTest {
  protected:
   Checked check(int step, const std::string& frame) {
