@@ -209,5 +209,21 @@ TEST(Cia402Pdos, NeverAllocate) {
   EXPECT_EQ(testing::allocations(), before);
 }
 
+// Object 6072h: whole thousandths of the rated torque within the joint's limit.
+TEST(Cia402, TheMostThousandthsOfAJoint) {
+  const auto most = [](double limit_Nm, double range_Nm, double rated_Nm) {
+    JointConfig joint;
+    joint.torque_limit_Nm = limit_Nm;
+    joint.drive.range.torque_Nm = range_Nm;
+    joint.drive.rated_torque_Nm = rated_Nm;
+    return most_permille(joint);
+  };
+  EXPECT_EQ(most(60.0, 500.0, 9.0), 6666U) << "6666.67";
+  EXPECT_EQ(most(500.0, 60.0, 9.0), 6666U) << "by the drive";
+  EXPECT_EQ(most(9.0, 500.0, 9.0), 1000U);
+  EXPECT_EQ(most(400.0, 500.0, 1.0), 32767U) << "of 16 bits";
+  EXPECT_EQ(most(1.1, 500.0, 1.1), 1000U) << "a whole number, but for rounding";
+}
+
 }  // namespace
 }  // namespace limber::cia402::test_cia402
