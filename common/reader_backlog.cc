@@ -13,8 +13,10 @@ ReaderBacklog::ReaderBacklog(const std::vector<std::int64_t>& processes) {
   for (const std::int64_t process : processes) {
     std::error_code error;
     const std::filesystem::path folder = "/proc/" + std::to_string(process) + "/fd";
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      const std::string target = std::filesystem::read_symlink(entry, error).string();
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+      std::error_code closed;
+      const std::string target = std::filesystem::read_symlink(entry->path(), closed).string();
       std::uint64_t inode = 0;
       if (target.starts_with(kSocket) &&
           std::from_chars(target.data() + kSocket.size(), target.data() + target.size(), inode)

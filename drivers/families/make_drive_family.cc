@@ -1,5 +1,4 @@
 // The list of drive families, and nothing else: docs/adding.md.
-#include <algorithm>
 #include <array>
 
 #include "drivers/families/cia402_family.h"
@@ -34,8 +33,7 @@ constexpr std::array kFamilies = {
 }  // namespace
 
 DriveFamily make_drive_family(const JointConfig& joint, bool fd, double period_s) {
-  return std::ranges::find(kFamilies, joint.drive.protocol->word, &Row::protocol)
-      ->make(joint, fd, period_s);
+  return row_of(kFamilies, *joint.drive.protocol).make(joint, fd, period_s);
 }
 
 }  // namespace limber

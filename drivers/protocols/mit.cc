@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kPositionBits = 16;
 constexpr int kBits = 12;  // velocity, kp, kd, torque
-constexpr std::uint8_t kStateRequest = 0xCC;
 
 // Torque counts that turn an otherwise saturated command into a special frame, and the first one
 // below.

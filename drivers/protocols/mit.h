@@ -65,6 +65,7 @@ inline constexpr std::uint32_t kRegisterId = 0x7FF;
 inline constexpr std::uint8_t kReadRegister = 0x33;
 inline constexpr std::uint8_t kWriteRegister = 0x55;
 inline constexpr std::uint8_t kStoreRegister = 0xAA;
+inline constexpr std::uint8_t kStateRequest = 0xCC;
 
 /// Register kControlMode. Commands of the others than MIT have identifiers of their own.
 enum class ControlMode : std::uint8_t {
@@ -110,7 +111,7 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 /// Decodes a state reply; false if it cannot be one (length, remote, error frame).
 [[nodiscard]] bool decode_reply(const CanFrame& frame, const CommandRange& range,
                                 Reply* reply) noexcept;
-/// Decodes a register answer; false unless id, operation (0x33 or 0x55) and register match.
+/// Decodes a register answer; false unless id, operation (read or write) and register match.
 [[nodiscard]] bool decode_register(const CanFrame& frame, std::uint16_t id, std::uint8_t operation,
                                    Register reg, std::uint32_t* raw_value) noexcept;
 
@@ -123,7 +124,7 @@ CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
                                         ServoCommand* command) noexcept;
 struct RegisterRequest {
   std::uint16_t id = 0;
-  std::uint8_t operation = 0;  ///< 0x33 read, 0x55 write, 0xAA store, 0xCC state request
+  std::uint8_t operation = 0;  ///< kReadRegister, kWriteRegister, kStoreRegister or kStateRequest
   std::uint8_t reg = 0;
   std::uint32_t raw_value = 0;
 };

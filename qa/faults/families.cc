@@ -1,7 +1,6 @@
 // The list of families that faults are injected into, and nothing else: docs/adding.md.
 #include "qa/faults/families.h"
 
-#include <algorithm>
 #include <array>
 
 #include "robots/loader/protocols/drive_protocol.h"
@@ -17,8 +16,6 @@ std::span<const Family> families() {
   return kFamilies;
 }
 
-const Family& family_of(const DriveConfig& drive) {
-  return *std::ranges::find(families(), drive.protocol->word, &Family::protocol);
-}
+const Family& family_of(const DriveConfig& drive) { return row_of(families(), *drive.protocol); }
 
 }  // namespace limber::faults

@@ -10,10 +10,6 @@
 namespace limber::sim {
 namespace {
 
-constexpr std::uint8_t kRead = 0x33;
-constexpr std::uint8_t kWrite = 0x55;
-constexpr std::uint8_t kStore = 0xAA;
-constexpr std::uint8_t kStateRequest = 0xCC;
 constexpr std::uint8_t kMotorPosition = 80;
 constexpr std::uint8_t kOutputPosition = 81;
 /// Some clients send special frames to the id of another mode.
@@ -89,18 +85,18 @@ bool DamiaoNode::receive(const CanFrame& frame, const JointReading& joint, std::
 
 bool DamiaoNode::on_register(const CanFrame& frame, const mit::RegisterRequest& request,
                              const JointReading& joint, CanFrame* reply) noexcept {
-  if (request.operation == kStateRequest) {
+  if (request.operation == mit::kStateRequest) {
     *reply = state_frame(frame, joint);
     return true;
   }
   std::uint32_t value = request.raw_value;
   // The answer to a new identifier still has the old one.
   const std::uint32_t reply_id = registers_.reply_id();
-  if (request.operation == kWrite && !has(scenario_event_t::FAULT_DROP_COMMANDS)) {
+  if (request.operation == mit::kWriteRegister && !has(scenario_event_t::FAULT_DROP_COMMANDS)) {
     registers_.write(request.reg, request.raw_value);
     if (request.reg == static_cast<std::uint8_t>(mit::Register::kControlMode)) forget_command();
   }
-  if (request.operation == kRead || request.operation == kWrite) {
+  if (request.operation == mit::kReadRegister || request.operation == mit::kWriteRegister) {
     const auto position = static_cast<float>(sense(joint).position);
     value = request.reg == kOutputPosition ? mit::float_bits(position)
             : request.reg == kMotorPosition
@@ -109,7 +105,8 @@ bool DamiaoNode::on_register(const CanFrame& frame, const mit::RegisterRequest& 
   }
   mit::RegisterRequest answered = request;
   // Flash is written at rest only.
-  if (request.operation == kStore) answered.reg = state_ == mit::DriveError::kEnabled ? 0 : 1;
+  if (request.operation == mit::kStoreRegister)
+    answered.reg = state_ == mit::DriveError::kEnabled ? 0 : 1;
   *reply = mit::encode_register_answer(answered, value, reply_id, frame.fd);
   reply->bitrate_switch = frame.bitrate_switch;
   return true;

@@ -1,5 +1,4 @@
 // The list of emulated drives, and nothing else: docs/adding.md.
-#include <algorithm>
 #include <array>
 
 #include "robots/loader/protocols/drive_protocol.h"
@@ -33,7 +32,7 @@ constexpr std::array kNodes = {
 }  // namespace
 
 std::unique_ptr<MotorNode> make_motor_node(const JointConfig& joint, bool fd) {
-  return std::ranges::find(kNodes, joint.drive.protocol->word, &Row::protocol)->make(joint, fd);
+  return row_of(kNodes, *joint.drive.protocol).make(joint, fd);
 }
 
 }  // namespace limber::sim

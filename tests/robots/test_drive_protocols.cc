@@ -2,6 +2,7 @@
 // manuals give them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "robots/loader/protocols/drive_protocol.h"
@@ -65,6 +66,16 @@ TEST(DriveProtocols, ACanopenNodeReservesItsServices) {
                                         0x205, 0x305, 0x405, 0x505, 0x585, 0x605, 0x705};
   for (std::uint32_t id = 0; id < 0x800; ++id)
     EXPECT_EQ(uses_id(drive, id), used.contains(id)) << id;
+}
+
+TEST(DriveProtocols, AListWithoutARowIsNamed) {
+  struct Row {
+    std::string_view protocol;
+    int number;
+  };
+  constexpr std::array kRows = {Row{"moteus", 1}, Row{"cia402", 2}};
+  EXPECT_EQ(row_of(kRows, protocol_named("cia402")).number, 2);
+  EXPECT_THROW(row_of(kRows, protocol_named("damiao_mit")), std::logic_error);
 }
 
 TEST(DriveProtocols, OnlyCanopenDrivesReportTheLink) {

@@ -6,6 +6,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -58,12 +60,11 @@ def test_a_refused_goal_is_told_and_fails_the_run(how, tmp_path):
     assert happened in (tmp_path / "out" / name).read_text(encoding="utf-8")
 
 
-def test_a_session_that_its_user_stops_ends_well(tmp_path):
-    """After requests from another terminal, whose numbers begin anywhere."""
-    path = written(tmp_path, "  - {at_s: 0.9, mode: release}\n", seconds=3600)
-    folder = tmp_path / "out"
+@contextmanager
+def running_until_active(folder: Path, *words: str) -> Iterator[subprocess.Popen]:
+    """`limber run WORDS` into the folder, from the moment that the arm is active."""
     with subprocess.Popen(
-        [*LIMBER, "run", path, "--out", str(folder)],
+        [*LIMBER, "run", *words, "--out", str(folder)],
         cwd=ROOT / "tools",
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
@@ -73,7 +74,15 @@ def test_a_session_that_its_user_stops_ends_well(tmp_path):
         end = time.monotonic() + 60
         while not log.exists() or "mode ACTIVE" not in log.read_text(encoding="utf-8"):
             assert time.monotonic() < end and running.poll() is None
-            time.sleep(0.05)
+            time.sleep(0.02)
+        yield running
+
+
+def test_a_session_that_its_user_stops_ends_well(tmp_path):
+    """After requests from another terminal, whose numbers begin anywhere."""
+    path = written(tmp_path, "  - {at_s: 0.9, mode: release}\n", seconds=3600)
+    folder = tmp_path / "out"
+    with running_until_active(folder, path) as running:
         for _ in range(2):
             sent = limber("send", "--robot", "planar2r", "goal: {offset_m: [0, 0.01, 0]}")
             assert sent.returncode == 0, sent.stderr
@@ -92,18 +101,7 @@ def test_a_run_without_a_clock_waits_for_its_recorder(tmp_path):
     """The recorder, stopped for half a second: some five thousand cycles' worth."""
     path = written(tmp_path, "", seconds=60)
     folder = tmp_path / "out"
-    with subprocess.Popen(
-        [*LIMBER, "run", path, "--lockstep", "--out", str(folder), "--can"],
-        cwd=ROOT / "tools",
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        text=True,
-    ) as running:
-        log = folder / "limber-controller.log"
-        end = time.monotonic() + 60
-        while not log.exists() or "mode ACTIVE" not in log.read_text(encoding="utf-8"):
-            assert time.monotonic() < end and running.poll() is None
-            time.sleep(0.02)
+    with running_until_active(folder, path, "--lockstep", "--can") as running:
         children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
         recorders = [
             int(pid)

@@ -70,7 +70,10 @@ void add_damiao_registers(const BusFacts& bus, std::vector<Message>* messages) {
   message.comment =
       "Register request to the motor with this id: its answer has the reply's identifier.";
   Signal operation = plain("operation", 16, 8, false);
-  operation.words = {{0x33, "read"}, {0x55, "write"}, {0xAA, "store"}, {0xCC, "state request"}};
+  operation.words = {{mit::kReadRegister, "read"},
+                     {mit::kWriteRegister, "write"},
+                     {mit::kStoreRegister, "store"},
+                     {mit::kStateRequest, "state request"}};
   message.signals = {plain("id", 0, 16, false), operation, plain("register", 24, 8, false),
                      plain("value", 32, 32, false)};
   messages->push_back(std::move(message));

@@ -5,9 +5,6 @@
 namespace limber::bus_tools {
 namespace {
 
-constexpr std::uint8_t kReadRegister = 0x33;
-constexpr std::uint8_t kWriteRegister = 0x55;
-constexpr std::uint8_t kStoreRegisters = 0xAA;
 constexpr int kAngleBits = 16;
 constexpr int kOtherBits = 12;
 
@@ -137,18 +134,18 @@ Reading DamiaoDecoder::read_command(const CanFrame& frame) const {
 
 Reading DamiaoDecoder::read_request(const mit::RegisterRequest& request) {
   open_.reset();
-  if (request.operation == kReadRegister) {
+  if (request.operation == mit::kReadRegister) {
     open_ = request;
     return {name_, Direction::kCommand, "read register", {register_name(request.reg)}};
   }
-  if (request.operation == kWriteRegister) {
+  if (request.operation == mit::kWriteRegister) {
     open_ = request;
     return {name_,
             Direction::kCommand,
             "write register",
             {register_value(request.reg, request.raw_value)}};
   }
-  const char* what = request.operation == kStoreRegisters ? "store registers" : "state request";
+  const char* what = request.operation == mit::kStoreRegister ? "store registers" : "state request";
   return {name_, Direction::kCommand, what, {}};
 }
 
@@ -185,7 +182,7 @@ std::optional<Reading> DamiaoDecoder::read_register(const CanFrame& frame) {
   if (!open_ || !mit::decode_register(frame, id, open_->operation,
                                       static_cast<mit::Register>(open_->reg), &raw))
     return std::nullopt;
-  const char* what = open_->operation == kReadRegister ? "register" : "register written";
+  const char* what = open_->operation == mit::kReadRegister ? "register" : "register written";
   Reading reading{name_, Direction::kReply, what, {register_value(open_->reg, raw)}};
   open_.reset();
   return reading;

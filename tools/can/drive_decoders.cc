@@ -1,7 +1,6 @@
 // The list of drive decoders, and nothing else: docs/adding.md.
 #include "tools/can/drive_decoders.h"
 
-#include <algorithm>
 #include <array>
 
 #include "robots/loader/protocols/drive_protocol.h"
@@ -47,7 +46,7 @@ constexpr std::array kDecoders = {
 }  // namespace
 
 const DriveDecoders& decoders_of(const DriveConfig& drive) {
-  return *std::ranges::find(kDecoders, drive.protocol->word, &DriveDecoders::protocol);
+  return row_of(kDecoders, *drive.protocol);
 }
 
 }  // namespace limber::bus_tools

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,6 +95,16 @@ const DriveProtocol& protocol_named(std::string_view word);
 std::vector<std::string> protocol_words();
 /// The words of the protocols whose drives report the link's side, for messages: "a or b".
 std::string link_protocol_words();
+
+/// The row of a list with a `protocol` (a word) in each row. Throws std::logic_error if the list
+/// does not have it: docs/adding.md names the lists.
+template <typename Rows>
+const auto& row_of(const Rows& rows, const DriveProtocol& protocol) {
+  for (const auto& row : rows) {
+    if (row.protocol == protocol.word) return row;
+  }
+  throw std::logic_error("a list has no row for protocol: " + std::string(protocol.word));
+}
 
 /// Refuses keys that only motors of another protocol have.
 void refuse_foreign_keys(const YamlMap& yaml, const DriveProtocol& protocol);

@@ -71,8 +71,9 @@ def protocols() -> tuple[Protocol, ...]:
 
 def protocol(word: str) -> Protocol:
     """By its word, or a beginning of it that no other protocol has. Raises InputError."""
-    found = [entry for entry in protocols() if entry.word.startswith(word)]
-    if len(found) != 1 or not word:
+    named = [entry for entry in protocols() if entry.word == word]
+    found = named or [entry for entry in protocols() if entry.word.startswith(word)]
+    if len(found) != 1:
         words = ", ".join(entry.word for entry in protocols())
         raise InputError(f"no drive protocol '{word}'; there are {words}")
     return found[0]
