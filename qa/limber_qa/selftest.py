@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +18,7 @@ from limber.live import network
 from limber.paths import ROOT
 
 JOBS = os.cpu_count() or 1
+LONGEST_PART_S = 2400  # on two processors: 900
 PYTEST = [sys.executable, "-m", "pytest"]
 CTEST = ["ctest", "--test-dir", str(ROOT / "build" / "dev"), "--output-on-failure"]
 
@@ -146,22 +148,31 @@ class Verdict:
 
 
 def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
-    """The output comes when the part has ended; of those in real time, at once."""
+    """The output comes when the part has ended; of those in real time, at once.
+
+    A part that hangs fails like any other. Its output goes to a file, not to a pipe that what it
+    started and left behind would keep open.
+    """
     at_once = PARTS[name].lane in AT_ONCE
     command = [*([] if at_once else ["nice", "-n", "19"]), *command]
     start = time.monotonic()
-    try:
-        done = subprocess.run(
-            command,
-            cwd=ROOT,
-            check=False,
-            stdout=None if at_once else subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-    except FileNotFoundError as error:
-        raise RunError(f"{command[0]} is missing: start with ./limber test") from error
-    return Verdict(name, done.returncode == 0, time.monotonic() - start), done.stdout or ""
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as kept:
+        try:
+            done = subprocess.run(
+                command,
+                cwd=ROOT,
+                check=False,
+                stdout=None if at_once else kept,
+                stderr=subprocess.STDOUT,
+                timeout=LONGEST_PART_S,
+            )
+            passed, end = done.returncode == 0, ""
+        except subprocess.TimeoutExpired:
+            passed, end = False, f"{name}: stopped after {LONGEST_PART_S} s\n"
+        except FileNotFoundError as error:
+            raise RunError(f"{command[0]} is missing: start with ./limber test") from error
+        kept.seek(0)
+        return Verdict(name, passed, time.monotonic() - start), kept.read() + end
 
 
 def run(names: list[str], console: Console) -> bool:

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 
 import pytest
 from rich.console import Console
@@ -84,3 +85,17 @@ def test_every_part_is_a_command_that_exists():
     for name, made in selftest.PARTS.items():
         command = made.command()
         assert subprocess.run(["which", command[0]], capture_output=True).returncode == 0, name
+
+
+@pytest.mark.parametrize("lane", [Lane.REAL_TIME, Lane.BUILDS])
+def test_a_part_that_hangs_fails_and_the_others_run(parts, monkeypatch, lane, capfd):
+    """Also if what it started hangs on, with its output."""
+    monkeypatch.setattr(selftest, "LONGEST_PART_S", 1.0)
+    sleep = [sys.executable, "-c", "import time; time.sleep(20)"]
+    hanging = f"import subprocess; print('begun', flush=True); subprocess.run({sleep!r})"
+    parts(hangs=part(hanging, lane), then=part("print('seen')", lane))
+    begun = time.monotonic()
+    assert not selftest.run(["hangs", "then"], Console(width=100))
+    assert time.monotonic() - begun < 15.0
+    output = capfd.readouterr().out
+    assert "hangs: stopped after 1.0 s" in output and "begun" in output and "seen" in output

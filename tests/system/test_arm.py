@@ -8,6 +8,7 @@ from contextlib import closing
 
 import numpy as np
 import pytest
+from processes import started
 
 from limber import (
     Arm,
@@ -248,9 +249,7 @@ with Arm() as arm:
 
 
 def test_a_script_that_is_killed_in_its_stream_leaves_it_held(standing):
-    with subprocess.Popen(
-        [sys.executable, "-c", STREAM], stdout=subprocess.PIPE, text=True
-    ) as script:
+    with started([sys.executable, "-c", STREAM], stdout=subprocess.PIPE, text=True) as script:
         for _ in range(20):
             assert script.stdout.readline() == ".\n"
         assert standing.mode == Status.MODE_ACTIVE

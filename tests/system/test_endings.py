@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from processes import started
 
 from stack import ROOT
 
@@ -63,7 +64,7 @@ def test_a_refused_goal_is_told_and_fails_the_run(how, tmp_path):
 @contextmanager
 def running_until_active(folder: Path, *words: str) -> Iterator[subprocess.Popen]:
     """`limber run WORDS` into the folder, from the moment that the arm is active."""
-    with subprocess.Popen(
+    with started(
         [*LIMBER, "run", *words, "--out", str(folder)],
         cwd=ROOT / "tools",
         stdin=subprocess.DEVNULL,

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import lcm
 import pytest
+from processes import started
 
 from limber.lcmtypes.joint_state_t import joint_state_t
 from limber.log.reader import Log
@@ -20,9 +21,7 @@ STATES = 3000
 
 @contextmanager
 def recording(path):
-    with subprocess.Popen(
-        [BIN / "limber-record", "--out", path], stdout=subprocess.PIPE
-    ) as recorder:
+    with started([BIN / "limber-record", "--out", path], stdout=subprocess.PIPE) as recorder:
         yield recorder
         recorder.send_signal(signal.SIGINT)
 
@@ -53,7 +52,7 @@ def test_a_log_is_read_while_it_grows(tmp_path, name):
         early = Log(path)
         before = early.read("JOINT_STATE")["seq"].tolist()
         assert before == list(range(before[0], before[0] + len(before)))
-        with subprocess.Popen(
+        with started(
             [LIMBER, "log", "rate", path],
             cwd=ROOT,
             stdout=subprocess.PIPE,

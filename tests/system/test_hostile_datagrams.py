@@ -10,6 +10,7 @@ import sys
 from contextlib import closing, suppress
 
 import pytest
+from processes import started
 
 from limber.live.line import Line
 from stack import USER_URL
@@ -136,7 +137,7 @@ def bombard(neighbour) -> None:
 def test_a_script_survives(stack, neighbour):
     stack.start_all()
     stack.until(lambda: stack.mode is not None, 20, "the controller answers")
-    with subprocess.Popen(
+    with started(
         [sys.executable, "-c", SCRIPT], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as script:
         assert script.stdout.readline() == "hears\n"
@@ -162,7 +163,7 @@ def test_watch_survives(stack, neighbour):
     stack.until(lambda: stack.mode is not None, 20, "the controller answers")
     ours, theirs = pty.openpty()
     command = [sys.executable, "-m", "limber", "watch"]
-    with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs) as watch:
+    with started(command, stdin=theirs, stdout=theirs, stderr=theirs) as watch:
         os.close(theirs)
         read_terminal(ours, 2000)
         bombard(neighbour)

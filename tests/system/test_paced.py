@@ -14,6 +14,7 @@ import lcm
 import numpy as np
 import pytest
 import yaml
+from processes import started
 
 from limber import Arm
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
@@ -138,7 +139,7 @@ def one_process(folder: Path):
     """`limber run --one-process` of an arm that waits to be asked."""
     command = [LIMBER, "run", str(ROOT / "scenarios" / "ready.yaml"), "--one-process"]
     command += ["--record-plain", "--record", "--out", str(folder)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
+    with started(command, stdout=subprocess.PIPE, text=True) as running:
         try:
             yield running
         finally:

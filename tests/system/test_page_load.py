@@ -13,6 +13,7 @@ from contextlib import ExitStack
 import pytest
 import viser
 from many_viewers import viewers
+from processes import started
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
@@ -26,7 +27,7 @@ SECONDS = 15.0
 
 @pytest.fixture
 def publisher():
-    with subprocess.Popen([sys.executable, numbered_messages.__file__]) as process:
+    with started([sys.executable, numbered_messages.__file__]) as process:
         yield process
         process.terminate()
 

@@ -1,13 +1,13 @@
 """The Python receiver on the wire: every message, whatever the script does meanwhile."""
 
 import ctypes
-import subprocess
 import sys
 import time
 from contextlib import closing
 
 import numpy as np
 import pytest
+from processes import started
 
 import numbered_messages
 from limber import messages
@@ -17,7 +17,7 @@ from numbered_messages import CHANNELS
 
 @pytest.fixture
 def publisher():
-    with subprocess.Popen([sys.executable, numbered_messages.__file__]) as process:
+    with started([sys.executable, numbered_messages.__file__]) as process:
         yield process
         process.terminate()
 

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 import lcm
 import pytest
+from processes import started
 
 from limber.lcmtypes.joint_state_t import joint_state_t
 from limber.lcmtypes.mode_request_t import mode_request_t
@@ -28,7 +29,7 @@ def test_a_broken_datagram_is_left_out(tmp_path):
     output = tmp_path / "record.log"
     with (
         output.open("w") as log,
-        subprocess.Popen(
+        started(
             [str(BIN / "limber-record"), "--out", str(path)], stdout=log, stderr=log
         ) as recorder,
     ):
@@ -55,7 +56,7 @@ def recording(path, *options, url=URL):
     surroundings = {**os.environ, "LCM_DEFAULT_URL": url}
     with (
         said.open("w") as log,
-        subprocess.Popen(command, stdout=log, stderr=log, env=surroundings) as recorder,
+        started(command, stdout=log, stderr=log, env=surroundings) as recorder,
     ):
         while "recording" not in said.read_text():
             assert recorder.poll() is None, said.read_text()

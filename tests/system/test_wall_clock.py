@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from many_viewers import viewers
+from processes import started
 
 from browser_page import free_port
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
@@ -62,9 +63,9 @@ def wall_clock(tmp_path, monkeypatch):
 
 
 @contextmanager
-def started(*command, **options):
+def interrupted(*command, **options):
     """Ended by Ctrl-C, as a user does, if it has not ended by then."""
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, **options) as process:
+    with started(command, stdout=subprocess.PIPE, text=True, **options) as process:
         try:
             yield process
         finally:
@@ -97,9 +98,9 @@ def test_nothing_takes_notice(wall_clock, stack, tmp_path):
     port, log = free_port(), tmp_path / "run.lcmlog.zst"
     page = sys.executable, "-m", "limber", "monitor", "--port", str(port)
     with (
-        started(BIN / "limber-record", "--out", log) as recorder,
-        started(*page, cwd=ROOT) as monitor,
-        started(sys.executable, "-c", CLIENT, stdin=subprocess.PIPE) as client,
+        interrupted(BIN / "limber-record", "--out", log) as recorder,
+        interrupted(*page, cwd=ROOT) as monitor,
+        interrupted(sys.executable, "-c", CLIENT, stdin=subprocess.PIPE) as client,
     ):
         assert "http://" in monitor.stdout.readline()
         assert client.stdout.readline() == "active\n"

@@ -9,6 +9,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from processes import started
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
@@ -80,7 +81,7 @@ def test_a_flood_of_foreign_frames_is_not_even_heard(arm):
 def test_random_replies_in_the_name_of_a_drive_move_nothing(arm):
     """Most are unreadable or impossible. Whether the drives hold depends on when they come."""
     before = np.array(arm.truth.q[:2])
-    with subprocess.Popen("exec cangen vxcan1 -g 5 -I 011 -L 8 -D r -n 400", shell=True) as flood:
+    with started("exec cangen vxcan1 -g 5 -I 011 -L 8 -D r -n 400", shell=True) as flood:
         flood.wait(timeout=60)
     arm.pass_time(0.5)
     assert np.abs(np.array(arm.truth.q[:2]) - before).max() < 0.02

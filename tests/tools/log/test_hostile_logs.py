@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import zstandard
 from made_logs import event_bytes, records, write_log
+from processes import started
 
 from limber.log import compressed
 from limber.log.reader import Log, count_gaps, count_jumps
@@ -102,7 +103,7 @@ except LimberError as error:
 def test_a_log_that_changes_while_it_is_read_is_given_up_with_a_word(how, tmp_path):
     path = write_log(tmp_path / "log", {"JOINT_STATE": records("joint_state_t", 5000)})
     command = [sys.executable, "-c", READING, str(path)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as reader:
+    with started(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as reader:
         assert reader.stdout.readline() == "open\n"
         if how == "cut":
             os.truncate(path, 1000)

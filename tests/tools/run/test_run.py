@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from processes import started
 
 from limber.log.reader import Log
 from limber.paths import ROOT
@@ -38,7 +39,7 @@ def long_run(tmp_path):
     (tmp_path / "long.yaml").write_text(LONG)
     folder = tmp_path / "out"
     command = [sys.executable, "-m", "limber", "run", str(tmp_path / "long.yaml"), "--private"]
-    with subprocess.Popen(
+    with started(
         [*command, "--out", str(folder)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
