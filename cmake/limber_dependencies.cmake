@@ -1,10 +1,16 @@
-# Everything limber is built from. LCM comes from the Python environment that ./limber makes (the wheel carries headers,
-# library and lcm-gen: one version for C++ and Python), the rest from the distribution.
-set(environment ${CMAKE_SOURCE_DIR}/.venv)
-if(NOT EXISTS ${environment}/bin/lcm-gen)
+# Everything limber is built from. LCM comes from a Python environment (the wheel carries headers, library and lcm-gen: one
+# version for C++ and Python), the rest from the distribution.
+if(SKBUILD AND NOT LIMBER_VENV)  # pip's own environment for this build
+  find_program(LIMBER_LCM_GEN lcm-gen REQUIRED)
+  cmake_path(GET LIMBER_LCM_GEN PARENT_PATH environment)
+  cmake_path(GET environment PARENT_PATH environment)
+  set(LIMBER_PYTHON ${Python_EXECUTABLE} CACHE FILEPATH "Python with LCM and PyYAML")
+elseif(EXISTS ${CMAKE_SOURCE_DIR}/.venv/bin/lcm-gen)
+  set(environment ${CMAKE_SOURCE_DIR}/.venv)
+else()
   set(environment ${CMAKE_BINARY_DIR}/python)
 endif()
-set(LIMBER_VENV ${environment} CACHE PATH "Python environment: ./limber's, else one with what the build alone needs")
+set(LIMBER_VENV ${environment} CACHE PATH "Python environment: pip's, ./limber's, else one with what the build alone needs")
 if(NOT EXISTS ${LIMBER_VENV}/bin/lcm-gen)
   message(STATUS "Making a Python environment in ${LIMBER_VENV}")
   file(STRINGS ${CMAKE_SOURCE_DIR}/pyproject.toml needed REGEX "^  \"(lcm|pyyaml)[=>]")

@@ -3,7 +3,8 @@
 #   limber_sources(RESULT [ONLY folder] [EXCEPT ...])   the sources of a folder
 #   limber_list(SOURCES)                          files that only list what there is
 #   limber_library(NAME SOURCES... [LINK targets...])   static library limber_NAME
-#   limber_program(NAME SOURCES... [LINK targets...])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin
+#   limber_program(NAME SOURCES... [LINK targets...] [INSTALLED])   program limber-NAME, into ${CMAKE_BINARY_DIR}/bin; INSTALLED: see
+#                                                 limber_install.cmake
 #   limber_tests(NAME [EXCEPT ...] [LINK targets...] [SHARDS n] [PLAIN])   GoogleTest program of all test_*.cc below, registered with
 #                                                 ctest, and part of the target unit_tests. PLAIN: full of Eigen; under sanitizers, which
 #                                                 triple its build, only with LIMBER_SANITIZE_ALL. Else it is part of plain_tests
@@ -12,7 +13,11 @@
 # instantiates anew. So files are compiled LIMBER_UNITY at a time as one. Two of them may then not have helpers of one name in
 # their anonymous namespaces; a test file has a namespace of its own. LIMBER_UNITY=0 compiles each by itself: finds missing includes, and builds faster after small edits.
 
-option(LIMBER_BUILD_TESTS "Build the tests" ON)
+set(tests ON)
+if(SKBUILD)  # pip builds a package
+  set(tests OFF)
+endif()
+option(LIMBER_BUILD_TESTS "Build the tests" ${tests})
 option(LIMBER_BUILD_BENCH "Build the benchmarks" OFF)
 option(LIMBER_WERROR "Treat warnings as errors" OFF)
 set(LIMBER_UNITY 16 CACHE STRING "Source files compiled as one; 0: each by itself")
@@ -50,6 +55,8 @@ target_include_directories(limber_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BI
 # No -march=native: the distribution's KDL and Eigen would disagree about alignment across the library boundary.
 # No fused multiply-add contraction: the same scenario gives the same bytes with every compiler of one machine type.
 target_compile_options(limber_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+# The same objects make programs here and liblimber.so, which shows nothing but LIMBER_PUBLIC (common/public.h).
+target_compile_options(limber_flags INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden -fno-semantic-interposition)
 if(LIMBER_WERROR)
   target_compile_options(limber_flags INTERFACE -Werror)
 endif()
@@ -109,11 +116,15 @@ function(limber_library name)
 endfunction()
 
 function(limber_program name)
-  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "INSTALLED" "" "LINK" ${ARGN})
   add_executable(limber-${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(limber-${name} PRIVATE limber_flags ${arg_LINK})
   target_precompile_headers(limber-${name} REUSE_FROM limber_headers)
   set_target_properties(limber-${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  if(arg_INSTALLED)
+    set_target_properties(limber-${name} PROPERTIES ENABLE_EXPORTS ON)  # for laws from shared libraries
+    limber_installed(${name} ${arg_UNPARSED_ARGUMENTS} LINK ${arg_LINK})
+  endif()
 endfunction()
 
 add_custom_target(unit_tests)

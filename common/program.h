@@ -5,6 +5,17 @@
 #include <functional>
 
 #include "common/command_line.h"
+#include "common/public.h"
+
+/// `int main(int argc, char** argv)` of limber-NAME. liblimber.so has all of them, each under its
+/// own name, for the launchers of cmake/limber_install.cmake.
+#ifdef LIMBER_IN_LIBRARY
+#define LIMBER_MAIN(name)                                                   \
+  extern "C" LIMBER_PUBLIC int limber_##name##_main(int argc, char** argv); \
+  int limber_##name##_main(int argc, char** argv)
+#else
+#define LIMBER_MAIN(name) int main(int argc, char** argv)
+#endif
 
 namespace limber {
 

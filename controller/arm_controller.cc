@@ -9,6 +9,7 @@
 #include "common/overloaded.h"
 #include "controller/status_writer.h"
 #include "lcmtypes/channels.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber {
 namespace {

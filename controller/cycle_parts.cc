@@ -1,13 +1,14 @@
 #include "controller/cycle_parts.h"
 
 #include "common/config_error.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 
 CycleParts::CycleParts(const LoadedRobot& robot, const std::string& law, bool simulated)
     : state(robot.robot.size()),
       arm(robot),
-      laws(robot, law, simulated),
+      laws({robot.robot, arm.model()}, law, simulated),
       goals(robot, &arm.model(), simulated),
       gains(robot.robot, arm.springs(), law_catalog().parameters),
       observers(robot),

@@ -3,6 +3,7 @@
 #include "controller/gains/read_gains.h"
 #include "lcmtypes/gains_merge.h"
 #include "robots/loader/default_gains.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/laws/registry.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 namespace {

@@ -10,6 +10,7 @@
 #include "controller/controller_process.h"
 #include "controller/laws/registry.h"
 #include "controller/list_laws.h"
+#include "robots/loader/load_robot.h"
 
 namespace {
 
@@ -67,6 +68,7 @@ ArmControllerOptions options_from(const Arguments& given, bool lockstep) {
 }
 
 int run(const Arguments& given) {
+  controller::load_laws(scenario_laws(given.scenario));
   if (given.list_laws) return print_laws(given);
   const LoadedRobot robot = load_robot(robot_name(given));
   std::optional<Scenario> scenario;
@@ -92,7 +94,7 @@ int run(const Arguments& given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(controller) {
   CommandLine line("limber-controller",
                    "Answers each JOINT_STATE with a JOINT_TORQUE, by the selected control law.");
   Arguments given;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limber/controller_status_t.hpp>
 
+#include "robots/loader/load_robot.h"
+
 namespace limber::controller {
 
 TorqueCycle::TorqueCycle(const LoadedRobot& robot, const std::string& law, Allowed allowed)

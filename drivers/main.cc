@@ -39,7 +39,7 @@ int run(Arguments given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(driver) {
   limber::CommandLine line(
       "limber-driver",
       "Drives the motors of an arm: one frame to each and one reply from each a cycle, JOINT_STATE "

@@ -29,6 +29,7 @@
 #include "dynamics/body_chain.h"
 #include "dynamics/joint_rows.h"
 
+#pragma GCC visibility push(default)
 namespace limber::dynamics {
 
 /// For arms of at most N joints. place() comes first; each of the others says what it needs
@@ -111,3 +112,4 @@ using AnyArmKernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
 AnyArmKernel arm_kernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
 
 }  // namespace limber::dynamics
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <kdl/chain.hpp>
 
 #include "common/config_error.h"
 #include "common/joints.h"

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <kdl/chain.hpp>
 #include <vector>
 
+namespace KDL {
+class Chain;
+}
+
+#pragma GCC visibility push(default)
 namespace limber::dynamics {
 
 /// Mass, centre of mass and inertia about the centre of mass, all in one frame. kg, m, kg m^2.
@@ -54,3 +58,4 @@ struct BodyChain {
 BodyChain body_chain(const KDL::Chain& chain, int joints);
 
 }  // namespace limber::dynamics
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
 namespace limber::dynamics {
 
 /// P # Q = P (P^-1 Q)^1/2, the one G, symmetric and positive, with G P^-1 G = Q: in axes in which P
@@ -21,3 +22,4 @@ namespace limber::dynamics {
                                   Eigen::Ref<Eigen::MatrixXd> G) noexcept;
 
 }  // namespace limber::dynamics
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::dynamics {
 
 /// X <- M^-1 X for a symmetric positive definite M, n x n, by elimination without pivoting. Gives
@@ -17,3 +18,4 @@ void solve_spd(const MatrixJ& M, const Matrix6J& J, MatrixJ6* Minv_JT, Matrix6* 
 Matrix6 inverse_spd(const Matrix6& G) noexcept;
 
 }  // namespace limber::dynamics
+#pragma GCC visibility pop

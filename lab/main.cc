@@ -111,6 +111,7 @@ int run_live(const Arguments& given, const Robot& robot, const Scenario& scenari
 }
 
 int run(const Arguments& given) {
+  controller::load_laws(scenario_laws(given.scenario));
   LoadedRobot robot = load_robot(scenario_robot(given.scenario));
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   if (given.rate_hz > 0.0) robot.robot.rate_hz = given.rate_hz;
@@ -121,7 +122,7 @@ int run(const Arguments& given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(lab) {
   CommandLine line(
       "limber-lab",
       "Runs a scenario in one process, in lock step, as fast as the processor allows.");

@@ -77,7 +77,7 @@ int run(const Arguments& given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(sim) {
   CommandLine line(
       "limber-sim",
       "The simulated arm on its CAN buses: motor nodes that answer as the real drives do.");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "controller/kinds/sensors.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 namespace {

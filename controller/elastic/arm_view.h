@@ -10,6 +10,7 @@
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// What determines where the link of an elastic joint is at rest while its motor stays where it is.
@@ -89,3 +90,4 @@ class ArmView {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

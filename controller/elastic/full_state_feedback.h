@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Motor position and joint torque fed back (Albu-Schaeffer, Ott, Hirzinger 2007):
@@ -25,3 +26,4 @@ struct FullStateFeedback {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

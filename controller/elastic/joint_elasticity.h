@@ -5,6 +5,7 @@
 #include "controller/elastic/joint_springs.h"
 #include "controller/kinds/law_settings.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 struct JointElasticity {
@@ -21,3 +22,4 @@ struct JointElasticity {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

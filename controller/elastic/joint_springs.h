@@ -6,6 +6,7 @@
 #include "common/types.h"
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 class JointSprings {
@@ -57,3 +58,4 @@ class JointSprings {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

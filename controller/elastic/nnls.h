@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Minimises x^T G x / 2 - h^T x over x >= 0: least squares |A x - b| with G = A^T A, h = A^T b.
@@ -13,3 +14,4 @@ namespace limber::controller {
 VectorJ nonnegative_least_squares(const MatrixJ& G, const VectorJ& h) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include "controller/elastic/spring_law.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// x with pair.torque(c, x) = tau, rad; at most kFarthest_rad. Quadratic springs that
@@ -19,3 +20,4 @@ double least_preload(const SpringPair& pair, double tau) noexcept;
 double pair_preload(const SpringPair& pair, double sigma, double tau, double c_max) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

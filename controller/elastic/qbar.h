@@ -5,6 +5,7 @@
 #include "controller/model/pose_error.h"
 #include "controller/model/spring_limit.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Static laws of the link: l(q) is the torque it shall see at rest.
@@ -96,3 +97,4 @@ class QbarSolver {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

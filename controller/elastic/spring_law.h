@@ -6,6 +6,7 @@
 
 #include "robots/loader/joint_chain.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// f(d), N m, odd in the deflection d, see SpringLaw. May be called in the cycle.
@@ -93,3 +94,4 @@ struct SpringPair {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// P. Tomei, A simple PD controller for robots with elastic joints, 1991:
@@ -36,3 +37,4 @@ struct Tomei {
 double critical_motor_gain(double K_J, double alpha) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// m x n, m <= 6 task rows.
@@ -34,3 +35,4 @@ TaskMatrix presented_compliance(const TaskJacobian& J, const VectorJ& sigma,
                                 const MatrixJ& K_G) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

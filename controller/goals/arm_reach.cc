@@ -6,6 +6,8 @@
 #include <cmath>
 #include <kdl/chain.hpp>
 
+#include "robots/loader/load_robot.h"
+
 namespace limber::controller {
 namespace {
 

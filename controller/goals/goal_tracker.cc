@@ -1,11 +1,13 @@
 #include "controller/goals/goal_tracker.h"
 
+#include "robots/loader/load_robot.h"
+
 namespace limber::controller {
 
 GoalTracker::GoalTracker(const LoadedRobot& robot, ArmModel* model, bool simulated)
     : model_(model),
       generator_(robot.robot),
-      inverse_kinematics_(robot),
+      inverse_kinematics_(*model),
       reach_(robot),
       simulated_(simulated),
       goal_(robot.robot.size()) {}

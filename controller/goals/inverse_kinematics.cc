@@ -18,8 +18,8 @@ constexpr double kPostureRate_per_s = 1.0;
 
 }  // namespace
 
-InverseKinematics::InverseKinematics(const LoadedRobot& robot)
-    : model_(robot), q_(VectorJ::Zero(model_.size())), drift_(VectorJ::Zero(model_.size())) {}
+InverseKinematics::InverseKinematics(const ArmModel& model)
+    : model_(model), q_(VectorJ::Zero(model_.size())), drift_(VectorJ::Zero(model_.size())) {}
 
 void InverseKinematics::reset(const VectorJ& q) noexcept {
   q_ = q;

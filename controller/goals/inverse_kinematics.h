@@ -15,7 +15,7 @@ namespace limber::controller {
 /// close as the damping lets it.
 class InverseKinematics {
  public:
-  explicit InverseKinematics(const LoadedRobot& robot);
+  explicit InverseKinematics(const ArmModel& model);
 
   /// Starts from q. In the cycle.
   void reset(const VectorJ& q) noexcept;

@@ -10,6 +10,7 @@
 #include "controller/kinds/gains.h"
 #include "controller/model/arm_terms.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// For the joint stiffness K_q on the inertia M (n x n), with the floor for joints without
@@ -42,3 +43,4 @@ Matrix6 chosen_tip_damping(const Gains& gains, const ArmTerms& terms,
                            const JointElasticity* elastic = nullptr) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "controller/kinds/law_entry.h"
 #include "controller/model/arm_terms.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 class DampingCheck {
@@ -29,3 +30,4 @@ class DampingCheck {
 double overshoot(double ratio) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

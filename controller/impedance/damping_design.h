@@ -5,6 +5,7 @@
 #include "controller/kinds/law_settings.h"
 #include "controller/model/singularity.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Damping for the joints, n x n, N m s/rad, from M (n x n positive definite, rotors included) and
@@ -63,3 +64,4 @@ Matrix6 tip_damping_floor(const Matrix6& K) noexcept;
 VectorJ joint_damping_floor(const MatrixJ& M, const MatrixJ& K) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -20,6 +20,7 @@
 
 #include "controller/kinds/law_settings.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Linear: kg, N s/m, N/m; for rotations read kg m^2, N m s/rad, N m/rad.
@@ -60,3 +61,4 @@ ElasticDamping elastic_damping(const ElasticMode& mode, double ratio, double rig
 double motor_share(const ElasticMode& mode, double D, double t_d) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -20,6 +20,7 @@
 #include "controller/kinds/gains.h"
 #include "controller/model/arm_terms.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// A mode with less stiffness, as a share of the stiffest one's, has none.
@@ -62,3 +63,4 @@ inline bool reckons_with(const JointElasticity* elastic, DampingDesign design) n
 }
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

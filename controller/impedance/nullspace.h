@@ -8,6 +8,7 @@
 #include "controller/model/arm_terms.h"
 #include "controller/model/singularity.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// The rows of the task: those in which K_x has an entry. An arm that is free in a direction may
@@ -67,3 +68,4 @@ VectorJ null_space_torque(const ControlPoint& point, const ArmTerms& terms, cons
                           const VectorJ& torque_limit) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "controller/impedance/nullspace.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// null_space_torque() with what it has to remember. All members may be called in the cycle.
@@ -44,3 +45,4 @@ class Posture {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 // that cannot be kept is 0.
 #pragma once
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// A hold acts as half a sample of delay, which turns K into the damping -K (T/2 + t_d):
@@ -41,3 +42,4 @@ double quantised_wall_stiffness_limit(double b, double F_c, double delta, double
 double torque_lag_stiffness_limit(double m, double b, double D, double tau_e) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "common/types.h"
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 class SpringsCheck {
@@ -26,3 +27,4 @@ class SpringsCheck {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "controller/kinds/gains.h"
 #include "controller/model/arm_terms.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// One mode of M s^2 + D s + K.
@@ -66,3 +67,4 @@ class StabilityCheck {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -14,6 +14,7 @@
 #include "controller/model/arm_terms.h"
 #include "controller/model/pose_error.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// K_1.
@@ -74,3 +75,4 @@ MappedGains mapped_gains(ArmModel* model, const VectorJ& q, const VectorJ& v, co
                          const MappingChoice& choice) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include "controller/kinds/law_parameters.h"
 #include "controller/kinds/law_settings.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Six-by-six matrices are [linear; angular]. A message gives joint matrices by their diagonals.
@@ -28,3 +29,4 @@ struct Gains {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include "controller/kinds/pose.h"
 #include "controller/kinds/smooth_motion.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// What a law follows: a law for the tip has X_BD and its rates, a law for the joints has those and
@@ -30,3 +31,4 @@ struct Goal {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -8,11 +8,18 @@
 #include "controller/kinds/law_settings.h"
 #include "controller/kinds/sensors.h"
 #include "lcmtypes/gains_table.h"
-#include "robots/loader/load_robot.h"
+#include "robots/loader/robot.h"
 
 namespace limber::controller {
 
-class Law;  // laws/law.h
+class ArmModel;  // model/arm_terms.h
+class Law;       // laws/law.h
+
+/// The arm that a law is made for; both outlive the call only.
+struct LawArm {
+  const Robot& robot;
+  const ArmModel& model;  ///< to be copied by a law that evaluates it at other states
+};
 
 /// The goal that a law follows. Laws for the joints take goals at the tip too: the cycle solves the
 /// inverse kinematics.
@@ -79,7 +86,7 @@ struct LawEntry {
   std::vector<GainRow*> parameters = {};
   std::vector<LawReport> reports = {};
   /// Makes the law for an arm that has what it needs. May throw ConfigError.
-  std::unique_ptr<Law> (*make)(const LoadedRobot& robot) = nullptr;
+  std::unique_ptr<Law> (*make)(const LawArm& arm) = nullptr;
 };
 
 }  // namespace limber::controller

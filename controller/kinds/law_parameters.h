@@ -7,6 +7,7 @@
 #include "common/types.h"
 #include "lcmtypes/gains_table.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// The parameters that all laws declare: LawCatalog::parameters.
@@ -52,3 +53,4 @@ class LawParameters {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

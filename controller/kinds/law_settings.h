@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limber/compliance_gains_t.hpp>
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Position that a law receives on elastic joints, and at which the model is evaluated. Damping
@@ -139,3 +140,4 @@ LawSettings read_settings(const compliance_gains_t& fields) noexcept;
 const LawSettings& default_settings() noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

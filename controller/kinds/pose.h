@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// X_BF: origin p of frame F in B, m, and the unit quaternion Q that turns F's axes into B's.
@@ -12,3 +13,4 @@ struct Pose {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

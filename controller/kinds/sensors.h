@@ -3,6 +3,7 @@
 
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// What a law may need of an arm, to be combined with |.
@@ -21,3 +22,4 @@ inline constexpr unsigned kSprings = 128;    ///< some joint is not rigid
 unsigned sensors_of(const Robot& robot) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

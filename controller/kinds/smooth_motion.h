@@ -1,6 +1,7 @@
 // Motion from rest to rest with four continuous derivatives.
 #pragma once
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// x(t) = x0 + (x1 - x0) p(t / T),  p(s) = 126 s^5 - 420 s^6 + 540 s^7 - 315 s^8 + 70 s^9:
@@ -58,3 +59,4 @@ class SmoothMotion {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

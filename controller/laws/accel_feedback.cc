@@ -42,7 +42,7 @@ LawEntry accel_feedback_law() {
           .needs = sensors::kMotorEncoder,
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .coriolis = true, .null_space = true},
-          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
+          .make = [](const LawArm&) -> std::unique_ptr<Law> {
             return std::make_unique<AccelFeedback>();
           }};
 }

@@ -19,11 +19,11 @@ namespace {
 
 class Admittance : public Law {
  public:
-  explicit Admittance(const LoadedRobot& robot)
-      : joints_(robot.robot.size()),
+  explicit Admittance(const LawArm& arm)
+      : joints_(arm.robot.size()),
         goal_(joints_),
-        inverse_kinematics_(robot),
-        filter_(Matrix6::Identity(), Matrix6::Zero(), Matrix6::Zero(), 1.0 / robot.robot.rate_hz),
+        inverse_kinematics_(arm.model),
+        filter_(Matrix6::Identity(), Matrix6::Zero(), Matrix6::Zero(), 1.0 / arm.robot.rate_hz),
         D_q_(MatrixJ::Zero(joints_, joints_)) {}
 
   const char* check(const Gains& gains) const noexcept override {
@@ -90,8 +90,8 @@ LawEntry admittance_law() {
           .needs = sensors::kMotorEncoder,
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .coriolis = true},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<Admittance>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<Admittance>(arm);
           }};
 }
 

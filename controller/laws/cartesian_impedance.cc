@@ -89,7 +89,7 @@ LawEntry cartesian_impedance_law() {
           .potential = Potential::kTipSpring,
           .damped = DampedAt::kTip,
           .parameters = {&inertia_feedforward},
-          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
+          .make = [](const LawArm&) -> std::unique_ptr<Law> {
             return std::make_unique<CartesianImpedance>();
           }};
 }

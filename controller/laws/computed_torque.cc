@@ -32,7 +32,7 @@ GainRow literal_stiffness = {
 
 class ComputedTorque : public Law {
  public:
-  explicit ComputedTorque(const LoadedRobot& robot) : model_(robot) {}
+  explicit ComputedTorque(const LawArm& arm) : model_(arm.model) {}
 
   void compute(const LawInputs& in, LawOutput* out) noexcept override {
     const LawParameters& own = in.gains.parameters;
@@ -66,8 +66,8 @@ LawEntry computed_torque_law() {
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = true, .coriolis = true},
           .parameters = {&K_acc, &D_acc, &literal_stiffness},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<ComputedTorque>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<ComputedTorque>(arm);
           }};
 }
 

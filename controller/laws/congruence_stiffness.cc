@@ -14,8 +14,8 @@ namespace {
 
 class CongruenceStiffness : public Law {
  public:
-  explicit CongruenceStiffness(const LoadedRobot& robot)
-      : model_(robot),
+  explicit CongruenceStiffness(const LawArm& arm)
+      : model_(arm.model),
         J_(Matrix6J::Zero(6, model_.size())),
         K_q_(MatrixJ::Zero(model_.size(), model_.size())),
         K_v_(K_q_) {}
@@ -62,8 +62,8 @@ LawEntry congruence_stiffness_law() {
       .needs = sensors::kMotorEncoder,
       .goal_type = GoalType::kJointsAndWrench,
       .compensation = {.gravity = true, .null_space = true},
-      .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-        return std::make_unique<CongruenceStiffness>(robot);
+      .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+        return std::make_unique<CongruenceStiffness>(arm);
       }};
 }
 

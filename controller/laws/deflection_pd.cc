@@ -13,10 +13,10 @@ namespace {
 
 class DeflectionPd : public Law {
  public:
-  explicit DeflectionPd(const LoadedRobot& robot)
-      : link_encoders_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
-        K_J_(JointSprings(robot.robot).at_rest()),
-        bend_rate_(robot.robot.size(), kTorqueRateCorner_rad_per_s, 1.0 / robot.robot.rate_hz) {}
+  explicit DeflectionPd(const LawArm& arm)
+      : link_encoders_((sensors_of(arm.robot) & sensors::kLinkEncoder) != 0),
+        K_J_(JointSprings(arm.robot).at_rest()),
+        bend_rate_(arm.robot.size(), kTorqueRateCorner_rad_per_s, 1.0 / arm.robot.rate_hz) {}
 
   void start(const LawInputs& /*in*/) noexcept override { bend_rate_.reset(); }
 
@@ -49,8 +49,8 @@ LawEntry deflection_pd_law() {
           .goal_type = GoalType::kNone,
           .compensation = {.gravity = false},
           .demonstration = true,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<DeflectionPd>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<DeflectionPd>(arm);
           }};
 }
 

@@ -16,9 +16,9 @@ constexpr double kStep_s = 1e-3;
 
 class Flatness : public Law {
  public:
-  explicit Flatness(const LoadedRobot& robot)
-      : model_(robot),
-        K_J_(JointSprings(robot.robot).at_rest()),
+  explicit Flatness(const LawArm& arm)
+      : model_(arm.model),
+        K_J_(JointSprings(arm.robot).at_rest()),
         D_(MatrixJ::Zero(model_.size(), model_.size())) {}
 
   const char* check(const Gains& gains) const noexcept override {
@@ -76,8 +76,8 @@ LawEntry flatness_law() {
           .goal_type = GoalType::kSmoothJoints,
           .compensation = {.gravity = false},
           .potential = Potential::kGravity,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<Flatness>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<Flatness>(arm);
           }};
 }
 

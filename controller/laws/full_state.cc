@@ -23,14 +23,14 @@ GainRow torque_gain = {
 
 class FullState : public Law {
  public:
-  explicit FullState(const LoadedRobot& robot)
-      : model_(robot),
-        tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / robot.robot.rate_hz),
+  explicit FullState(const LawArm& arm)
+      : model_(arm.model),
+        tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / arm.robot.rate_hz),
         D_(MatrixJ::Zero(model_.size(), model_.size())),
         D_J_(model_.size()) {
-    law_ = {D_, D_, D_, D_, JointSprings(robot.robot).at_rest()};
+    law_ = {D_, D_, D_, D_, JointSprings(arm.robot).at_rest()};
     for (Eigen::Index i = 0; i < D_J_.size(); ++i) {
-      D_J_[i] = robot.robot.joints[static_cast<std::size_t>(i)].transmission.damping_Nms_per_rad;
+      D_J_[i] = arm.robot.joints[static_cast<std::size_t>(i)].transmission.damping_Nms_per_rad;
     }
   }
 
@@ -86,8 +86,8 @@ LawEntry full_state_law() {
           .compensation = {.gravity = false},
           .potential = Potential::kGravity,
           .parameters = {&torque_gain},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<FullState>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<FullState>(arm);
           }};
 }
 

@@ -19,7 +19,7 @@ LawEntry gravity_compensation_law() {
           .goal_type = GoalType::kNone,
           .compensation = {.gravity = true},
           .potential = Potential::kGravity,
-          .make = [](const LoadedRobot&) -> std::unique_ptr<Law> {
+          .make = [](const LawArm&) -> std::unique_ptr<Law> {
             return std::make_unique<GravityCompensation>();
           }};
 }

@@ -85,8 +85,8 @@ LawEntry joint_impedance_law() {
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = true, .coriolis = true},
           .parameters = {&M_q},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<JointImpedance>(robot.robot.size());
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<JointImpedance>(arm.robot.size());
           }};
 }
 

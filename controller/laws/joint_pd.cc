@@ -41,8 +41,8 @@ LawEntry joint_pd_law() {
           .compensation = {.gravity = true},
           .potential = Potential::kJointSpring,
           .damped = DampedAt::kJoints,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<JointPd>(robot.robot.size());
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<JointPd>(arm.robot.size());
           }};
 }
 

@@ -5,15 +5,15 @@
 
 namespace limber::controller {
 
-LawBank::LawBank(const LoadedRobot& robot, const std::string& selected, bool simulated)
-    : sensors_(sensors_of(robot.robot)),
+LawBank::LawBank(const LawArm& arm, const std::string& selected, bool simulated)
+    : sensors_(sensors_of(arm.robot)),
       simulated_(simulated),
       hold_(find("joint_pd")),
       selected_(find(selected)),
       running_(hold_) {
   for (const LawEntry& entry : controller::laws()) {
     const bool possible = check_law(entry, sensors_) == nullptr;
-    laws_.push_back(possible ? entry.make(robot) : nullptr);
+    laws_.push_back(possible ? entry.make(arm) : nullptr);
   }
 }
 

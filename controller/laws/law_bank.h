@@ -16,7 +16,7 @@ class LawBank {
  public:
   /// `simulated`: every bus is; only then laws that demonstrate a mistake are allowed. Throws
   /// ConfigError if there is no law of this name or the arm cannot run it.
-  LawBank(const LoadedRobot& robot, const std::string& selected, bool simulated);
+  LawBank(const LawArm& arm, const std::string& selected, bool simulated);
 
   int selected() const noexcept { return selected_; }
   void select(int law) noexcept { selected_ = law; }

@@ -39,8 +39,8 @@ GainRow follow_velocity = {.key = "follow_velocity",
 
 class MappedJointImpedance : public Law {
  public:
-  explicit MappedJointImpedance(const LoadedRobot& robot)
-      : model_(robot), K_p_(MatrixJ::Zero(model_.size(), model_.size())), K_v_(K_p_) {}
+  explicit MappedJointImpedance(const LawArm& arm)
+      : model_(arm.model), K_p_(MatrixJ::Zero(model_.size(), model_.size())), K_v_(K_p_) {}
 
   void start(const LawInputs& in) noexcept override { map(in); }
 
@@ -80,8 +80,8 @@ LawEntry mapped_joint_impedance_law() {
       .compensation = {.gravity = true, .null_space = true},
       .damped = DampedAt::kTip,
       .parameters = {&stiffness_pose, &damping_partials, &follow_velocity},
-      .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-        return std::make_unique<MappedJointImpedance>(robot);
+      .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+        return std::make_unique<MappedJointImpedance>(arm);
       }};
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 class MultirateImpedance : public Law {
  public:
-  explicit MultirateImpedance(const LoadedRobot& robot)
-      : model_(robot),
+  explicit MultirateImpedance(const LawArm& arm)
+      : model_(arm.model),
         q_(VectorJ::Zero(model_.size())),
         tau_(q_),
         tau_goal_(q_),
@@ -66,8 +66,8 @@ LawEntry multirate_impedance_law() {
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .null_space = true},
           .damped = DampedAt::kTip,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<MultirateImpedance>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<MultirateImpedance>(arm);
           }};
 }
 

@@ -81,8 +81,8 @@ LawEntry opspace_impedance_law() {
           .needs = sensors::kMotorEncoder,
           .goal_type = GoalType::kPose,
           .compensation = {.gravity = true, .coriolis = true, .null_space = true},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<OpspaceImpedance>(robot.robot.size());
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<OpspaceImpedance>(arm.robot.size());
           }};
 }
 

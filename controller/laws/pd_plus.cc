@@ -11,8 +11,8 @@ namespace {
 
 class PdPlus : public Law {
  public:
-  explicit PdPlus(const LoadedRobot& robot)
-      : model_(robot), D_(MatrixJ::Zero(model_.size(), model_.size())) {}
+  explicit PdPlus(const LawArm& arm)
+      : model_(arm.model), D_(MatrixJ::Zero(model_.size(), model_.size())) {}
 
   const char* check(const Gains& gains) const noexcept override {
     return gains.settings.model_compensation == ModelCompensation::kGravityCoriolis
@@ -55,8 +55,8 @@ LawEntry pd_plus_law() {
           .compensation = {.gravity = true},
           .potential = Potential::kJointSpring,
           .damped = DampedAt::kJoints,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<PdPlus>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<PdPlus>(arm);
           }};
 }
 

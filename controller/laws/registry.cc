@@ -1,8 +1,11 @@
 #include "controller/laws/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/config_error.h"
+#include "controller/laws/law_files.h"
 
 // One line a law. The order is the numbering of controller_status_t.law: append, do not insert.
 #define LIMBER_LAWS(LAW)      \
@@ -33,15 +36,23 @@ LIMBER_LAWS(LIMBER_DECLARE)
 
 namespace {
 
+std::string_view name_of(const LawEntry& entry) { return entry.name; }
+
 struct Registry {
   std::vector<LawEntry> entries;
   LawCatalog catalog;
 };
 
-Registry make_registry() {
+Registry make_registry(const std::vector<LawEntry>& others) {
 #define LIMBER_ENTRY(name) name##_law(),
   Registry all{{LIMBER_LAWS(LIMBER_ENTRY)}, {}};
 #undef LIMBER_ENTRY
+  for (const LawEntry& other : others) {
+    const auto same = std::ranges::find(all.entries, std::string_view(other.name), &name_of);
+    if (same != all.entries.end())
+      throw ConfigError(fmt::format("there are two laws called '{}'; rename yours", other.name));
+    all.entries.push_back(other);
+  }
   int scalars = 0;
   int matrices = 0;
   for (const LawEntry& entry : all.entries) {
@@ -57,12 +68,16 @@ Registry make_registry() {
   return all;
 }
 
-const Registry& registry() noexcept {
-  static const Registry all = make_registry();
+Registry& registry() noexcept {
+  static Registry all = make_registry({});
   return all;
 }
 
 }  // namespace
+
+void load_laws(const std::vector<std::string>& files) {
+  registry() = make_registry(open_law_files(files));
+}
 
 std::span<const LawEntry> laws() noexcept { return registry().entries; }
 

@@ -3,11 +3,17 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "controller/laws/law.h"
 #include "lcmtypes/gains_table.h"
 
 namespace limber::controller {
+
+/// Adds the laws of shared libraries (law_files.h), whose numbers follow those of limber's own.
+/// Before the others are called; a program that does not call it has limber's laws alone. Throws
+/// ConfigError. Set-up only.
+void load_laws(const std::vector<std::string>& files = {});
 
 /// In the order of controller_status_t.law. The first call is for set-up; later ones may be made in
 /// the cycle.

@@ -55,8 +55,8 @@ LawEntry salisbury_law() {
           .needs = sensors::kMotorEncoder,
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = true, .null_space = true},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<Salisbury>(robot.robot.size());
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<Salisbury>(arm.robot.size());
           }};
 }
 

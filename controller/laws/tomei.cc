@@ -45,10 +45,10 @@ double steepest_weight(const Robot& robot, ArmModel* model) {
 
 class TomeiLaw : public Law {
  public:
-  explicit TomeiLaw(const LoadedRobot& robot)
-      : model_(robot), alpha_(steepest_weight(robot.robot, &model_)) {
+  explicit TomeiLaw(const LawArm& arm)
+      : model_(arm.model), alpha_(steepest_weight(arm.robot, &model_)) {
     const Eigen::Index n = model_.size();
-    law_ = {MatrixJ::Zero(n, n), MatrixJ::Zero(n, n), JointSprings(robot.robot).at_rest()};
+    law_ = {MatrixJ::Zero(n, n), MatrixJ::Zero(n, n), JointSprings(arm.robot).at_rest()};
     refusal_ =
         "K_q is too soft for constant gravity compensation: the smallest eigenvalue of "
         "[K_J, -K_J; -K_J, K_J + K_q] must exceed " +
@@ -96,8 +96,8 @@ LawEntry tomei_law() {
           .goal_type = GoalType::kJoints,
           .compensation = {.gravity = false},
           .potential = Potential::kGravity,
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<TomeiLaw>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<TomeiLaw>(arm);
           }};
 }
 

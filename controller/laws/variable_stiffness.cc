@@ -55,15 +55,15 @@ struct Task {
 
 class VariableStiffness : public Law {
  public:
-  explicit VariableStiffness(const LoadedRobot& robot)
-      : model_(robot),
-        torque_sensors_((sensors_of(robot.robot) & sensors::kTorqueSensor) != 0),
-        link_encoders_((sensors_of(robot.robot) & sensors::kLinkEncoder) != 0),
-        tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / robot.robot.rate_hz),
+  explicit VariableStiffness(const LawArm& arm)
+      : model_(arm.model),
+        torque_sensors_((sensors_of(arm.robot) & sensors::kTorqueSensor) != 0),
+        link_encoders_((sensors_of(arm.robot) & sensors::kLinkEncoder) != 0),
+        tau_rate_(model_.size(), kTorqueRateCorner_rad_per_s, 1.0 / arm.robot.rate_hz),
         wanted_(VectorJ::Zero(model_.size())),
         preload_(wanted_),
         sigma_(wanted_) {
-    for (const JointConfig& joint : robot.robot.joints) {
+    for (const JointConfig& joint : arm.robot.joints) {
       const TransmissionConfig& t = joint.transmission;
       pairs_.push_back({{t.spring}, t.damping_Nms_per_rad, t.preload_max_rad});
     }
@@ -185,8 +185,8 @@ LawEntry variable_stiffness_law() {
           .parameters = {&stiffness_fit},
           .reports = {{"sigma", "N m/rad", "joint stiffness set on the springs", true},
                       {"fit_residual", "1", "share of the wanted tip stiffness that they miss"}},
-          .make = [](const LoadedRobot& robot) -> std::unique_ptr<Law> {
-            return std::make_unique<VariableStiffness>(robot);
+          .make = [](const LawArm& arm) -> std::unique_ptr<Law> {
+            return std::make_unique<VariableStiffness>(arm);
           }};
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Of the force/torque sensor at the tip: the wrench in the sensor's axes and at its origin, N and
@@ -88,3 +89,4 @@ inline void read_arm_state(const joint_state_t& message, ArmState* state) noexce
 }
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -1,6 +1,7 @@
 #include "controller/model/arm_terms.h"
 
 #include "dynamics/spd_solve.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 namespace {

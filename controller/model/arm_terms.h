@@ -8,7 +8,14 @@
 #include "controller/kinds/pose.h"
 #include "controller/model/singularity.h"
 #include "dynamics/arm_kernel.h"
-#include "robots/loader/load_robot.h"
+
+namespace KDL {
+class Chain;
+}
+#pragma GCC visibility push(default)
+namespace limber {
+struct LoadedRobot;  // robots/loader/load_robot.h
+}
 
 namespace limber::controller {
 
@@ -98,3 +105,4 @@ class ArmModel {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include "controller/kinds/law_settings.h"
 #include "controller/kinds/pose.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// e = [p - p_d; e_o], actual minus desired, base axes, m and rad, and A with e' = A V for a target
@@ -20,3 +21,4 @@ struct PoseError {
 PoseError pose_error(const Pose& X_BT, const Pose& X_BD, Orientation orientation) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include "common/config_error.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// `value` if it is finite and above zero; throws ConfigError with `name` otherwise. Not for the
@@ -19,3 +20,4 @@ inline double positive(double value, const char* name) {
 }
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

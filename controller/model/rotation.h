@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// [a]x, so that [a]x b = a x b.
@@ -28,3 +29,4 @@ Eigen::Matrix3d left_jacobian_rate(const Eigen::Vector3d& phi,
                                    const Eigen::Vector3d& phi_dot) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 /// Rotational rows count as the translation of a point this far from the tip, so that directions of
@@ -91,3 +92,4 @@ DampedInverse damped_inverse(const Matrix6J& J, double sigma_0 = kSigma_0,
 MatrixJ6 damped_pseudo_inverse(const Matrix6J& J) noexcept;
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

@@ -3,6 +3,7 @@
 
 #include "common/types.h"
 
+#pragma GCC visibility push(default)
 namespace limber::controller {
 
 struct LimitedSpring {
@@ -28,3 +29,4 @@ class SpringLimit {
 };
 
 }  // namespace limber::controller
+#pragma GCC visibility pop

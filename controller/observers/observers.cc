@@ -6,6 +6,7 @@
 
 #include "controller/kinds/sensors.h"
 #include "controller/model/singularity.h"
+#include "robots/loader/load_robot.h"
 
 namespace limber::controller {
 namespace {

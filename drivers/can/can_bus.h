@@ -9,6 +9,7 @@
 #include "drivers/can/can_filter.h"
 #include "drivers/can/can_frame.h"
 
+#pragma GCC visibility push(default)
 namespace limber {
 
 /// Where CanFrame::timestamp_ns of a received frame comes from.
@@ -91,3 +92,4 @@ bool wait_readable(std::span<CanBus* const> buses, std::int64_t deadline_ns,
                    int other_descriptor = -1) noexcept;
 
 }  // namespace limber
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace limber {
 
 inline constexpr std::uint32_t kStandardIdMax = 0x7FF;
@@ -36,3 +37,4 @@ inline bool has_id(const CanFrame& frame, std::uint32_t id) noexcept {
 }
 
 }  // namespace limber
+#pragma GCC visibility pop

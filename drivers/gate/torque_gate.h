@@ -14,6 +14,7 @@
 #include "common/joints.h"
 #include "drivers/gate/event_window.h"
 
+#pragma GCC visibility push(default)
 namespace limber {
 
 /// Limits of accepted commands. Fixed for a session.
@@ -108,3 +109,4 @@ class TorqueGate {
 };
 
 }  // namespace limber
+#pragma GCC visibility pop

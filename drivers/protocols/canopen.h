@@ -8,6 +8,7 @@
 
 #include "drivers/can/can_frame.h"
 
+#pragma GCC visibility push(default)
 namespace limber::canopen {
 
 // Identifiers of the predefined connection set. Those of a node: code + node number, 1 to 127.
@@ -170,3 +171,4 @@ class FieldReader {
 };
 
 }  // namespace limber::canopen
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/canopen.h"
 
+#pragma GCC visibility push(default)
 namespace limber::canopen {
 
 enum class SdoAbort : std::uint32_t {
@@ -70,3 +71,4 @@ CanFrame encode_sdo_answer(const SdoMessage& message, std::uint8_t node) noexcep
                                      SdoMessage* message) noexcept;
 
 }  // namespace limber::canopen
+#pragma GCC visibility pop

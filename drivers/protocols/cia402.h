@@ -14,6 +14,7 @@
 
 #include "drivers/protocols/canopen.h"
 
+#pragma GCC visibility push(default)
 namespace limber::cia402 {
 
 using canopen::Object;
@@ -143,3 +144,4 @@ std::int16_t to_permille(double value, double rated) noexcept;
 double from_permille(std::int16_t permille, double rated) noexcept;
 
 }  // namespace limber::cia402
+#pragma GCC visibility pop

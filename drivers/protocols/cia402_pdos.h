@@ -20,6 +20,7 @@
 #include "drivers/protocols/cia402.h"
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber::cia402 {
 
 /// What a drive reports, and in how many frames.
@@ -72,3 +73,4 @@ CanFrame encode_state(const DriveState& state, std::span<const Object> objects, 
                                 DriveState* state) noexcept;
 
 }  // namespace limber::cia402
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "drivers/can/can_frame.h"
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber {
 
 /// While the drives are on, one drive of each bus is asked for a setting every so many cycles.
@@ -31,3 +32,4 @@ std::vector<Exchange> cycle_frames(const Robot& robot, int bus);
 void fill_typical(CanFrame* frame, std::minstd_rand* random) noexcept;
 
 }  // namespace limber
+#pragma GCC visibility pop

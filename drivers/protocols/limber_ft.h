@@ -11,6 +11,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/wrench_reading.h"
 
+#pragma GCC visibility push(default)
 namespace limber::limber_ft {
 
 inline constexpr int kRequestBytes = 2;
@@ -31,3 +32,4 @@ CanFrame encode_request(std::uint32_t id, std::uint8_t counter) noexcept;
                                 WrenchReading* reading) noexcept;
 
 }  // namespace limber::limber_ft
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "drivers/can/can_frame.h"
 #include "robots/loader/robot.h"
 
+#pragma GCC visibility push(default)
 namespace limber::mit {
 
 /// How a value between two counts is encoded. Firmware truncates; rounding halves the error.
@@ -141,3 +142,4 @@ std::uint32_t float_bits(float value) noexcept;
 float bits_float(std::uint32_t raw) noexcept;
 
 }  // namespace limber::mit
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/moteus_registers.h"
 
+#pragma GCC visibility push(default)
 namespace limber::moteus {
 
 inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
@@ -65,3 +66,4 @@ CanFrame encode_text_poll(std::uint32_t id) noexcept;
 [[nodiscard]] bool decode_text(const CanFrame& frame, std::string_view* text) noexcept;
 
 }  // namespace limber::moteus
+#pragma GCC visibility pop

@@ -16,6 +16,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/moteus_registers.h"
 
+#pragma GCC visibility push(default)
 namespace limber::moteus {
 
 /// Source and destination: seven bits each, the host is 0, destination 0x7F is everybody.
@@ -116,3 +117,4 @@ class FrameReader {
 };
 
 }  // namespace limber::moteus
+#pragma GCC visibility pop

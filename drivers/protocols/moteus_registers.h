@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace limber::moteus {
 
 /// Registers limber uses, and those an emulated drive answers for. Angles in turns of the output.
@@ -82,3 +83,4 @@ std::int32_t to_integer(double value, double lsb, Type type) noexcept;
 double from_integer(std::int32_t raw, double lsb, Type type) noexcept;
 
 }  // namespace limber::moteus
+#pragma GCC visibility pop

@@ -19,6 +19,7 @@
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/wrench_reading.h"
 
+#pragma GCC visibility push(default)
 namespace limber::robotous_rft {
 
 inline constexpr int kBytes = 8;  ///< of every frame
@@ -45,3 +46,4 @@ CanFrame encode_request(std::uint32_t id) noexcept;
                                 WrenchReading* reading) noexcept;
 
 }  // namespace limber::robotous_rft
+#pragma GCC visibility pop

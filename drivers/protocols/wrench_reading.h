@@ -5,6 +5,7 @@
 
 #include "robots/loader/tip_sensor_config.h"
 
+#pragma GCC visibility push(default)
 namespace limber {
 
 struct WrenchReading {
@@ -18,3 +19,4 @@ constexpr std::uint8_t overload_bit(std::size_t axis) noexcept {
 }
 
 }  // namespace limber
+#pragma GCC visibility pop

@@ -40,7 +40,7 @@ LawRun::LawRun(Arm* given, const std::string& law, Inputs& in)
 
 VectorJ LawRun::torque() {
   const LawInputs inputs{point, state, terms, goal, gains, estimates};
-  const auto law = entry_.make(arm.robot);
+  const auto law = entry_.make({arm.robot.robot, arm.model});
   if (const char* reason = law->check(gains)) throw ConfigError(reason);
   law->start(inputs);
   output.reset();

@@ -24,7 +24,7 @@
 
 #include "common/program.h"
 #include "qa/bench/held_arm.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 using namespace limber;
 
@@ -80,11 +80,11 @@ int run(std::int64_t cycles) {
   mlockall(MCL_CURRENT | MCL_FUTURE);  // as the processes do; where it is refused they run on
   arm.run(kWarmUp);
   trap_system_calls();
-  const std::int64_t heap_before = testing::allocations();
+  const std::int64_t heap_before = allocations();
   const std::int64_t faults_before = page_faults();
   arm.run(cycles);
   const std::int64_t faults = page_faults() - faults_before;
-  const std::int64_t heap = testing::allocations() - heap_before;
+  const std::int64_t heap = allocations() - heap_before;
   arm.require_held();
   const std::string line = fmt::format(
       "{{\"cycles\": {}, \"heap_requests\": {}, \"page_faults\": {}, \"futex_calls\": {}}}\n",

@@ -84,6 +84,8 @@ PARTS: dict[str, Part] = {
     "system": Part(lambda: _system("not lockstep and not browser"), Lane.REAL_TIME),
     # SocketCAN in a guest kernel that has vcan; one guest at a time
     "vcan": Part(lambda: [*CTEST, "-L", "vcan", "--no-tests=error"], Lane.REAL_TIME),
+    # The wheel, installed; its compiler's output is build/dev's
+    "wheel": Part(lambda: [*PYTEST, "tests/packages"], Lane.BUILDS),
     # The other C++ unit tests, built with sanitizers only
     "sanitizers": Part(
         lambda: [

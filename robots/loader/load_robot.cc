@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "common/config_error.h"
+#include "common/shared_folder.h"
 #include "common/suggest.h"
 #include "robots/loader/doubtful_figures.h"
 #include "robots/loader/mass_check.h"
@@ -163,7 +164,7 @@ bool is_robot_folder(const std::string& folder) {
 
 std::string robots_root() {
   const char* folder = std::getenv("LIMBER_ROBOTS");
-  return folder != nullptr && *folder != '\0' ? folder : LIMBER_ROBOTS_FOLDER;
+  return folder != nullptr && *folder != '\0' ? folder : shared_folder() + "/robots";
 }
 
 }  // namespace limber

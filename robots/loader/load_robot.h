@@ -45,7 +45,7 @@ LoadedRobot load_urdf(const std::string& urdf_path, const std::string& base, con
 /// Whether a folder holds a robot: robot.yaml.
 bool is_robot_folder(const std::string& folder);
 
-/// Folder of the shipped robots: $LIMBER_ROBOTS or the one known at build time.
+/// Folder of the shipped robots: $LIMBER_ROBOTS, or limber's own.
 std::string robots_root();
 
 }  // namespace limber

@@ -118,6 +118,13 @@ std::string scenario_robot(const std::string& path, std::string* note) {
   return beside.has_parent_path() ? beside.string() : "./" + beside.string();
 }
 
+std::vector<std::string> scenario_laws(const std::string& path) {
+  if (path.empty()) return {};
+  const YamlMap yaml = YamlMap::from_file(path);
+  if (!yaml.has("law_file")) return {};
+  return {(std::filesystem::path(path).parent_path() / yaml.text("law_file")).string()};
+}
+
 Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
   const YamlMap yaml = YamlMap::from_file(path);
   yaml.word("format", {kFormat});
@@ -144,6 +151,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
     yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");
   yaml.boolean_or("record", true);  // read by `limber run`
+  yaml.text_or("law_file", "");  // scenario_laws()
   yaml.has("timeline");
   yaml.finish();
   scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);

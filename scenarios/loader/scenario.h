@@ -70,6 +70,10 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
 /// given, tells which was taken where both exist. Throws ConfigError.
 std::string scenario_robot(const std::string& path, std::string* note = nullptr);
 
+/// Only `law_file`, to load it first: none or one, relative to the scenario. Throws
+/// ConfigError.
+std::vector<std::string> scenario_laws(const std::string& path);
+
 /// Walks the timeline. due() returns the next message whose time has come, or nullptr; no
 /// allocation.
 class Timeline {

@@ -18,7 +18,7 @@ LawBench::LawBench(const LoadedRobot& arm, const std::string& name)
       estimates(model.size()),
       output(model.size()),
       entry(controller::laws()[static_cast<std::size_t>(controller::find_law(name))]),
-      law_(entry.make(robot)) {
+      law_(entry.make({robot.robot, model})) {
   law_->start(inputs());
 }
 

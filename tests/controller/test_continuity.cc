@@ -7,7 +7,7 @@
 
 #include "controller/laws/registry.h"
 #include "tests/controller/rig.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_continuity {
 namespace {
@@ -142,7 +142,7 @@ TEST(Continuity, NothingInTheCycleAllocates) {
       compliance_gains_t gains = rig.gains();
       compliance_goal_t goal = rig.goal();
       goal.offset[0] = 0.01;
-      const auto before = limber::testing::allocations();
+      const auto before = limber::allocations();
       rig.run(0.12);
       rig.request(mode_request_t::REQUEST_HOLD);
       rig.run(0.6);
@@ -156,7 +156,7 @@ TEST(Continuity, NothingInTheCycleAllocates) {
       rig.run(0.4);
       rig.controller.on_silence();
       rig.run(0.1);
-      EXPECT_EQ(limber::testing::allocations(), before);
+      EXPECT_EQ(limber::allocations(), before);
     }
   }
 }

@@ -224,6 +224,7 @@ const Change kChanges[] = {
 
 // There and back, while the arm is pushed away from its goal.
 TEST_F(Switching, SettingsNeverJump) {
+  const controller::ArmModel model(rig.robot);
   for (const std::string& law : names()) {
     if (entry(law).goal_type == GoalType::kNone) continue;  // and knows no gains
     switch_to(law);
@@ -234,7 +235,7 @@ TEST_F(Switching, SettingsNeverJump) {
       change.make(&gains);
       controller::Gains parsed(7, controller::law_catalog().parameters);
       read_gains(gains, &parsed);
-      if (entry(law).make(rig.robot)->check(parsed) != nullptr) continue;
+      if (entry(law).make({rig.robot.robot, model})->check(parsed) != nullptr) continue;
       ASSERT_EQ(rig.controller.on_gains(gains), nullptr) << law << ", " << change.name;
       expect_smooth(law + ", " + change.name, 0.1);
       switch_to(law);  // the defaults again

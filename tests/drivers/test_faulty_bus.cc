@@ -6,7 +6,7 @@
 
 #include "drivers/can/memory_bus.h"
 #include "tests/drivers/faulty_bus.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_faulty_bus {
 namespace {
@@ -165,13 +165,13 @@ TEST(FaultyBus, DoesNotAllocateAfterConstruction) {
   Pair pair({delay, fault(Kind::kDuplicate, Direction::kReceived)});
   std::array<CanFrame, 8> frames;
   frames.fill(numbered(1));
-  const auto before = testing::allocations();
+  const auto before = allocations();
   for (int i = 0; i < 200; ++i) {
     pair.sound->send(frames);
     pair.faulty.send(frames);
     pair.faulty.receive(frames);
   }
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

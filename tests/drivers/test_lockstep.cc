@@ -4,7 +4,7 @@
 #include "drivers/can/lockstep_frame.h"
 #include "tests/drivers/fake_arm.h"
 #include "tests/drivers/families/fake_cia402.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_lockstep {
 namespace {
@@ -113,17 +113,17 @@ class AllocationTest : public ::testing::Test {
 
  private:
   void cycle(testing::DrivenArm* arm) {
-    std::int64_t before = testing::allocations();
+    std::int64_t before = allocations();
     arm->driver->transmit(++arm->cycle * 1'000'000, 0);
-    by_driver += testing::allocations() - before;
+    by_driver += allocations() - before;
     arm->answer();
-    before = testing::allocations();
+    before = allocations();
     arm->driver->poll();
     arm->state = &arm->driver->finish_cycle();
     arm->command.request = joint_command_t::REQUEST_ON;
     arm->answer_state();
     arm->driver->fill_status(&arm->status);
-    by_driver += testing::allocations() - before;
+    by_driver += allocations() - before;
   }
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <kdl/chain.hpp>
 
 #include "common/config_error.h"
 #include "dynamics/body_chain.h"

@@ -10,7 +10,7 @@
 #include "common/config_error.h"
 #include "controller/laws/registry.h"
 #include "lab/lab.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_lab {
 namespace {
@@ -55,9 +55,9 @@ TEST(Lab, NeverAllocatesInTheCycle) {
   for (const char* name : {"quick.yaml", "desktop2r_push.yaml", "planar2r_push.yaml"}) {
     Stage stage(name);
     stage.run_to(0.01);
-    const std::int64_t before = testing::allocations();
+    const std::int64_t before = allocations();
     stage.run_to(3.0);  // enabling, HOLD, ACTIVE, gains, pushes, a wall, a goal
-    EXPECT_EQ(testing::allocations() - before, 0) << name;
+    EXPECT_EQ(allocations() - before, 0) << name;
   }
 }
 

@@ -10,7 +10,7 @@
 #include "controller/model/arm_terms.h"
 #include "controller/observers/tip_force.h"
 #include "lab/lab.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/mutation.h"
 
 namespace limber::test_tip_sensor {
@@ -218,9 +218,9 @@ TEST(TipSensorInTheLab, GivesTheSameBytesTwiceNoiseIncluded) {
 TEST(TipSensorInTheLab, NeverAllocates) {
   Stage stage(kReal, kPush);
   stage.run_to(0.01);
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   stage.run_to(2.5);
-  EXPECT_EQ(testing::allocations() - before, 0);
+  EXPECT_EQ(allocations() - before, 0);
 }
 
 TEST(TipSensorInTheLab, ASilentSensorIsReportedAndTheArmGoesOn) {

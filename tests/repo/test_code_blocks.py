@@ -40,8 +40,10 @@ def commands() -> Iterator[tuple[str, str]]:
             if re.match(r"(\./)?limber [a-z]", line):
                 yield where, re.split(r"\s{2,}#| # ", line)[0].strip()
     for page in pages():
+        if page.name == "CHANGELOG.md":
+            continue  # names commands as they were called
         text = BLOCK.sub("", page.read_text(encoding="utf-8"))
-        for match in re.finditer(r"`(\./limber [a-z][^`]*)`", text):
+        for match in re.finditer(r"`((?:\./)?limber [a-z][^`]*)`", text):
             yield str(page.relative_to(ROOT)), match[1]
 
 

@@ -7,6 +7,7 @@
 #include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
 #include "lcmtypes/gains_table.h"
+#include "robots/loader/load_robot.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "tests/support/mutation.h"
 

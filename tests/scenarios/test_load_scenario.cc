@@ -8,7 +8,7 @@
 #include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
 #include "scenarios/loader/scenario.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/mutation.h"
 
 namespace limber::test_load_scenario {
@@ -270,13 +270,13 @@ TEST(Timeline, GivesEachMessageOnceWhenItsTimeHasCome) {
       {10, mode_request_t()}, {10, push_t()}, {20, compliance_goal_t()}};
   Timeline timeline(&messages);
   EXPECT_EQ(timeline.due(9), nullptr);
-  const long before = testing::allocations();
+  const long before = allocations();
   EXPECT_EQ(timeline.due(10), &messages[0].message);
   EXPECT_EQ(timeline.due(10), &messages[1].message);
   EXPECT_EQ(timeline.due(19), nullptr);
   EXPECT_EQ(timeline.due(500), &messages[2].message);
   EXPECT_EQ(timeline.due(500), nullptr);
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
   timeline.rewind();
   EXPECT_EQ(timeline.due(15), &messages[0].message);
 }

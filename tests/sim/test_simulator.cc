@@ -10,7 +10,7 @@
 #include "drivers/protocols/mit.h"
 #include "tests/sim/simulator_bench.h"
 #include "tests/sim/test_arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_simulator {
 namespace {
@@ -488,10 +488,10 @@ TEST_P(EitherIntegrator, CyclesPushesWallsPayloadsAndFaultsDoNotAllocate) {
       {20'000'000, push}, {30'000'000, wall}, {40'000'000, payload}, {50'000'000, fault}};
   bench.simulator().set_timeline(&timeline);
 
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   work_hard(bench, 7, 0, 300);
   work_hard(bench, 7, 0, 100);  // a new session
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_EQ(bench.simulator().refused(), 0);
 }
 

@@ -9,7 +9,7 @@
 #include "robots/loader/protocols/drive_protocol.h"
 #include "tests/sim/simulator_bench.h"
 #include "tests/sim/test_arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_simulator_joints {
 namespace {
@@ -271,9 +271,9 @@ TEST_P(JointSimulator, CyclesDoNotAllocate) {
     }
   };
   work(0, 10);
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   work(10, 300);
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <memory>
 #include <thread>
 
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_allocation_counter {
 namespace {
@@ -16,9 +16,9 @@ void use(const volatile void* pointer) { asm volatile("" : : "r"(pointer) : "mem
 
 template <typename Call>
 std::int64_t allocations_of(Call call) {
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   call();
-  return testing::allocations() - before;
+  return allocations() - before;
 }
 
 TEST(AllocationCounter, CountsEveryWayToTheHeap) {

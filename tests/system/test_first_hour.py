@@ -1,5 +1,6 @@
 """docs/first_motion.md and docs/own_arm.md, followed: each of their commands, in order."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -9,7 +10,7 @@ import pytest
 
 from stack import ROOT
 
-LIMBER = str(ROOT / ".venv" / "bin" / "limber")
+ENVIRONMENT = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
 BLOCK = re.compile(r"^```\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
@@ -21,9 +22,9 @@ def commands(page: str, number: int) -> list[str]:
 
 def follow(line: str, folder: Path) -> subprocess.CompletedProcess:
     """As typed in a fresh clone, whose `out` is the test's own folder."""
-    line = line.replace("./limber ", f"{LIMBER} ")
+    command = ["bash", "-c", line]
     done = subprocess.run(
-        ["bash", "-c", line], cwd=folder, capture_output=True, text=True, timeout=300
+        command, cwd=folder, capture_output=True, text=True, timeout=300, env=ENVIRONMENT
     )
     assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
     return done
@@ -47,18 +48,22 @@ def test_a_stiffness_is_asked_for_measured_and_changed(clone):
     *_, last = [follow(line, clone) for line in commands("first_motion.md", 2)]
     assert stiffness(last.stdout, "+y") == pytest.approx(250, rel=0.02)
     assert stiffness(last.stdout, "+x") == pytest.approx(500, rel=0.02)
-    follow("./limber plot out/push", clone)
-    assert "push for" in follow("./limber log events out/push", clone).stdout
+    follow("limber plot out/push", clone)
+    assert "push for" in follow("limber log events out/push", clone).stdout
 
 
 def test_a_running_arm_is_softened_pushed_and_moved(clone):
     (run,) = commands("first_motion.md", 3)
-    line = run.replace("./limber ", f"{LIMBER} ") + " --out out/ready"
+    line = f"{run} --out out/ready"
     running = subprocess.Popen(
-        ["bash", "-c", f"exec {line}"], cwd=clone, stdout=subprocess.PIPE, text=True
+        ["bash", "-c", f"exec {line}"],
+        cwd=clone,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=ENVIRONMENT,
     )
     try:
-        follow(f"{LIMBER} watch --once", clone)
+        follow("limber watch --once", clone)
         watched, *sent = commands("first_motion.md", 4)
         assert "openarm" in follow(watched, clone).stdout
         for command in sent:

@@ -62,10 +62,16 @@ def read(path: Path) -> list[Edit | Command]:
 
 
 def difference(expected: list[str], printed: str) -> str:
-    """Empty if nothing is expected, or words are equal and numbers within 1e-6, times left out."""
+    """Empty if nothing is expected, or words are equal and numbers within 1e-6, times left out; a
+    last line ... stands for all that follows.
+    """
     if not expected:
         return ""
+    rest_left_out = expected[-1].strip() == "..."
     words, found = (_words(text) for text in ("\n".join(expected), printed))
+    if rest_left_out:
+        words = words[:-1]
+        found = found[: len(words)]
     for i, (word, other) in enumerate(zip(words, found, strict=False)):
         if word != other and not _close(word, other):
             return f"'{' '.join(found[i : i + 8])}' instead of '{' '.join(words[i : i + 8])}'"

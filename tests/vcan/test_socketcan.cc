@@ -11,7 +11,7 @@
 #include "common/config_error.h"
 #include "drivers/can/link_details.h"
 #include "drivers/can/socketcan.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/vcan/lab.h"
 
 namespace limber::test_socketcan {
@@ -346,13 +346,13 @@ TEST(SocketCanFaults, NothingAllocatesWhateverHappens) {
   std::array<CanFrame, 64> frames;
   frames.fill(numbered(1));
   const auto cycle = [&] {
-    const auto before = testing::allocations();
+    const auto before = allocations();
     a->send(frames);
     b->send(numbered(2));
     wait_readable(ends, monotonic_ns() + kSecond / 50);
     a->receive(frames);
     b->receive(frames);
-    return testing::allocations() - before;
+    return allocations() - before;
   };
   EXPECT_EQ(cycle(), 0);
   run("ip link set vxcan0 down");

@@ -179,7 +179,7 @@ void define(CommandLine& program, Arguments* given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(can) {
   CommandLine line("limber-can", "What is said on the CAN buses of an arm.");
   Arguments given;
   define(line, &given);

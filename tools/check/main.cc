@@ -12,6 +12,7 @@
 #include "common/program.h"
 #include "controller/laws/registry.h"
 #include "robots/loader/required_keys.h"
+#include "tools/check/law_check.h"
 #include "tools/check/print.h"
 
 using namespace limber;
@@ -25,6 +26,7 @@ struct Arguments {
   std::string tip;
   std::string gravity = "0,0,-9.81";
   std::string scenario;
+  std::string law_file;
   bool as_json = false;
   bool keys = false;
   bool protocols = false;
@@ -89,6 +91,7 @@ std::string check(const Arguments& given) {
   if (given.protocols) return protocols_json();
   if (!given.urdf.empty()) return check_urdf_file(given);
   if (given.scenario.empty()) return check_arm(load_robot(given.robot), given.as_json);
+  controller::load_laws(scenario_laws(given.scenario));
   std::string note;
   LoadedRobot robot = load_robot(scenario_robot(given.scenario, &note));
   if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
@@ -106,6 +109,8 @@ void define(CommandLine& line, Arguments* given) {
   urdf.text("--gravity", &given->gravity, "x,y,z in m/s^2, axes of the URDF's root link");
   auto& scenario = line.command("scenario", "a scenario file, against its robot");
   scenario.text("file", &given->scenario, "scenario file").required();
+  auto& law = line.command("law", "a law of your own: the shared library it was compiled to");
+  law.text("file", &given->law_file, "shared library").required();
   auto& keys = line.command("keys", "lists the keys that every robot.yaml needs, in Markdown");
   keys.when_chosen([given] { given->keys = true; });
   auto& protocols = line.command("protocols", "lists the drive protocols, as JSON");
@@ -114,7 +119,14 @@ void define(CommandLine& line, Arguments* given) {
     command->flag("--json", &given->as_json, "print one JSON object");
 }
 
+int check_law(const std::string& file) {
+  bool passed = false;
+  std::fputs(check_law_file(file, &passed).c_str(), stdout);
+  return passed ? kExitDone : 1;
+}
+
 int run(const Arguments& given) {
+  if (!given.law_file.empty()) return check_law(given.law_file);
   try {
     std::fputs(check(given).c_str(), stdout);
   } catch (const Listed& error) {
@@ -130,7 +142,7 @@ int run(const Arguments& given) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(check) {
   CommandLine line("limber-check",
                    "Checks robots, URDFs and scenarios. Exit status 0: fine, 2: refused.");
   Arguments given;

@@ -3,10 +3,10 @@
 `from limber import Arm` is loaded when it is used, and so are its Pose, State and errors.
 """
 
-from importlib import import_module
+from importlib import import_module, metadata
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = metadata.version("limber-arm")  # of pyproject.toml
 
 _FROM = {
     "Arm": "limber.live.arm",

@@ -17,6 +17,7 @@ import numpy as np
 import yaml
 
 from limber.errors import RunError
+from limber.paths import REPAIR
 
 _SCALARS = {
     "int8_t": "i1",
@@ -55,7 +56,7 @@ def _types() -> Any:
     try:
         return importlib.import_module("limber.lcmtypes")
     except ImportError as error:
-        raise RunError("the messages are not generated yet: run ./limber once to build") from error
+        raise RunError(f"the messages are not generated: {REPAIR}") from error
 
 
 @cache

@@ -1,30 +1,41 @@
-"""Where the repository, the built programs and the shipped robots are."""
+"""Where programs, robots, scenarios and message files are: of a clone, or of what pip installed.
+
+A clone has them where they are made; an installed package has `bin`, `lib` and `share/limber` in
+itself (CMake's install rules). Nothing is written beside either.
+"""
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
 from limber.errors import InputError, RunError
 
-ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = Path(__file__).resolve().parent
+ROOT = PACKAGE.parents[1]  # of a clone
+IN_A_CLONE = (ROOT / "CMakeLists.txt").is_file() and (ROOT / "lcmtypes").is_dir()
+DISTRIBUTION = "limber-arm"  # its name for pip
+SHARE = ROOT if IN_A_CLONE else PACKAGE / "share" / "limber"
+SCENARIOS, MESSAGE_FILES = SHARE / "scenarios", SHARE / "lcmtypes"
+CMAKE = (ROOT / "build" / "dev" if IN_A_CLONE else PACKAGE) / "lib" / "cmake" / "limber"
+REPAIR = "run ./limber to build it" if IN_A_CLONE else f"install {DISTRIBUTION} again"
 RELEASE = ROOT / "build" / "release" / "bin"  # what `limber dev bench` builds
 LEFT_BY_RUNS = ("run.lcmlog", "run.lcmlog.zst", "run.can.log", "summary.json")
-ASSETS = Path(__file__).resolve().parent / "assets"
+ASSETS = PACKAGE / "assets"
 
 
 def programs_folder() -> Path:
-    """Where the C++ programs are: $LIMBER_BIN, or the development build."""
-    return Path(os.environ.get("LIMBER_BIN") or ROOT / "build" / "dev" / "bin")
+    """Where the C++ programs are: $LIMBER_BIN, the development build, or the package."""
+    own = ROOT / "build" / "dev" / "bin" if IN_A_CLONE else PACKAGE / "bin"
+    return Path(os.environ.get("LIMBER_BIN") or own)
 
 
 def program(name: str) -> Path:
     """Path of a built C++ program, such as limber-driver."""
     path = programs_folder() / name
     if not os.access(path, os.X_OK):
-        raise RunError(
-            f"{path} does not exist: run ./limber to build it, or set LIMBER_BIN to its folder"
-        )
+        raise RunError(f"{path} does not exist: {REPAIR}, or set LIMBER_BIN to its folder")
     return path
 
 
@@ -36,7 +47,7 @@ def captured(command: list[str], **more: Any) -> subprocess.CompletedProcess[str
 
 
 def robots_root() -> Path:
-    return Path(os.environ.get("LIMBER_ROBOTS") or ROOT / "robots")
+    return Path(os.environ.get("LIMBER_ROBOTS") or SHARE / "robots")
 
 
 def robot_names() -> list[str]:
@@ -56,6 +67,31 @@ def robot_folder(name_or_path: str, beside: Path | None = None) -> Path:
     raise InputError(
         f"no robot '{name_or_path}': give a folder with robot.yaml, or one of: {known}"
     )
+
+
+def scenario_file(name_or_path: Path) -> Path:
+    """A file, or a shipped scenario's: `demo`, `demo.yaml` and `scenarios/demo.yaml` name one."""
+    shipped = SCENARIOS / name_or_path.with_suffix(".yaml").name
+    plain = name_or_path.parent in (Path(), Path("scenarios"))
+    if not name_or_path.exists() and plain and shipped.is_file():
+        return shipped
+    return existing_file(name_or_path, "scenario file (.yaml)")
+
+
+def cache_folder() -> Path:
+    """Where what can be made again is kept: $XDG_CACHE_HOME/limber."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "limber"
+
+
+# Packages of optional parts, by the module that is imported.
+EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap"}
+EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun"}
+
+
+def command_for_extra(extra: str) -> str:
+    """The command that installs an optional part of this installation."""
+    what = f"-e '{ROOT}[{extra}]'" if IN_A_CLONE else f"'{DISTRIBUTION}[{extra}]'"
+    return f"{sys.executable} -m pip install {what}"
 
 
 def existing_file(path: Path, what: str) -> Path:

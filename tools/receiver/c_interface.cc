@@ -7,6 +7,7 @@
 
 using limber::PlaneReceiver;
 
+#pragma GCC visibility push(default)
 extern "C" {
 
 /// `address`: IPv4, in network order. Null: why not is in `problem`, as far as it fits.
@@ -57,3 +58,4 @@ std::int64_t limber_receiver_dropped(void* receiver) {
 }
 
 }  // extern "C"
+#pragma GCC visibility pop

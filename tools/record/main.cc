@@ -66,7 +66,7 @@ int record(const Options& given, const std::string& url) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(record) {
   limber::CommandLine line(
       "limber-record",
       "Records every message of the user plane to an LCM event log, without dropping any.");

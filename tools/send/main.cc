@@ -7,6 +7,7 @@
 
 #include "common/config_error.h"
 #include "common/program.h"
+#include "controller/laws/registry.h"
 #include "tools/send/request_sender.h"
 #include "tools/send/running_robot.h"
 
@@ -33,6 +34,7 @@ int from_standard_input(limber::RequestSender& sender) {
 }
 
 int run(const std::string& robot, std::int64_t client, const std::vector<std::string>& entries) {
+  limber::controller::load_laws();
   const limber::LoadedRobot loaded = limber::load_robot(limber::running_robot(robot));
   limber::RequestSender sender(loaded, client);
   if (entries.empty()) return from_standard_input(sender);
@@ -42,7 +44,7 @@ int run(const std::string& robot, std::int64_t client, const std::vector<std::st
 
 }  // namespace
 
-int main(int argc, char** argv) {
+LIMBER_MAIN(send) {
   limber::CommandLine line(
       "limber-send",
       "Sends a request of a scenario to a running stack: mode, gains, goal, push, wall, payload, "

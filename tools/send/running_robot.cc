@@ -37,7 +37,7 @@ std::string running_robot(const std::string& given) {
   if (!info) {
     if (!given.empty()) return given;  // a simulator may run alone
     throw ConfigError(
-        "no controller answers: start one (./limber run, ./limber demo); a simulated arm alone "
+        "no controller answers: start one (limber run, limber demo); a simulated arm alone "
         "takes pushes with --robot");
   }
   if (!given.empty()) {

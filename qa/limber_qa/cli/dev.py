@@ -153,3 +153,13 @@ def bench(
     from limber_qa import bench as module
 
     raise typer.Exit(module.bench(console, as_json, long))
+
+
+@app.command(epilog="Example: limber dev release --out ../release")
+def release(
+    out: Annotated[Path, typer.Option("--out", help="An empty folder.")],
+) -> None:
+    """Make what is handed out: the wheel, the sources, checksums."""
+    from limber_qa import release as module
+
+    module.release(out, console)

@@ -14,7 +14,7 @@
 #include "common/config_error.h"
 #include "common/lcm_port.h"
 #include "tests/drivers/can/private_network.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_lcm_port {
 namespace {
@@ -141,11 +141,11 @@ TEST_F(LcmPortTest, NothingIsAllocatedForAMessage) {
   LcmPort other(kUrl, LcmPort::Use::kPublishOnly);
   std::int64_t seen = 0;
   port.subscribe<mode_request_t>("MODE_REQUEST", 4, [&](const mode_request_t& m) { seen = m.seq; });
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   const bool sent = other.publish("MODE_REQUEST", request(9));
   const bool arrived = wait_readable(port.descriptor(), monotonic_ns() + kSecond);
   port.handle_waiting();
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_TRUE(sent && arrived);
   EXPECT_EQ(seen, 9);
 }

@@ -7,7 +7,7 @@
 
 #include "controller/elastic/qbar.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_qbar {
 namespace {
@@ -171,11 +171,11 @@ TEST_F(QbarArm, DoesNotAllocate) {
   QbarSolver solver(&model, K_J);
   QbarSolver soft(&model, 0.01 * K_J);  // takes the Newton branch
   const JointSpring none{q_0, MatrixJ::Zero(7, 7)};
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   solver.solve(q_0, spring);
   soft.solve(q_0, spring);
   soft.solve(q_0, none);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "controller/elastic/vsa_stiffness.h"
 #include "lecture/eval/vsa_pair.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_vsa {
 namespace {
@@ -137,11 +137,11 @@ TEST(JointStiffness, DoesNotAllocate) {
   J.leftCols(6) += TaskMatrix::Identity(6, 6);
   const TaskMatrix K_x = TaskMatrix::Identity(6, 6);
   const MatrixJ K_G = MatrixJ::Zero(16, 16);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   const double sum = nearest_joint_stiffness(J, K_x, K_G).residual +
                      nearest_joint_compliance(J, K_x).residual +
                      presented_compliance(J, VectorJ::Ones(16), K_G).norm();
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

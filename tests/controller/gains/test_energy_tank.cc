@@ -8,7 +8,7 @@
 #include "common/config_error.h"
 #include "controller/gains/energy_tank.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_energy_tank {
 namespace {
@@ -88,9 +88,9 @@ TEST(EnergyTank, DoesNotAllocate) {
   const MatrixJ K = MatrixJ::Identity(16, 16);
   const VectorJ x = VectorJ::Ones(16);
   EnergyTank tank({.E_0 = 0.5, .E_min = 0.0, .E_max = 1.0, .share = 0.5}, K);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   tank.update(2.0 * K, K, x, x, 1e-3);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "controller/goals/interpolation.h"
 #include "controller/model/rotation.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_goals {
 namespace {
@@ -240,12 +240,12 @@ TEST_F(Goals, OnlyWhatTheLawFollows) {
 TEST_F(Goals, NothingAllocates) {
   message.offset[0] = 0.1;
   message.use_posture = 1;
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   goals.set(message, GoalType::kPose);
   goals.advance(0.01);
   goals.stop(0.3);
   goals.advance(0.01);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

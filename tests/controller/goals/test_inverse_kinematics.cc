@@ -8,7 +8,7 @@
 #include "controller/goals/inverse_kinematics.h"
 #include "controller/model/pose_error.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_inverse_kinematics {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kPeriod_s = 1e-3;
 // A goal at the tip on its way, and the joints that follow it.
 struct Follower {
   Follower(const LoadedRobot& robot, const Matrix6& K_x, const VectorJ& q)
-      : model(robot), rows(K_x), kinematics(robot), goal(model.size()), terms(model.size()) {
+      : model(robot), rows(K_x), kinematics(model), goal(model.size()), terms(model.size()) {
     motion.reset(model.tip_pose(q));
     kinematics.reset(q);
     goal.q_null = q;
@@ -130,10 +130,10 @@ TEST(InverseKinematics, DoesNotAllocate) {
   for (const int n : {1, 2, 6, 7, 16}) {
     Follower arm(limber::testing::random_arm(n, 3, true), Matrix6::Identity(),
                  VectorJ::Constant(n, 0.3));
-    const auto before = limber::testing::allocations();
+    const auto before = limber::allocations();
     arm.kinematics.reset(arm.goal.q_d);
     arm.step(kPeriod_s);
-    EXPECT_EQ(limber::testing::allocations(), before);
+    EXPECT_EQ(limber::allocations(), before);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "controller/impedance/nullspace.h"
 #include "controller/model/singularity.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_damping {
 namespace {
@@ -222,13 +222,13 @@ TEST(Design, DoesNotAllocate) {
     const ArmTerms& terms = arm.at(VectorJ::Constant(n, 0.5));
     const VectorJ ones = VectorJ::Ones(n);
     const MatrixJ K = MatrixJ::Identity(n, n);
-    const auto before = limber::testing::allocations();
+    const auto before = limber::allocations();
     const TipMobility mobility = tip_mobility(terms.tip.G);
     const Matrix6 D =
         tip_damping(DampingDesign::kDoubleDiagonalisation, mobility, Matrix6::Identity(), 0.7);
     const MatrixJ D_q = joint_damping(DampingDesign::kDoubleDiagonalisation, terms.M_total, K, 0.7);
     const VectorJ tau = (null_space_projector(terms, TaskRows(D), Projector::kDynamic) * ones);
-    EXPECT_EQ(limber::testing::allocations(), before);
+    EXPECT_EQ(limber::allocations(), before);
     EXPECT_TRUE(D_q.allFinite() && tau.allFinite());
   }
 }

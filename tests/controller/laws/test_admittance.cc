@@ -9,7 +9,7 @@
 #include "controller/model/rotation.h"
 #include "controller/observers/admittance_filter.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_admittance {
 namespace {
@@ -103,10 +103,10 @@ TEST(Compose, DeviationIsThePoseErrorAndTheTwistItsRate) {
 TEST(AdmittanceFilter, DoesNotAllocate) {
   const MatrixJ I = MatrixJ::Identity(16, 16);
   AdmittanceFilter filter(I, I, I, 1e-3);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   filter.set(2.0 * I, I, I);
   filter.update(VectorJ::Ones(16));
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

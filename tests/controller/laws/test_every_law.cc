@@ -9,7 +9,7 @@
 #include "controller/impedance/chosen_damping.h"
 #include "controller/output/joint_limits.h"
 #include "tests/controller/law_bench.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_every_law {
 namespace {
@@ -130,10 +130,10 @@ class EveryLaw : public ::testing::TestWithParam<const char*> {
 TEST_P(EveryLaw, IsFiniteAndWithinLimitsAndDoesNotAllocate) {
   for_random_benches(160, [](LawBench* bench, const VectorJ& q, const VectorJ& v) {
     bench->model.evaluate(q, v, &bench->terms);
-    const auto before = limber::testing::allocations();
+    const auto before = limber::allocations();
     bench->start(q, v);
     VectorJ tau = bench->composed(q, v);
-    EXPECT_EQ(limber::testing::allocations(), before);
+    EXPECT_EQ(limber::allocations(), before);
     ASSERT_TRUE(tau.allFinite());
     EXPECT_TRUE(bench->output.F.allFinite());
     EXPECT_TRUE(std::isfinite(bench->output.spring_energy_J));

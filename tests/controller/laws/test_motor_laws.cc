@@ -11,7 +11,7 @@
 #include "lecture/eval/elastic_arm.h"
 #include "lecture/eval/torque_feedback.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_motor_laws {
 namespace {
@@ -179,11 +179,11 @@ TEST_F(MotorLaws, NothingAllocates) {
   const TorqueFeedback feedback{joints.B, joints.B, joints.K_J, joints.D_J};
   const FullStateFeedback full{K, K, K, K, joints.K_J};
   const Tomei tomei{K, K, joints.K_J};
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   const double sum = rate(tau_m).qdd[0] + feedback.torque(q, v, v)[0] +
                      full.torque(q, v, q, v, q)[0] + tomei.torque(q, v, q, q)[0] +
                      deflection_torque(K, K, q, v, q, v)[0] + model.gravity_gradient(q)(0, 0);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 

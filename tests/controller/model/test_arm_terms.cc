@@ -8,7 +8,7 @@
 #include "common/config_error.h"
 #include "controller/model/rotation.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_arm_terms {
 namespace {
@@ -276,10 +276,10 @@ TEST(ArmTerms, EvaluationDoesNotAllocate) {
     ArmModel model(robot);
     ArmTerms terms(n);
     const VectorJ q = VectorJ::Constant(n, 0.3);
-    const auto before = limber::testing::allocations();
+    const auto before = limber::allocations();
     model.evaluate(q, q, &terms);
     model.tip_pose(q);
-    EXPECT_EQ(limber::testing::allocations(), before) << n << " joints";
+    EXPECT_EQ(limber::allocations(), before) << n << " joints";
   }
 }
 

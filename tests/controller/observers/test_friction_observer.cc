@@ -5,7 +5,7 @@
 
 #include "common/config_error.h"
 #include "controller/observers/friction_observer.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_friction_observer {
 namespace {
@@ -56,9 +56,9 @@ TEST(FrictionObserver, RefusesUnstableGains) {
 TEST(FrictionObserver, DoesNotAllocate) {
   const VectorJ x = VectorJ::Ones(16);
   FrictionObserver friction(x, x, kT);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   for (int k = 0; k < 3; ++k) friction.update(k * x, x, x);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

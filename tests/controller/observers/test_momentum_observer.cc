@@ -6,7 +6,7 @@
 #include "common/config_error.h"
 #include "controller/observers/momentum_observer.h"
 #include "tests/controller/arms.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_momentum_observer {
 namespace {
@@ -107,11 +107,11 @@ TEST(MomentumObserver, DoesNotAllocate) {
   const VectorJ x = VectorJ::Ones(16);
   model.evaluate(x, x, &terms);
   MomentumObserver observer(x, kT);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   for (int k = 0; k < 3; ++k) {
     observer.update(terms.M * x, x, terms.CTv - terms.g);
   }
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "controller/laws/registry.h"
 #include "controller/observers/tip_force.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_tip_force {
 namespace {
@@ -170,10 +170,10 @@ TEST_F(TipForceTest, TheRegistryKnowsIt) {
 
 TEST_F(TipForceTest, NeverAllocates) {
   TipForce force(robot);
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   force.update(read_tip(message), terms, Vector6::Zero());
   force.tare();
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "controller/observers/alpha_beta.h"
 #include "controller/observers/filtered_difference.h"
 #include "controller/observers/levant.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_velocity_estimators {
 namespace {
@@ -153,14 +153,14 @@ TEST(VelocityEstimators, DoNotAllocate) {
   AlphaBeta tracker(16, AlphaBetaGains(100.0, 1e-4, kT), kT);
   LevantDifferentiator levant(16, 10.0, kT);
   const VectorJ x = VectorJ::Ones(16);
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   for (int k = 0; k < 3; ++k) {
     difference.update(k * x);
     acceleration.update(k * Vector6::Ones());
     tracker.update(k * x);
     levant.update(k * x);
   }
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

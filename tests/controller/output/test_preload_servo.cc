@@ -6,7 +6,7 @@
 
 #include "controller/output/preload_servo.h"
 #include "tests/controller/one_joint.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::controller::test_preload_servo {
 namespace {
@@ -119,10 +119,10 @@ TEST_F(Preload, LetsGoInSteps) {
 }
 
 TEST_F(Preload, DoesNotAllocate) {
-  const auto before = limber::testing::allocations();
+  const auto before = limber::allocations();
   run(0.01, 0.3, 0.0, 1.0);
   servo.rest(state, PreloadAtRest::kAsApplied, true);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

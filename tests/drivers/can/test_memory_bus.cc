@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "drivers/can/memory_bus.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_memory_bus {
 namespace {
@@ -104,14 +104,14 @@ TEST(MemoryBus, DoesNotAllocateOnceAttached) {
   const auto a = bus.attach();
   const auto b = bus.attach();
   std::array<CanFrame, 8> frames;
-  const auto before = testing::allocations();
+  const auto before = allocations();
   for (int i = 0; i < 100; ++i) {
     a->send(numbered(1));
     b->send(numbered(2));
     a->receive(frames);
     b->receive(frames);
   }
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

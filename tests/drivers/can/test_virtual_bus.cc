@@ -21,7 +21,7 @@
 #include "drivers/can/virtual_bus.h"
 #include "drivers/can/virtual_frame.h"
 #include "tests/drivers/can/private_network.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/bus_frames.h"
 
 namespace limber::test_virtual_bus {
@@ -197,7 +197,7 @@ TEST_P(VirtualBus, DoesNotAllocateOnceOpen) {
   std::array<CanFrame, 64> frames;
   frames.fill(numbered(1));
   CanBus* ends[] = {a.get(), b.get()};
-  const auto before = testing::allocations();
+  const auto before = allocations();
   for (int i = 0; i < 10; ++i) {
     a->send(frames);
     b->send(numbered(2));
@@ -205,7 +205,7 @@ TEST_P(VirtualBus, DoesNotAllocateOnceOpen) {
     a->receive(frames);
     b->receive(frames);
   }
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 TEST(VirtualBusName, GroupsAsDocumented) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/can/virtual_frame.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_virtual_frame {
 namespace {
@@ -345,10 +345,10 @@ TEST(VirtualFrame, DoesNotAllocate) {
   std::array<std::uint8_t, kLongestEncodedBytes> bytes{};
   const CanFrame sent = fd_frame();
   CanFrame got;
-  const auto before = testing::allocations();
+  const auto before = allocations();
   const std::size_t size = encode_datagram(sent, bytes);
   const bool decoded = decode_datagram(std::span(bytes.data(), size), &got);
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_TRUE(decoded);
 }
 

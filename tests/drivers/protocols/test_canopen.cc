@@ -7,7 +7,7 @@
 
 #include "drivers/protocols/canopen.h"
 #include "drivers/protocols/canopen_sdo.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::canopen::test_canopen {
@@ -239,13 +239,13 @@ TEST(CanopenSdo, EveryFirstByteIsDecodedOrKnownAsUnknown) {
 }
 
 TEST(Canopen, NeverAllocates) {
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   SdoMessage message;
   Emergency emergency;
   EXPECT_TRUE(decode_sdo_request(encode_sdo_read({0x6076, 0}, 3), 3, &message));
   EXPECT_TRUE(decode_sdo_answer(encode_sdo_answer(message, 3), 3, &message));
   EXPECT_TRUE(decode_emergency(encode_emergency({}, 3), 3, &emergency));
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

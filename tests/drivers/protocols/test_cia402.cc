@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/protocols/cia402_pdos.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::cia402::test_cia402 {
@@ -200,13 +200,13 @@ TEST(Cia402Pdos, ThousandthsRoundAndSaturate) {
 }
 
 TEST(Cia402Pdos, NeverAllocate) {
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   DriveState state;
   DriveCommand command;
   const auto objects = state_objects({.link_encoder = true}, 2);
   EXPECT_TRUE(decode_state(encode_state({}, objects, 0x383, false), objects, &state));
   EXPECT_TRUE(decode_command(encode_command({}, 0x203, true), &command));
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 // Object 6072h: whole thousandths of the rated torque within the joint's limit.

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "drivers/protocols/mit.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::mit::test_mit {
@@ -406,12 +406,12 @@ TEST(MitIds, IdsBeyondElevenBitsAreExtended) {
 }
 
 TEST(Mit, DoesNotAllocate) {
-  const auto before = testing::allocations();
+  const auto before = allocations();
   CanFrame frame;
   Reply reply;
   const bool encoded_well = encode_command({}, kDm4310, 1, true, Quantiser::kRound, &frame);
   const bool decoded_well = decode_reply(frame, kDm4310, &reply);
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_TRUE(encoded_well && decoded_well);
 }
 

@@ -11,7 +11,7 @@
 
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
 
 namespace limber::moteus::test_moteus {
@@ -393,13 +393,13 @@ TEST(MoteusFrames, RandomBytesAreReadWithinTheFrame) {
 }
 
 TEST(MoteusMessages, NeverAllocate) {
-  const std::int64_t before = testing::allocations();
+  const std::int64_t before = allocations();
   State state;
   for (int i = 0; i < 100; ++i) {
     (void)encode_command({}, command_id(1));
     (void)decode_state(encode_stop(command_id(1)), &state);
   }
-  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(allocations(), before);
 }
 
 }  // namespace

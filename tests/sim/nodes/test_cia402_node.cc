@@ -9,7 +9,7 @@
 
 #include "drivers/protocols/mit.h"
 #include "tests/sim/cia402_bench.h"
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::sim::test_cia402_node {
 namespace {
@@ -540,7 +540,7 @@ TEST(Cia402Node, NeverAllocates) {
   bench.map(canopen::kTpdoCommunication, 0x183,
             cia402::state_objects({.fd = true, .link_encoder = true}, 0), 1);
   bench.enable();
-  const std::int64_t before = limber::testing::allocations();
+  const std::int64_t before = limber::allocations();
   CanFrame reply;
   for (int i = 0; i < 100; ++i) {
     bench.command(100);
@@ -550,7 +550,7 @@ TEST(Cia402Node, NeverAllocates) {
   bench.wait(30);  // time-out, emergency
   bench.node->receive(canopen::encode_nmt(canopen::NmtCommand::kResetNode, 3), bench.joint,
                       bench.now, &reply);
-  EXPECT_EQ(limber::testing::allocations(), before);
+  EXPECT_EQ(limber::allocations(), before);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ from limber.cli.panels import ELSEWHERE, PANELS, PLACES
 
 
 def test_every_command_has_its_panel_and_no_panel_a_ghost():
-    assert set(get_command(app).commands) == set(PLACES) | set(IN_A_CLONE)
+    assert set(get_command(app).commands) == set(PLACES) | set(IN_A_CLONE) | {"law"}
     assert len(PLACES) == sum(map(len, PANELS.values())), "none stands in two"
     assert len(PLACES) <= 15
 
@@ -26,6 +26,7 @@ def test_the_words_before_still_work(before, now):
 
 def test_the_panels_stand_in_the_order_of_a_persons_way(limber):
     shown = limber("--help").stdout
+    assert "limber law" in shown, "below the panels"
     places = [shown.index(panel) for panel in PANELS]
     assert places == sorted(places)
     for panel, names in PANELS.items():

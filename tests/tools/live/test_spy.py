@@ -31,7 +31,7 @@ public class Decode {
 
 @pytest.mark.skipif(shutil.which("javac") is None, reason="no Java compiler")
 def test_every_type_is_found_and_decoded(tmp_path, monkeypatch):
-    monkeypatch.setattr(spy, "FOLDER", tmp_path / "spy")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     jar = spy.types_jar()
     assert spy.types_jar() == jar, "not built again"
     (tmp_path / "Decode.java").write_text(DECODE)

@@ -19,7 +19,7 @@ from limber.log.reader import Log, log_file
 from limber.model.gains_table import law_names
 from limber.model.robot import Robot, copy_description, load_robot
 from limber.output import write_again
-from limber.paths import ROOT, existing_file, run_folder
+from limber.paths import existing_file, run_folder
 from limber.plot.commands import plot
 
 KILLED = "killed"
@@ -54,7 +54,7 @@ def show(path: Path | None, out: Path | None, console: Console) -> None:
     kept = [dated(box) for box in kept_boxes()]
     chosen = _chosen(path, kept)
     boxes = together(chosen, kept)
-    target = out or ROOT / "out" / f"black-box-{chosen.when:%Y%m%dT%H%M%S}-{chosen.robot}"
+    target = out or Path("out") / f"black-box-{chosen.when:%Y%m%dT%H%M%S}-{chosen.robot}"
     log = run_folder(target) / "run.lcmlog"
     count = write_log(boxes, log)
     if not count:
@@ -92,7 +92,7 @@ def _reproduce(log: Log, robot: Robot, file: Path, console: Console) -> None:
         console.print("no scenario: the log holds no state in which all drives had answered")
         return
     write_again(file, made.text())
-    console.print(f"the same in simulation: ./limber lab {file} --out DIR", soft_wrap=True)
+    console.print(f"the same in simulation: limber lab {file} --out DIR", soft_wrap=True)
     for note in made.notes:
         console.print(f"  {note}")
 

@@ -20,6 +20,7 @@ from limber.cli import (
     groups,
     identify,  # noqa: F401 - fills groups.identify
     joint_check,  # noqa: F401 - fills groups.identify
+    law,
     live,
     log,
     monitor,
@@ -28,6 +29,7 @@ from limber.cli import (
 from limber.cli.options import console
 from limber.cli.panels import Commands, put_in_panels
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
+from limber.paths import CMAKE, EXTRAS, command_for_extra
 
 INTERRUPTED = 130
 
@@ -46,18 +48,26 @@ app.add_typer(groups.identify, name="identify")
 app.add_typer(groups.export, name="export")
 app.add_typer(can.app, name="can")
 put_in_panels(app)
+app.add_typer(law.app, name="law", hidden=True)
+app.info.epilog = "Beside these: limber law (a control law of your own)."
 # What proves limber and what teaches it lies beside a clone's sources, and is not installed.
 IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}
 for name, package in IN_A_CLONE.items():
     if find_spec(package.partition(".")[0]):
         app.add_typer(import_module(package).app, name=name, hidden=True)
-        app.info.epilog = "Of this clone, beside these: limber test, limber dev, limber lecture."
+        app.info.epilog += " Of this clone: limber test, limber dev, limber lecture."
 
 
 @app.callback(invoke_without_command=True)
 def _options(
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
+    cmake: Annotated[
+        bool, typer.Option("--cmake-dir", help="Show where find_package(limber) looks, and exit.")
+    ] = False,
 ) -> None:
+    if cmake:
+        print(CMAKE)
+        raise typer.Exit
     if version:
         console.print(f"limber {__version__}")
         raise typer.Exit
@@ -66,6 +76,16 @@ def _options(
 def fail(message: str, code: int) -> NoReturn:
     print(f"limber: {message}", file=sys.stderr)
     sys.exit(code)
+
+
+def complaint(error: ImportError) -> str:
+    """Of a package that is not there, or cannot be loaded: the command that installs it."""
+    name = (error.name or "").partition(".")[0]
+    if name == "lcm":  # its wheel links the system's GLib
+        return f"LCM cannot be loaded ({error}): sudo apt-get install libglib2.0-0"
+    if name in EXTRAS:
+        return f"this needs the package {error.name}: {command_for_extra(EXTRAS[name])}"
+    return f"{error} (LIMBER_DEBUG=1 shows where)"
 
 
 def main() -> NoReturn:
@@ -83,6 +103,8 @@ def main() -> NoReturn:
         fail(str(error), error.exit_code)
     except (KeyboardInterrupt, typer.Abort):
         fail("stopped", INTERRUPTED)
+    except ImportError as error:
+        fail(complaint(error), RUN_FAILED)
     except OSError as error:
         fail(f"{error.filename or ''}: {error.strerror or error}".lstrip(": "), RUN_FAILED)
     except Exception as error:

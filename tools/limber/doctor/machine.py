@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from limber import paths
+from limber import __version__, paths
 from limber.doctor import can_interfaces
 from limber.live import network
 
@@ -160,15 +160,16 @@ def _programs() -> Iterator[Finding]:
     folder = paths.programs_folder()
     missing = [name for name in PROGRAMS if not (folder / name).exists()]
     if missing:
-        yield Finding("fail", "programs", f"not built: {', '.join(missing)}", "run ./limber")
+        yield Finding("fail", "programs", f"missing: {', '.join(missing)}", paths.REPAIR)
     else:
         yield Finding("ok", "programs", f"all {len(PROGRAMS)} in {folder}")
-    versions = [f"{name} {metadata.version(name)}" for name in ("limber", "lcm", "numpy")]
-    yield Finding("ok", "versions", ", ".join([f"Python {platform.python_version()}", *versions]))
+    others = [f"{name} {metadata.version(name)}" for name in ("lcm", "numpy")]
+    versions = [f"limber {__version__}", f"Python {platform.python_version()}", *others]
+    yield Finding("ok", "versions", ", ".join(versions))
 
 
 def _disk() -> Iterator[Finding]:
-    free = shutil.disk_usage(paths.ROOT).free
+    free = shutil.disk_usage(Path.cwd()).free
     text = f"{free / 1e9:.1f} GB free"
     if free < SMALL_DISK_BYTES:
         yield Finding("warn", "disk", f"{text}: a minute of log takes 0.2 GB", "make room")

@@ -12,11 +12,11 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
 from limber.identify.arm import Arm, JointBelief
 from limber.model.bodies import Body
+from limber.model.rotations import quaternion_of
 from limber.model.urdf import MOVING
 from limber.output import write_again
 
@@ -139,7 +139,7 @@ def torque_limit(arm: Arm, joint: JointBelief) -> float:
 
 
 def _pose(X: np.ndarray) -> dict[str, str]:
-    x, y, z, w = Rotation.from_matrix(X[:3, :3]).as_quat()
+    w, x, y, z = quaternion_of(X[:3, :3])
     return {"pos": _numbers(X[:3, 3]), "quat": _numbers([w, x, y, z])}
 
 

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
 from limber.messages import bit_names, constants
 from limber.model.gains_table import law_names
+from limber.model.rotations import between, matrix_of
 from limber.problems import problem, problems_of_bits, sentence
 
 
@@ -24,13 +24,12 @@ class Pose:
     @property
     def R(self) -> np.ndarray:
         """Rotation matrix, shape (3, 3)."""
-        return Rotation.from_quat(self.quat, scalar_first=True).as_matrix()
+        return matrix_of(self.quat)
 
     def distance(self, other: "Pose") -> tuple[float, float]:
         """Distance of the positions, m, and angle of the rotation between them, rad."""
-        turn = Rotation.from_quat(self.quat, scalar_first=True).inv()
-        turn = Rotation.from_quat(other.quat, scalar_first=True) * turn
-        return float(np.linalg.norm(self.p - other.p)), float(turn.magnitude())
+        angle = np.linalg.norm(between(self.quat, other.quat))
+        return float(np.linalg.norm(self.p - other.p)), float(angle)
 
 
 class Quantities:

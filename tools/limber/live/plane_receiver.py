@@ -12,7 +12,7 @@ from typing import Any
 
 from limber.errors import RunError
 from limber.live.network import CURE
-from limber.paths import programs_folder
+from limber.paths import REPAIR, programs_folder
 
 _HEAD = struct.Struct("=iI")  # number of the channel, size
 
@@ -85,11 +85,11 @@ class PlaneReceiver:
 
 @cache
 def _library() -> Any:
-    path = programs_folder() / "liblimber_receiver.so"
+    path = programs_folder().parent / "lib" / "liblimber_receiver.so"
     try:
         library = ctypes.CDLL(str(path))
     except OSError as error:
-        raise RunError(f"{path} cannot be loaded: run ./limber to build it ({error})") from error
+        raise RunError(f"{path} cannot be loaded: {REPAIR} ({error})") from error
     handle, number = ctypes.c_void_p, ctypes.c_int64
     signatures: dict[str, tuple[Any, list[Any]]] = {
         "open": (handle, [ctypes.c_uint32, ctypes.c_uint16, ctypes.c_char_p, ctypes.c_size_t]),

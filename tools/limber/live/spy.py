@@ -12,10 +12,8 @@ import lcm
 from limber import messages
 from limber.errors import RunError
 from limber.live.network import require_multicast
-from limber.paths import ROOT, captured
+from limber.paths import MESSAGE_FILES, REPAIR, cache_folder, captured
 
-TYPES = ROOT / "lcmtypes"
-FOLDER = ROOT / "build" / "spy"
 JDK = "sudo apt-get install default-jdk"
 
 
@@ -39,19 +37,20 @@ def start() -> NoReturn:
 
 def types_jar() -> Path:
     """The jar of all message types, built unless it is there for these types."""
-    sources = sorted(TYPES.glob("*.lcm"))
+    sources = sorted(MESSAGE_FILES.glob("*.lcm"))
     version = sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:16]
-    jar = FOLDER / f"limber-types-{version}.jar"
+    folder = cache_folder() / "spy"
+    jar = folder / f"limber-types-{version}.jar"
     if jar.is_file():
         return jar
     lcm_gen, compiler, archiver = _beside_python("lcm-gen"), _program("javac"), _program("jar")
-    shutil.rmtree(FOLDER, ignore_errors=True)
-    (FOLDER / "classes").mkdir(parents=True)
-    _run([lcm_gen, "--java", "--jpath", str(FOLDER / "java"), *map(str, sources)])
-    made = sorted(map(str, (FOLDER / "java").rglob("*.java")))
-    _run([compiler, "-nowarn", "-cp", str(lcm_jar()), "-d", str(FOLDER / "classes"), *made])
+    shutil.rmtree(folder, ignore_errors=True)
+    (folder / "classes").mkdir(parents=True)
+    _run([lcm_gen, "--java", "--jpath", str(folder / "java"), *map(str, sources)])
+    made = sorted(map(str, (folder / "java").rglob("*.java")))
+    _run([compiler, "-nowarn", "-cp", str(lcm_jar()), "-d", str(folder / "classes"), *made])
     part = jar.with_suffix(".part")
-    _run([archiver, "cf", str(part), "-C", str(FOLDER / "classes"), "."])
+    _run([archiver, "cf", str(part), "-C", str(folder / "classes"), "."])
     part.rename(jar)
     return jar
 
@@ -69,7 +68,7 @@ def lcm_jar() -> Path:
 def _beside_python(name: str) -> str:
     path = Path(sys.executable).parent / name
     if not path.is_file():
-        raise RunError(f"{path} is missing: it comes with the Python package `lcm`; run ./limber")
+        raise RunError(f"{path} is missing: it comes with the Python package `lcm`; {REPAIR}")
     return str(path)
 
 

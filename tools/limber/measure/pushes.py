@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from limber.arrays import Floats, Records
 from limber.log.reader import Log, time_s
 from limber.measure import statics
 from limber.measure.results import Result, close_to
 from limber.measure.sound import sound
+from limber.model import rotations
 from limber.model.scenario import Push, Scenario
 
 BEFORE_S = 0.2  # rest that is averaged before a push
@@ -188,7 +188,7 @@ def _goal_axes(truth: np.ndarray, status: np.ndarray, rests: _Rests) -> np.ndarr
     quaternions = records[field][(t >= low) & (t < high)]
     if not np.linalg.norm(quaternions, axis=1).all():
         return np.eye(3)  # no pose is held
-    return Rotation.from_quat(quaternions, scalar_first=True).mean().as_matrix()
+    return rotations.matrix_of(rotations.mean(quaternions))
 
 
 def _response(
@@ -218,12 +218,12 @@ def _direction(wrench: np.ndarray) -> np.ndarray:
 
 
 def _displacement(truth: np.ndarray, rests: _Rests) -> np.ndarray:
-    R = {}
+    means = {}
     t = time_s(truth)
     for when, (low, high) in (("before", rests.before), ("during", rests.during)):
         quaternions = truth["quat_BT"][(t >= low) & (t < high)]
-        R[when] = Rotation.from_quat(quaternions, scalar_first=True).mean()
-    turned = (R["during"] * R["before"].inv()).as_rotvec()
+        means[when] = rotations.mean(quaternions)
+    turned = rotations.between(means["before"], means["during"])
     return np.concatenate([rests.change(truth, "p_BT"), turned])
 
 

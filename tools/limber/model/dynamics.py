@@ -12,10 +12,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from limber.arrays import Floats
 from limber.model.bodies import Body, bodies
+from limber.model.rotations import turned_about
 from limber.model.urdf import MOVING, Chain
 
 STEP_RAD = 1e-5
@@ -111,7 +111,7 @@ class ArmDynamics:
             if joint.kind == "prismatic":
                 p = p + angle[:, None] * z
             else:
-                R = R @ Rotation.from_rotvec(angle[:, None] * joint.axis).as_matrix()
+                R = R @ turned_about(angle[:, None] * joint.axis)
             found.append((R, p, z))
         return Frames(*(np.array(part) for part in zip(*found, strict=True)))
 

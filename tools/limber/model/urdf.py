@@ -11,10 +11,10 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from limber.arrays import Floats
 from limber.errors import InputError
+from limber.model.rotations import matrix_of, turned_about
 from limber.model.xml_file import attribute, inside, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
@@ -105,7 +105,7 @@ def _motion(joint: Joint, value: float) -> Floats:
     if joint.kind == "prismatic":
         X[:3, 3] = value * joint.axis
     else:
-        X[:3, :3] = Rotation.from_rotvec(value * joint.axis).as_matrix()
+        X[:3, :3] = turned_about(value * joint.axis)
     return X
 
 
@@ -121,10 +121,10 @@ def pose_of(origin: Element | None) -> Floats:
     X = np.eye(4)
     X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
     if origin is not None and origin.get("quat_xyzw") is not None:
-        turn = Rotation.from_quat(numbers_of(origin, "quat_xyzw", ""))
+        X[:3, :3] = matrix_of(np.roll(numbers_of(origin, "quat_xyzw", ""), 1))
     else:
-        turn = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0"))
-    X[:3, :3] = turn.as_matrix()
+        roll, pitch, yaw = np.diag(numbers_of(origin, "rpy", "0 0 0"))
+        X[:3, :3] = turned_about(yaw) @ turned_about(pitch) @ turned_about(roll)
     return X
 
 

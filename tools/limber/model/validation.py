@@ -7,7 +7,7 @@ from pathlib import Path
 from limber.errors import InputError
 from limber.model.robot import Robot, load_robot
 from limber.model.scenario import Scenario, load_scenario
-from limber.paths import captured, existing_file, program, robot_folder
+from limber.paths import captured, existing_file, program, robot_folder, scenario_file
 
 
 def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]:
@@ -21,7 +21,7 @@ def checker_arguments(what: str, base: str | None, tip: str | None) -> list[str]
     if base is not None or tip is not None:
         raise InputError("--base and --tip are for a bare .urdf; a robot's are in its robot.yaml")
     if path.suffix in (".yaml", ".yml") and path.name != "robot.yaml":
-        return ["scenario", str(existing_file(path, "scenario file (.yaml)"))]
+        return ["scenario", str(scenario_file(path))]
     folder = robot_folder(str(path.parent) if path.name == "robot.yaml" else what)
     return ["robot", str(folder)]
 
@@ -41,7 +41,7 @@ def load_checked_robot(name_or_folder: str) -> Robot:
 
 def load_checked(path: Path) -> Scenario:
     """Raises InputError with limber-check's message if the scenario or its robot is wrong."""
-    existing_file(path, "scenario file (.yaml)")
+    path = scenario_file(path)
     done = run_checker(["scenario", str(path), "--json"])
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.strip()]

@@ -2,24 +2,11 @@
 
 import numpy as np
 import viser
-from scipy.spatial.transform import Rotation
 
-from limber.arrays import Floats
+from limber.model.rotations import matrix_of, product, quaternion_of
 from limber.monitor.shapes import Figure, Shape
 
 THINNER = 0.94
-
-
-def wxyz(R: np.ndarray) -> np.ndarray:
-    return Rotation.from_matrix(R).as_quat(scalar_first=True)
-
-
-def product(a: Floats, b: Floats) -> Floats:
-    """Of two quaternions w, x, y, z: the turn b, then a."""
-    w, x, y, z = a
-    left = np.array([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
-    both: Floats = left @ b
-    return both
 
 
 class ArmView:
@@ -31,14 +18,14 @@ class ArmView:
         self, scene: viser.SceneApi, root: str, figure: Figure, ghost: tuple | None = None
     ) -> None:
         self.figure = figure
-        self._quats = np.array([wxyz(X[:3, :3]) for X in figure.X_PF]).reshape(-1, 4)
+        self._quats = np.array([quaternion_of(X[:3, :3]) for X in figure.X_PF]).reshape(-1, 4)
         self.frames = {figure.base: scene.add_frame(root, show_axes=False)}
         path = root
         for joint in figure.joints:
             path = f"{path}/{len(self.frames)}"  # a link's name may be anything
             X = figure.X_PF[len(self.frames) - 1]
             self.frames[joint.child] = scene.add_frame(
-                path, show_axes=False, position=X[:3, 3], wxyz=wxyz(X[:3, :3])
+                path, show_axes=False, position=X[:3, 3], wxyz=quaternion_of(X[:3, :3])
             )
         self.meshes: list[tuple[Shape, viser.MeshHandle]] = [
             (shape, self._mesh(scene, f"{self.frames[shape.link].name}/shape{i}", shape, ghost))
@@ -81,7 +68,7 @@ class ArmView:
         X = np.eye(4)
         for name in self.figure.links[: self.figure.links.index(link) + 1]:
             step, frame = np.eye(4), self.frames[name]
-            step[:3, :3] = Rotation.from_quat(frame.wxyz, scalar_first=True).as_matrix()
+            step[:3, :3] = matrix_of(frame.wxyz)
             step[:3, 3] = frame.position
             X = X @ step
         return (X @ self.figure.X_tip if link == self.figure.links[-1] else X)[:3, 3]

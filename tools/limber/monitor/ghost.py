@@ -1,8 +1,8 @@
 """The arm as it would stand with its tip at the goal: drawn translucent where it differs."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
+from limber.model import rotations
 from limber.model.urdf import Chain
 
 STEPS = 6
@@ -18,12 +18,10 @@ def nearest_posture(
     few steps get.
     """
     q = np.array(q, float)
-    R_BD = Rotation.from_quat(quat_BD, scalar_first=True)
     for _ in range(STEPS):
         X = chain.forward(q)
-        e = np.concatenate(
-            [p_BD - X[:3, 3], (R_BD * Rotation.from_matrix(X[:3, :3]).inv()).as_rotvec()]
-        )
+        turn = rotations.between(rotations.quaternion_of(X[:3, :3]), quat_BD)
+        e = np.concatenate([p_BD - X[:3, 3], turn])
         if np.linalg.norm(e) < 1e-4:
             break
         J = chain.jacobian(q)

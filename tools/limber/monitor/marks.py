@@ -2,9 +2,8 @@
 
 import numpy as np
 import viser
-from scipy.spatial.transform import Rotation
 
-from limber.monitor.arm_view import wxyz
+from limber.model.rotations import from_z, quaternion_of
 
 M_PER_N = 0.012
 LONGEST_M = 0.6
@@ -71,7 +70,7 @@ class StiffnessEllipsoid:
         axes, R = ellipsoid(K)
         x, y, z = (float(a) for a in axes)
         self._ball.scale = x, y, z
-        self._ball.wxyz = wxyz(R)
+        self._ball.wxyz = quaternion_of(R)
         self._ball.position = center
 
 
@@ -102,7 +101,7 @@ class WallView:
             return
         n = normal / length
         self._plate.position = point - 0.003 * n
-        self._plate.wxyz = Rotation.align_vectors([n], [[0, 0, 1]])[0].as_quat(scalar_first=True)
+        self._plate.wxyz = from_z(n)
         self._plate.visible = True
 
     def hide(self) -> None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import viser
-from scipy.spatial.transform import Rotation
 
+from limber.model import rotations
 from limber.model.robot import Robot
 from limber.monitor import ghost
 from limber.monitor.arm_view import ArmView
@@ -96,7 +96,7 @@ class Scene:
         server.scene.set_background_image(np.full((2, 2, 3), BACKGROUND, np.uint8))
         server.initial_camera.position = place.position
         server.initial_camera.look_at = place.look_at
-        floor = Rotation.align_vectors([place.up], [[0, 0, 1]])[0].as_quat(scalar_first=True)
+        floor = rotations.from_z(place.up / np.linalg.norm(place.up))
         server.scene.add_grid("/floor", 4.0, 4.0, cell_size=0.1, section_size=0.5, wxyz=floor)
 
     def draw(self, feed: Feed, batch: Batch, old: bool) -> None:

@@ -15,12 +15,12 @@ from limber.measure.pushes import MeasuredPush
 from limber.measure.results import Result, Summary, text
 from limber.model.scenario import Scenario
 from limber.model.validation import load_checked
-from limber.paths import ROOT, run_folder
+from limber.paths import SCENARIOS, run_folder
 from limber.run import commands, runner
 from limber.run.options import FinishedRun, RunOptions
 
-SCENARIO = ROOT / "scenarios" / "demo.yaml"
-WITH_SENSORS = ROOT / "scenarios" / "demo_sensors.yaml"
+SCENARIO = SCENARIOS / "demo.yaml"
+WITH_SENSORS = SCENARIOS / "demo_sensors.yaml"
 # Causes of a machine that was busy elsewhere for too long; in a simulation nothing else is late.
 LATE = {
     "driver.CONTROLLER_LOST",

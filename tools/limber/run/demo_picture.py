@@ -5,7 +5,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from limber.log.reader import Log, time_s
 from limber.measure.pushes import BEFORE_S, MeasuredPush
@@ -183,4 +182,6 @@ def _mean(t: np.ndarray, span_s: float, values: np.ndarray) -> np.ndarray:
     if len(t) < 2:
         return values
     count = max(1, round(span_s / float(np.median(np.diff(t)))))
-    return uniform_filter1d(values, count, mode="nearest")
+    before = count // 2
+    held = np.pad(values, (before, count - 1 - before), mode="edge")
+    return np.convolve(held, np.full(count, 1 / count), mode="valid")

@@ -1,7 +1,6 @@
 """`limber log convert`: reads a log piece by piece and hands each to the writer of a format."""
 
 import importlib
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,14 +8,13 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
-from limber.errors import InputError, RunError
+from limber.errors import InputError
 from limber.log import events
 from limber.log.convert.windows import Writer, joint_names, windows
 from limber.log.cut import copy_events
 from limber.log.reader import Log, log_file
 from limber.log.results import complete_or_nothing, require_new
 from limber.output import write_again
-from limber.paths import ROOT
 
 
 @dataclass(frozen=True)
@@ -28,14 +26,13 @@ class Format:
     writer: str
     folder: bool = False
     text: bool = True  # messages with text, too
-    extra: str | None = None  # of pyproject.toml, where its packages are
 
 
 FORMATS = {
     "csv": Format("_csv", "csv_files", "CsvFiles", folder=True),
-    "parquet": Format("_parquet", "parquet_files", "ParquetFiles", folder=True, extra="parquet"),
+    "parquet": Format("_parquet", "parquet_files", "ParquetFiles", folder=True),
     "mcap": Format(".mcap", "mcap_file", "McapFile"),
-    "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False, extra="rerun"),
+    "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False),
     "npz": Format(".npz", "npz_file", "NpzFile", text=False),
     "lcm": Format(".lcmlog", "", ""),
 }
@@ -107,15 +104,7 @@ def _writer_class(kind: str) -> Callable[..., Writer] | None:
     chosen = FORMATS[kind]
     if not chosen.module:
         return None
-    try:
-        module = importlib.import_module(f"limber.log.convert.{chosen.module}")
-    except ImportError as error:
-        if chosen.extra is None:
-            raise
-        raise RunError(
-            f"--to {kind} needs a package that is not installed ({error.name}): "
-            f"{sys.executable} -m pip install -e '{ROOT}[{chosen.extra}]'"
-        ) from error
+    module = importlib.import_module(f"limber.log.convert.{chosen.module}")
     writer: Callable[..., Writer] = getattr(module, chosen.writer)
     return writer
 

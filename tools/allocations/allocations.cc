@@ -1,6 +1,9 @@
-#include "tests/support/allocation_counter.h"
+#include "tools/allocations/allocations.h"
 
 #include <cstddef>
+
+// Also for what the program loads.
+#pragma GCC visibility push(default)
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIMBER_SANITIZED_HEAP 1
@@ -59,6 +62,5 @@ int posix_memalign(void** pointer, std::size_t alignment, std::size_t size) {
 }
 #endif
 
-namespace limber::testing {
-std::int64_t allocations() noexcept { return count; }
-}  // namespace limber::testing
+std::int64_t limber_allocations() noexcept { return count; }
+#pragma GCC visibility pop
