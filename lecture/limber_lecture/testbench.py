@@ -12,7 +12,7 @@ import numpy as np
 from limber.arrays import Floats
 from limber.errors import RunError
 from limber.log.reader import Log, time_s
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber.paths import robot_folder
 from limber_lecture.context import Context
 from limber_lecture.plants import held, with_delay

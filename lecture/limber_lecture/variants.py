@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber.paths import output_folder, robot_folder
 from limber_lecture.evaluate import plain
 

@@ -6,7 +6,6 @@
 
 #include "common/complaints.h"
 #include "robots/loader/doubtful_figures.h"
-#include "robots/loader/urdf_reduce.h"
 #include "robots/loader/urdf_rules.h"
 
 namespace limber {
@@ -244,7 +243,6 @@ UrdfText check_urdf(const UrdfTree& tree, const UrdfUse& use,
   urdf.unphysical = std::move(findings.unphysical);
   append(findings.told, "", &urdf.notes);
   append(findings.elsewhere, " (of no effect on this arm)", &urdf.notes);
-  urdf.text = reduced_urdf(tree, use);
   return urdf;
 }
 

@@ -5,7 +5,8 @@ import time
 import numpy as np
 
 from limber.lcmtypes.push_t import push_t
-from limber.model.robot import load_robot, read_yaml
+from limber.model.robot import load_robot
+from limber.yaml_file import read_yaml
 from limber.model.urdf import MOVING
 from stack import Stack
 

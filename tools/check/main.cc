@@ -13,6 +13,7 @@
 #include "controller/laws/registry.h"
 #include "robots/loader/required_keys.h"
 #include "tools/check/print.h"
+#include "tools/check/robot_json.h"
 
 using namespace limber;
 
@@ -26,6 +27,7 @@ struct Arguments {
   std::string gravity = "0,0,-9.81";
   std::string scenario;
   bool as_json = false;
+  bool resolved = false;
   bool keys = false;
   bool protocols = false;
 };
@@ -50,9 +52,10 @@ std::vector<double> parse_gravity(const std::string& text) {
   return gravity;
 }
 
-std::string check_arm(const LoadedRobot& robot, bool as_json) {
+std::string check_arm(const LoadedRobot& robot, const Arguments& given) {
+  if (given.resolved) return robot_json(robot) + "\n";
   const ArmReport report = make_arm_report(robot);
-  return as_json ? arm_json(robot, report) : arm_text(robot, report);
+  return given.as_json ? arm_json(robot, report) : arm_text(robot, report);
 }
 
 /// Base and tip of the only arm there is; else the arms are listed.
@@ -81,16 +84,17 @@ void choose_ends(Arguments* given) {
 std::string check_urdf_file(Arguments given) {
   const std::vector<double> gravity = parse_gravity(given.gravity);
   if (given.base.empty() || given.tip.empty()) choose_ends(&given);
-  return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given.as_json);
+  return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given);
 }
 
 std::string check(const Arguments& given) {
   if (given.keys) return required_keys_table();
   if (given.protocols) return protocols_json();
   if (!given.urdf.empty()) return check_urdf_file(given);
-  if (given.scenario.empty()) return check_arm(load_robot(given.robot), given.as_json);
+  if (given.scenario.empty()) return check_arm(load_robot(given.robot), given);
   std::string note;
-  LoadedRobot robot = load_robot(scenario_robot(given.scenario, &note));
+  LoadedRobot robot = load_robot(given.robot.empty() ? scenario_robot(given.scenario, &note)
+                                                     : given.robot);
   if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   return given.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
@@ -106,12 +110,15 @@ void define(CommandLine& line, Arguments* given) {
   urdf.text("--gravity", &given->gravity, "x,y,z in m/s^2, axes of the URDF's root link");
   auto& scenario = line.command("scenario", "a scenario file, against its robot");
   scenario.text("file", &given->scenario, "scenario file").required();
+  scenario.text("--robot", &given->robot, "name or folder of another robot than the file's");
   auto& keys = line.command("keys", "lists the keys that every robot.yaml needs, in Markdown");
   keys.when_chosen([given] { given->keys = true; });
   auto& protocols = line.command("protocols", "lists the drive protocols, as JSON");
   protocols.when_chosen([given] { given->protocols = true; });
   for (auto* command : {&robot, &urdf, &scenario})
     command->flag("--json", &given->as_json, "print one JSON object");
+  for (auto* command : {&robot, &urdf})
+    command->flag("--resolved", &given->resolved, "print what was read, in full, as JSON; no report");
 }
 
 int run(const Arguments& given) {

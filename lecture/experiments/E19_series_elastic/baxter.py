@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import fsolve
 from scipy.spatial.transform import Rotation
 
-from limber.model.robot import Robot, load_robot, read_yaml
+from limber.model.robot import Robot, load_robot
+from limber.yaml_file import read_yaml
 from limber_lecture.context import Comparison, Context
 from limber_lecture.timeline import in_turn, tip_gains
 from limber_lecture.truth import motion, status

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.linalg import eigvalsh
 from scipy.optimize import fsolve
 
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber.paths import robot_folder
 from limber_lecture import planar2r as arm
 from limber_lecture.context import Comparison, Context

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from limber.messages import message_class
-from limber.model.robot import load_robot, read_yaml
+from limber.model.robot import load_robot
+from limber.yaml_file import read_yaml
 from limber_lecture.context import Comparison, Context, at_most, case, near_zero
 from limber_lecture.timeline import tip_gains
 from limber_lecture.truth import Log, motion, status

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber.paths import robot_folder
 from limber_lecture.context import Context
 from limber_lecture.probing import Probing

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber.paths import robot_folder
 from limber_lecture import truth
 from limber_lecture.context import Comparison, Context, at_least, at_most

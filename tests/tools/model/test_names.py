@@ -5,7 +5,7 @@ import pytest
 from limber.errors import InputError
 from limber.model.names import require_name
 from limber.model.robot import load_robot
-from limber.model.validation import run_checker
+from limber.model.checker import run_checker
 from limber.paths import ROOT
 
 BAD = ["../..", "a/b", "<script>", "x" * 300, "a\nb", " a", ".a", "é"]

@@ -6,6 +6,10 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from limber.arrays import Floats
 from limber.errors import InputError
 
 
@@ -46,6 +50,25 @@ def attribute(element: Element, key: str, path: Path) -> str:
     if value is None:
         raise InputError(f'{path}: {_words(element)} has no {key}=""')
     return value
+
+
+def numbers_of(element: Element | None, key: str, default: str) -> Floats:
+    text = element.get(key, default) if element is not None else default
+    return np.array([float(part) for part in text.split()])
+
+
+def origin_pose(parent: Element) -> Floats:
+    """4x4, of the <origin> in it: rpy turns by roll about x, then pitch about y, then yaw about z,
+    all of the parent's axes; quat_xyzw, of URDF 1.1, stands in its place.
+    """
+    X, origin = np.eye(4), parent.find("origin")
+    X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
+    if origin is not None and origin.get("quat_xyzw") is not None:
+        turn = Rotation.from_quat(numbers_of(origin, "quat_xyzw", ""))
+    else:
+        turn = Rotation.from_euler("xyz", numbers_of(origin, "rpy", "0 0 0"))
+    X[:3, :3] = turn.as_matrix()
+    return X
 
 
 def _words(element: Element) -> str:

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from limber.errors import InputError
-from limber.model.dynamics import ArmDynamics
-from limber.model.urdf import Chain
-from limber.model.validation import checker_arguments, run_checker
+from limber.model.checker import checker_arguments, run_checker
+from limber.model.robot import load_urdf
 
 WALL, WALL_SHARE = 0.1, 0.1  # width of the soft wall, rad or m, and share of the travel at most
 ROOM_rad, ROOM_m = 0.1, 0.03  # before it, to give way in
@@ -59,20 +58,17 @@ def read(urdf: Path, base: str | None, tip: str | None) -> ArmFacts:
         listed = run_checker(checker_arguments(str(urdf), base, tip))
         raise InputError(f"{listed.stderr.strip()}\n{listed.stdout.rstrip()}")
     found = json.loads(done.stdout)
-    chain = Chain(urdf, found["base"], found["tip"])
+    robot = load_urdf(urdf, found["base"], found["tip"])
     home = np.array([_home(joint) for joint in found["joints"]])
-    dynamics = ArmDynamics(urdf, chain, np.array(found["gravity_m_per_s2"]))
-    weight = dynamics.gravity_torque(home[None])[0]
-    accelerated = np.tile(home, (len(home), 1))
-    M = dynamics.torque(accelerated, np.zeros_like(accelerated), np.eye(len(home))) - weight
-    facts = zip(found["joints"], weight, np.diag(M), strict=True)
+    weight = robot.dynamics.gravity_torque(home[None])[0]
+    facts = zip(found["joints"], weight, np.diag(robot.dynamics.inertia(home)), strict=True)
     return ArmFacts(
         urdf,
-        found["base"],
-        found["tip"],
+        robot.base,
+        robot.tip,
         found["moving_mass_kg"],
         home,
-        chain.jacobian(home),
+        robot.chain.jacobian(home),
         [_joint(joint, abs(g), inertia) for joint, g, inertia in facts],
     )
 
