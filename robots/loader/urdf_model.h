@@ -1,5 +1,5 @@
-// The checked elements of a URDF as urdfdom's model: the chain is built from it, and tools are given
-// it.
+// The checked elements of a URDF as urdfdom's model: the chain is built from it, and tools are
+// given it.
 #pragma once
 
 #include <urdf_world/types.h>

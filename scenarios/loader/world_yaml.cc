@@ -104,14 +104,13 @@ void read_joint_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t*
   for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
   event->joint = index_of(yaml.word("joint", names), names);
   const std::string kind = yaml.word("kind", kFaults);
-  event->fault = static_cast<std::int8_t>(std::ranges::find(kFaultWords, kind) - kFaultWords.begin());
+  event->fault =
+      static_cast<std::int8_t>(std::ranges::find(kFaultWords, kind) - kFaultWords.begin());
 }
 
 }  // namespace
 
-const char* fault_word(std::int8_t fault) {
-  return kFaultWords[static_cast<std::size_t>(fault)];
-}
+const char* fault_word(std::int8_t fault) { return kFaultWords[static_cast<std::size_t>(fault)]; }
 
 scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
   scenario_event_t event{};

@@ -93,8 +93,8 @@ std::string check(const Arguments& given) {
   if (!given.urdf.empty()) return check_urdf_file(given);
   if (given.scenario.empty()) return check_arm(load_robot(given.robot), given);
   std::string note;
-  LoadedRobot robot = load_robot(given.robot.empty() ? scenario_robot(given.scenario, &note)
-                                                     : given.robot);
+  LoadedRobot robot =
+      load_robot(given.robot.empty() ? scenario_robot(given.scenario, &note) : given.robot);
   if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   return given.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
@@ -118,7 +118,8 @@ void define(CommandLine& line, Arguments* given) {
   for (auto* command : {&robot, &urdf, &scenario})
     command->flag("--json", &given->as_json, "print one JSON object");
   for (auto* command : {&robot, &urdf})
-    command->flag("--resolved", &given->resolved, "print what was read, in full, as JSON; no report");
+    command->flag("--resolved", &given->resolved,
+                  "print what was read, in full, as JSON; no report");
 }
 
 int run(const Arguments& given) {

@@ -82,18 +82,18 @@ json::Members bus_members(const BusConfig& bus) {
 
 json::Members robot_members(const LoadedRobot& loaded) {
   const Robot& robot = loaded.robot;
-  return {{"name", json::text(robot.name)},
-          {"folder", json::text(robot.folder)},
-          {"urdf", json::text(robot.urdf_path)},
-          {"base", json::text(robot.base)},
-          {"tip", json::text(robot.tip)},
-          {"links", json::texts(loaded.segment_links)},
-          {"rate_hz", json::number(robot.rate_hz)},
-          {"energy_limit_J", json::number(robot.energy_limit_J)},
-          {"gravity_m_per_s2",
-           json::numbers({robot.gravity[0], robot.gravity[1], robot.gravity[2]})},
-          {"tip_sensor", tip_sensor_json(robot)},
-          {"notes", json::texts(loaded.notes)}};
+  return {
+      {"name", json::text(robot.name)},
+      {"folder", json::text(robot.folder)},
+      {"urdf", json::text(robot.urdf_path)},
+      {"base", json::text(robot.base)},
+      {"tip", json::text(robot.tip)},
+      {"links", json::texts(loaded.segment_links)},
+      {"rate_hz", json::number(robot.rate_hz)},
+      {"energy_limit_J", json::number(robot.energy_limit_J)},
+      {"gravity_m_per_s2", json::numbers({robot.gravity[0], robot.gravity[1], robot.gravity[2]})},
+      {"tip_sensor", tip_sensor_json(robot)},
+      {"notes", json::texts(loaded.notes)}};
 }
 
 std::string robot_json(const LoadedRobot& loaded) {

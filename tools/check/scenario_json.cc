@@ -54,10 +54,9 @@ json::Members members_of(const scenario_event_t& event) {
     return {{"payload_kg", there ? json::number(event.payload_mass_kg) : "null"}};
   }
   if (!(event.stiffness_N_per_m > 0.0)) return {{"wall", "null"}};
-  return {
-      {"wall", json::object({{"point_m", array_json(event.point)},
-                             {"normal", array_json(event.normal)},
-                             {"stiffness_N_per_m", json::number(event.stiffness_N_per_m)}})}};
+  return {{"wall", json::object({{"point_m", array_json(event.point)},
+                                 {"normal", array_json(event.normal)},
+                                 {"stiffness_N_per_m", json::number(event.stiffness_N_per_m)}})}};
 }
 
 std::string timeline_json(const Scenario& scenario) {
@@ -87,13 +86,14 @@ std::string gains_json(const std::string& since_s, const std::string& law,
                        const compliance_gains_t& gains) {
   std::vector<std::string> K_x;
   for (const auto& row : gains.K_x) K_x.push_back(array_json(row));
-  return json::object({{"at_s", since_s},
-                       {"law", json::text(law)},
-                       {"K_x", json::list(K_x)},
-                       {"K_q_Nm_per_rad", json::numbers({gains.K_q, gains.K_q + gains.num_joints})},
-                       {"frame", json::text(word_of("frame", gains))},
-                       {"friction_compensation", json::text(word_of("friction_compensation", gains))},
-                       {"friction_share", fmt::format("{}", gains.friction_share)}});
+  return json::object(
+      {{"at_s", since_s},
+       {"law", json::text(law)},
+       {"K_x", json::list(K_x)},
+       {"K_q_Nm_per_rad", json::numbers({gains.K_q, gains.K_q + gains.num_joints})},
+       {"frame", json::text(word_of("frame", gains))},
+       {"friction_compensation", json::text(word_of("friction_compensation", gains))},
+       {"friction_share", fmt::format("{}", gains.friction_share)}});
 }
 
 /// What holds from each time on; the first is what a controller starts with.
@@ -115,23 +115,23 @@ std::string gains_over_time(const Scenario& scenario, const Robot& robot) {
 
 json::Members scenario_members(const Scenario& scenario, const LoadedRobot& robot) {
   const bool ode = scenario.integrator == Integrator::kOde;
-  return {{"format", json::text("limber-resolved-scenario/1")},
-          {"name", json::text(scenario.name)},
-          {"robot", robot_json(robot)},
-          {"mode", json::text(scenario.lockstep ? "lockstep" : "realtime")},
-          {"duration_s", json::number(scenario.duration_s)},
-          {"integrator", json::text(ode ? "ode" : "reference")},
-          {"step_s", json::number(scenario.step_s)},
-          {"friction", json::flag(scenario.friction)},
-          {"seed", fmt::format("{}", scenario.seed)},
-          {"record", json::flag(scenario.record)},
-          {"measure",
-           json::object({{"stiffness", json::number(scenario.measure.stiffness)},
-                         {"contact_force", json::number(scenario.measure.contact_force)}})},
-          {"plant_overrides", json::flag(scenario.plant.has_value())},
-          {"start_q", json::numbers(scenario.start_q)},
-          {"gains", gains_over_time(scenario, robot.robot)},
-          {"timeline", timeline_json(scenario)}};
+  return {
+      {"format", json::text("limber-resolved-scenario/1")},
+      {"name", json::text(scenario.name)},
+      {"robot", robot_json(robot)},
+      {"mode", json::text(scenario.lockstep ? "lockstep" : "realtime")},
+      {"duration_s", json::number(scenario.duration_s)},
+      {"integrator", json::text(ode ? "ode" : "reference")},
+      {"step_s", json::number(scenario.step_s)},
+      {"friction", json::flag(scenario.friction)},
+      {"seed", fmt::format("{}", scenario.seed)},
+      {"record", json::flag(scenario.record)},
+      {"measure", json::object({{"stiffness", json::number(scenario.measure.stiffness)},
+                                {"contact_force", json::number(scenario.measure.contact_force)}})},
+      {"plant_overrides", json::flag(scenario.plant.has_value())},
+      {"start_q", json::numbers(scenario.start_q)},
+      {"gains", gains_over_time(scenario, robot.robot)},
+      {"timeline", timeline_json(scenario)}};
 }
 
 }  // namespace limber

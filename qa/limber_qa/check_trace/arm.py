@@ -63,9 +63,7 @@ def read_arm(name_or_path: str, addresses: dict[str, str] | None = None) -> Arm:
         buses = _buses(content, addresses or {}, file)
         limits = joint_limits(file.parent / content["urdf"], content["base"], content["tip"])
         motors = [
-            motor
-            for name, urdf in limits.items()
-            for motor in _motors(name, urdf, content, buses)
+            motor for name, urdf in limits.items() for motor in _motors(name, urdf, content, buses)
         ]
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{file}: {error} is missing or wrong; see `limber check`") from error
@@ -81,9 +79,7 @@ def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> di
     return buses
 
 
-def _motors(
-    name: str, urdf: Limits, content: dict[str, Any], buses: dict[str, Any]
-) -> list[Motor]:
+def _motors(name: str, urdf: Limits, content: dict[str, Any], buses: dict[str, Any]) -> list[Motor]:
     joint = content["joints"][name]
     if joint.get("urdf_limits") == "ignore":
         urdf = Limits()

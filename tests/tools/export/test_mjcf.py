@@ -26,9 +26,7 @@ def test_inverse_dynamics(name):
         mujoco.mj_inverse(model, data)
         np.testing.assert_allclose(data.qfrc_inverse, torque, atol=1e-6 * np.abs(torque).max())
         mujoco.mj_kinematics(model, data)
-        np.testing.assert_allclose(
-            data.site_xpos[0], arm.chain.forward(q[k])[:3, 3], atol=1e-6
-        )
+        np.testing.assert_allclose(data.site_xpos[0], arm.chain.forward(q[k])[:3, 3], atol=1e-6)
 
 
 def test_numbers_of_robot_yaml():

@@ -1,11 +1,11 @@
 """Names are judged where they are read, by the rule of the C++ programs."""
 
 import pytest
+from limber.model.names import require_name
 
 from limber.errors import InputError
-from limber.model.names import require_name
-from limber.model.robot import load_robot
 from limber.model.checker import run_checker
+from limber.model.robot import load_robot
 from limber.paths import ROOT
 
 BAD = ["../..", "a/b", "<script>", "x" * 300, "a\nb", " a", ".a", "é"]

@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
 from limber.model.bodies import read_inertials
-from limber.model.urdf import Chain, read_joints
 from limber.model.checker import run_checker
+from limber.model.urdf import Chain, read_joints
 from limber.monitor.shapes import figure
 
 ARM = """<robot name="six"{root}>

@@ -60,9 +60,7 @@ def needs_of(robot: str) -> dict[str, BusNeeds]:
     sample_points = {
         joint["bus"]: protocol(joint["protocol"]).sample_point for joint in found["joints"]
     }
-    return {
-        bus["name"]: _needs(bus, sample_points.get(bus["name"], 0.0)) for bus in found["buses"]
-    }
+    return {bus["name"]: _needs(bus, sample_points.get(bus["name"], 0.0)) for bus in found["buses"]}
 
 
 def _needs(bus: dict[str, Any], sample_point: float) -> BusNeeds:

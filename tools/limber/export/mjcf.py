@@ -62,7 +62,9 @@ def left_out(robot: Robot) -> list[str]:
     """What of robot.yaml the model does not have."""
     joints = robot.resolved["joints"]
     breakaway = any(
-        joint[side]["static_Nm"] > joint[side]["coulomb_Nm"] for joint in joints for side in FRICTIONS
+        joint[side]["static_Nm"] > joint[side]["coulomb_Nm"]
+        for joint in joints
+        for side in FRICTIONS
     )
     found = {
         SPRINGS: any(joint["transmission"] != "rigid" for joint in joints),

@@ -10,8 +10,7 @@ from limber.live import network
 from limber.log.reader import Log, log_file
 from limber.measure.results import Summary, load_header
 from limber.measure.summarize import measure
-from limber.model.scenario import Scenario, load_scenario
-from limber.model.scenario import load_scenario, scenario_beside
+from limber.model.scenario import Scenario, load_scenario, scenario_beside
 from limber.paths import run_folder
 from limber.run import buses, runner
 from limber.run.drive_words import with_words

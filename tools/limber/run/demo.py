@@ -13,8 +13,7 @@ from limber.live import network
 from limber.log.reader import Log
 from limber.measure.pushes import MeasuredPush
 from limber.measure.results import Result, Summary, text
-from limber.model.scenario import Scenario
-from limber.model.scenario import load_scenario
+from limber.model.scenario import Scenario, load_scenario
 from limber.paths import ROOT, run_folder
 from limber.run import commands, runner
 from limber.run.options import FinishedRun, RunOptions

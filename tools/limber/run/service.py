@@ -11,7 +11,6 @@ from rich.console import Console
 
 from limber.errors import OK, InputError
 from limber.model.robot import load_robot
-from limber.model.robot import load_robot
 from limber.output import write_again
 from limber.paths import output_folder, program, robot_folder
 from limber.run.buses import addresses, real
