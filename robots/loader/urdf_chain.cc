@@ -45,7 +45,7 @@ void add_segment(const urdf::Link& link, const urdf::Link* next, const UrdfTree&
   if (load.branch_mass_kg > 0.0) {
     result->notes.push_back(
         ConfigError::at(
-            tree.file, tree.links.at(link.name)->GetLineNum(), fmt::format("link '{}'", link.name),
+            tree.file, tree.links.at(link.name)->line, fmt::format("link '{}'", link.name),
             fmt::format("carries {:.4g} kg of side branches as load", load.branch_mass_kg))
             .what());
   }

@@ -9,38 +9,36 @@
 namespace limber {
 namespace {
 
-using tinyxml2::XMLElement;
-
 /// Zero if it is absent, nothing if it is wrong.
-std::optional<urdf::Vector3> vector_of(const XMLElement& element, const char* attribute) {
-  if (element.Attribute(attribute) == nullptr) return urdf::Vector3(0.0, 0.0, 0.0);
+std::optional<urdf::Vector3> vector_of(const XmlElement& element, const char* attribute) {
+  if (element.attribute(attribute) == nullptr) return urdf::Vector3(0.0, 0.0, 0.0);
   const auto numbers = attribute_numbers(element, attribute);
   if (numbers.size() != 3) return std::nullopt;
   return urdf::Vector3(numbers[0], numbers[1], numbers[2]);
 }
 
 /// The <origin> in a joint or an <inertial>; nothing if it is wrong.
-std::optional<urdf::Pose> pose_in(const XMLElement& parent) {
+std::optional<urdf::Pose> pose_in(const XmlElement& parent) {
   urdf::Pose pose;
-  const XMLElement* origin = parent.FirstChildElement("origin");
+  const XmlElement* origin = parent.child("origin");
   if (origin == nullptr) return pose;
   const auto position = vector_of(*origin, "xyz");
   const auto rpy = vector_of(*origin, "rpy");
   if (!position || !rpy) return std::nullopt;
   pose.position = *position;
   pose.rotation.setFromRPY(rpy->x, rpy->y, rpy->z);
-  if (origin->Attribute("quat_xyzw") == nullptr) return pose;
+  if (origin->attribute("quat_xyzw") == nullptr) return pose;
   const auto quaternion = attribute_numbers(*origin, "quat_xyzw");
   if (quaternion.size() != 4) return std::nullopt;
   pose.rotation.setFromQuaternion(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
   return pose;
 }
 
-urdf::InertialSharedPtr to_inertial(const XMLElement& element) {
+urdf::InertialSharedPtr to_inertial(const XmlElement& element) {
   auto inertial = std::make_shared<urdf::Inertial>();
   inertial->origin = pose_in(element).value();
-  inertial->mass = attribute_number(*element.FirstChildElement("mass"), "value", 0.0);
-  const XMLElement& tensor = *element.FirstChildElement("inertia");
+  inertial->mass = attribute_number(*element.child("mass"), "value", 0.0);
+  const XmlElement& tensor = *element.child("inertia");
   inertial->ixx = attribute_number(tensor, "ixx", 0.0);
   inertial->ixy = attribute_number(tensor, "ixy", 0.0);
   inertial->ixz = attribute_number(tensor, "ixz", 0.0);
@@ -50,10 +48,10 @@ urdf::InertialSharedPtr to_inertial(const XMLElement& element) {
   return inertial;
 }
 
-urdf::LinkSharedPtr to_link(const std::string& name, const XMLElement& element, bool moves) {
+urdf::LinkSharedPtr to_link(const std::string& name, const XmlElement& element, bool moves) {
   auto link = std::make_shared<urdf::Link>();
   link->name = name;
-  const XMLElement* inertial = element.FirstChildElement("inertial");
+  const XmlElement* inertial = element.child("inertial");
   if (moves && inertial != nullptr) link->inertial = to_inertial(*inertial);
   return link;
 }
@@ -69,7 +67,7 @@ urdf::JointSharedPtr to_joint(const UrdfJointText& text, const urdf::Pose& pose,
   joint->type = text.type == "prismatic"    ? urdf::Joint::PRISMATIC
                 : text.type == "continuous" ? urdf::Joint::CONTINUOUS
                                             : urdf::Joint::REVOLUTE;
-  const XMLElement* axis = text.element->FirstChildElement("axis");
+  const XmlElement* axis = text.element->child("axis");
   joint->axis = axis == nullptr ? urdf::Vector3(1.0, 0.0, 0.0) : vector_of(*axis, "xyz").value();
   return joint;
 }
