@@ -44,7 +44,8 @@ def test_jacobian_is_the_derivative_of_the_pose():
 
 
 URDF = """<robot name="r">
-  <link name="base"/><link name="a"/><link name="b"/><link name="c"/><link name="side"/>
+  <link name="base"/><link name="a"/><link name="b"/><link name="c"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="side"/>
   <joint name="lift" type="prismatic">
     <parent link="base"/><child link="a"/><origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/>
     <axis xyz="2 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>
@@ -109,5 +110,5 @@ def test_what_a_joint_lacks_is_named(tmp_path, whole, cut, complaint):
     assert URDF.count(whole) == 1
     path = tmp_path / "r.urdf"
     path.write_text(URDF.replace(whole, cut))
-    with pytest.raises(InputError, match=re.escape(f"{path}:10: {complaint}")):
+    with pytest.raises(InputError, match=re.escape(f"{path}:11: {complaint}")):
         load_urdf(path, "base", "c")
