@@ -28,7 +28,7 @@ def robot(tmp_path):
 @pytest.mark.parametrize("name", BAD)
 def test_a_robots_name(robot, name):
     folder = robot(name)
-    with pytest.raises(InputError, match="robot.yaml:3: name: ") as refused:
+    with pytest.raises(InputError, match=r"robot.yaml:3: name: ") as refused:
         load_robot(folder)
     assert str(refused.value).count("robot.yaml") == 1, "once"
 

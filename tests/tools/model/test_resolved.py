@@ -158,5 +158,5 @@ def test_a_description_of_another_form_is_refused(copied, tmp_path, text):
     keep_description(load_robot(str(copied)), run)
     assert json.loads((run / "robot.json").read_text())["format"] == robots.FORMAT
     (run / "robot.json").write_text(text)
-    with pytest.raises(InputError, match="robot.json"):
+    with pytest.raises(InputError, match=r"robot\.json"):
         robot_beside(run)

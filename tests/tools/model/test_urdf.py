@@ -94,7 +94,7 @@ def test_no_way_between_links(urdf):
 def test_broken_file(tmp_path):
     path = tmp_path / "broken.urdf"
     path.write_text("<robot><link")
-    with pytest.raises(InputError, match="broken.urdf:1: not well-formed XML"):
+    with pytest.raises(InputError, match=r"broken.urdf:1: not well-formed XML"):
         load_urdf(path, "a", "b")
 
 
