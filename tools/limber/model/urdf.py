@@ -101,8 +101,10 @@ def carrier(
 def _joint(entry: dict[str, Any]) -> Joint:
     axis = np.array(entry["axis"], float)
     length = float(np.linalg.norm(axis))
-    names = (entry[key] for key in ("name", "type", "parent", "child"))
-    return Joint(*names, pose_of(entry), axis / length if length > 0 else axis)
+    axis = axis / length if length > 0 else axis
+    return Joint(
+        entry["name"], entry["type"], entry["parent"], entry["child"], pose_of(entry), axis
+    )
 
 
 def _motion(joint: Joint, value: float) -> Floats:
