@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from limber.errors import InputError
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 from limber_lecture.catalog import Experiment
 from limber_lecture.run_one import ABOUT, RESULT
 

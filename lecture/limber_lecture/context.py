@@ -15,7 +15,7 @@ from limber.log.reader import Log
 from limber.model.scenario import active_with
 from limber.paths import output_folder
 from limber.run import runner
-from limber.run.commands import load_checked
+from limber.run.commands import load_scenario
 from limber.run.options import LOG_NAME
 from limber_lecture import evaluate, pictures
 from limber_lecture.catalog import Experiment
@@ -59,7 +59,7 @@ class Context:
         folder = output_folder(self.out / name)
         (folder / LOG_NAME).unlink(missing_ok=True)  # of the last time
         judged = os.environ.get(CHECK_TRACE) == "1"
-        result = runner.lab(load_checked(path), folder, Console(quiet=True), record_can=judged)
+        result = runner.lab(load_scenario(path), folder, Console(quiet=True), record_can=judged)
         if judged:
             require_no_breach(result.can_log, str(folder))
             result.can_log.unlink()

@@ -12,8 +12,8 @@ import numpy as np
 from limber.arrays import Floats
 from limber.errors import RunError
 from limber.log.reader import Log, time_s
-from limber.model.robot import read_yaml
 from limber.paths import robot_folder
+from limber.yaml_file import read_yaml
 from limber_lecture.context import Context
 from limber_lecture.plants import held, with_delay
 from limber_lecture.ringdown import Mode

@@ -6,8 +6,8 @@ from typing import Any
 
 import yaml
 
-from limber.model.robot import read_yaml
 from limber.paths import output_folder, robot_folder
+from limber.yaml_file import read_yaml
 from limber_lecture.evaluate import plain
 
 # Reads forces without noise, rounding or delay of its own; nothing hangs behind it

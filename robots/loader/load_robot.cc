@@ -50,6 +50,7 @@ LoadedRobot from_chain(UrdfChain parts, const std::string& path, const std::stri
       parts.R_RB.Inverse(KDL::Vector(gravity_R[0], gravity_R[1], gravity_R[2]));
   for (int i = 0; i < 3; ++i) loaded.robot.gravity[i] = gravity_B(i);
   loaded.robot.joints = std::move(parts.joints);
+  loaded.model = std::move(parts.model);
   loaded.chain = parts.chain;
   loaded.segment_links = std::move(parts.segment_links);
   loaded.notes = std::move(parts.notes);

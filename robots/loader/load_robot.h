@@ -2,6 +2,8 @@
 // kinematic chain.
 #pragma once
 
+#include <urdf_world/types.h>
+
 #include <kdl/chain.hpp>
 #include <string>
 #include <vector>
@@ -17,6 +19,7 @@ namespace limber {
 /// zero: rotors are in DriveConfig.
 struct LoadedRobot {
   Robot robot;
+  std::shared_ptr<const urdf::ModelInterface> model;  ///< all of the URDF's tree, see urdf_model()
   KDL::Chain chain;
   /// For each segment of the chain, the URDF link at its end (pushes and payloads name links).
   std::vector<std::string> segment_links;

@@ -7,9 +7,7 @@ namespace limber {
 namespace {
 
 /// A joint that follows another one is no joint of an arm.
-bool follows(const UrdfJointText& joint) {
-  return joint.element->FirstChildElement("mimic") != nullptr;
-}
+bool follows(const UrdfJointText& joint) { return joint.element->child("mimic") != nullptr; }
 
 std::vector<const UrdfJointText*> independent_below(const UrdfTree& tree, const std::string& link) {
   auto below = tree.joints_below(link);

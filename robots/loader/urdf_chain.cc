@@ -1,37 +1,14 @@
 #include "robots/loader/urdf_chain.h"
 
-#include <console_bridge/console.h>
 #include <fmt/format.h>
-#include <urdf_parser/urdf_parser.h>
+#include <urdf_model/model.h>
 
 #include "common/config_error.h"
+#include "robots/loader/urdf_model.h"
 #include "robots/loader/urdf_to_kdl.h"
 
 namespace limber {
 namespace {
-
-/// What the URDF library would print, kept for our own message.
-class Listener : public console_bridge::OutputHandler {
- public:
-  Listener() { console_bridge::useOutputHandler(this); }
-  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && heard_.empty()) heard_ = text;
-  }
-  const std::string& heard() const { return heard_; }
-
- private:
-  std::string heard_;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file) {
-  Listener listener;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!model) {
-    throw ConfigError::at(file, 0, "", "refused by the URDF library: " + listener.heard());
-  }
-  return model;
-}
 
 JointType type_of(const urdf::Joint& joint) {
   if (joint.type == urdf::Joint::CONTINUOUS) return JointType::kContinuous;
@@ -68,7 +45,7 @@ void add_segment(const urdf::Link& link, const urdf::Link* next, const UrdfTree&
   if (load.branch_mass_kg > 0.0) {
     result->notes.push_back(
         ConfigError::at(
-            tree.file, tree.links.at(link.name)->GetLineNum(), fmt::format("link '{}'", link.name),
+            tree.file, tree.links.at(link.name)->line, fmt::format("link '{}'", link.name),
             fmt::format("carries {:.4g} kg of side branches as load", load.branch_mass_kg))
             .what());
   }
@@ -84,13 +61,13 @@ UrdfChain build_urdf_chain(const std::string& path, const std::string& base, con
   const UrdfTree tree = read_urdf_tree(path);
   const UrdfUse use = find_use(tree, base, tip);
   const UrdfText text = check_urdf(tree, use, ignored);
-  const urdf::ModelInterfaceSharedPtr model = parse(text.text, path);
   UrdfChain result;
-  result.R_RB = root_to_base(tree, *model, use);
+  result.model = urdf_model(tree, use);
+  result.R_RB = root_to_base(tree, *result.model, use);
   for (std::size_t i = 0; i < use.chain.size(); ++i) {
     const bool last = i + 1 == use.chain.size();
-    const auto next = last ? nullptr : model->getLink(use.chain[i + 1]->child);
-    add_segment(*model->getLink(use.chain[i]->child), next.get(), tree, text, &result);
+    const auto next = last ? nullptr : result.model->getLink(use.chain[i + 1]->child);
+    add_segment(*result.model->getLink(use.chain[i]->child), next.get(), tree, text, &result);
   }
   result.placeholders = text.placeholders;
   result.unphysical = text.unphysical;

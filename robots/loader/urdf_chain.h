@@ -1,6 +1,8 @@
 // From the tree of a URDF to the one chain limber controls.
 #pragma once
 
+#include <urdf_world/types.h>
+
 #include <kdl/chain.hpp>
 #include <set>
 #include <string>
@@ -13,6 +15,7 @@ namespace limber {
 
 /// Base to tip, with everything else of the tree carried along.
 struct UrdfChain {
+  std::shared_ptr<const urdf::ModelInterface> model;  ///< all of the tree, see urdf_model()
   KDL::Chain chain;
   std::vector<std::string> segment_links;  ///< link at the end of each segment
   std::vector<JointConfig> joints;         ///< moving joints with the URDF's limits

@@ -31,8 +31,7 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-/// The five characters that XML has names for, and nothing else: of a bare `&`, and of characters
-/// by number, two parsers make different texts, and so different names.
+/// The five characters that XML has names for, and nothing else: no name holds others.
 bool is_named_character(const std::string& text, std::size_t at) {
   return std::ranges::any_of(
       std::array{"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"},
@@ -92,25 +91,18 @@ bool is_known_version(const std::string& version) {
 
 }  // namespace
 
-std::shared_ptr<const tinyxml2::XMLDocument> read_urdf_file(const std::string& path) {
+XmlElement read_urdf_file(const std::string& path) {
   const std::string text = read_text(path);
   scan(text, path);
-  check_xml_text(text, path);
-  auto document = std::make_shared<tinyxml2::XMLDocument>();
-  if (document->Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw ConfigError::at(path, document->ErrorLineNum(), "",
-                          fmt::format("not well-formed XML ({})", document->ErrorName()));
-  }
-  const tinyxml2::XMLElement* root = document->RootElement();
-  if (root == nullptr || std::string(root->Name()) != "robot")
-    throw ConfigError::at(path, 0, "", "no <robot> at the top: not a URDF");
-  const char* version = root->Attribute("version");
+  XmlElement root = parse_xml(text, path);
+  if (root.name != "robot") throw ConfigError::at(path, 0, "", "no <robot> at the top: not a URDF");
+  const char* version = root.attribute("version");
   if (version != nullptr && !is_known_version(version)) {
     throw ConfigError::at(
-        path, root->GetLineNum(), "<robot>",
+        path, root.line, "<robot>",
         fmt::format("version \"{}\"; limber reads URDF 1.0, 1.1 and 1.2", version));
   }
-  return document;
+  return root;
 }
 
 }  // namespace limber

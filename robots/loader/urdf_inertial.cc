@@ -10,19 +10,17 @@
 namespace limber {
 namespace {
 
-using tinyxml2::XMLElement;
-
 constexpr double kHeavy_kg = 1'000.0;
 constexpr double kLargestMass_kg = 10'000.0;
 constexpr double kSlightlyNegative = 0.1;  ///< of the largest moment: rounding, a vendor's fit
 constexpr double kRounding = 1e-9;
 constexpr double kNothing_kgm2 = 1e-15;  ///< exporters' zeros
 
-std::optional<double> read_mass(const XMLElement& mass, const std::string& where,
+std::optional<double> read_mass(const XmlElement& mass, const std::string& where,
                                 const InertialFindings& findings) {
   const auto value = attribute_numbers(mass, "value");
   if (value.size() != 1) return std::nullopt;
-  const int line = mass.GetLineNum();
+  const int line = mass.line;
   if (!(value[0] >= 0.0 && value[0] <= kLargestMass_kg)) {
     findings.refused->add(
         line, where,
@@ -33,7 +31,7 @@ std::optional<double> read_mass(const XMLElement& mass, const std::string& where
   return value[0];
 }
 
-std::optional<Eigen::Matrix3d> read_tensor(const XMLElement& inertia) {
+std::optional<Eigen::Matrix3d> read_tensor(const XmlElement& inertia) {
   const char* const names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
   const int rows[] = {0, 0, 0, 1, 1, 2};
   const int columns[] = {0, 1, 2, 1, 2, 2};
@@ -70,14 +68,14 @@ void check_tensor(const Eigen::Matrix3d& tensor, int line, const std::string& li
 
 }  // namespace
 
-void check_urdf_inertial(const XMLElement& inertial, const std::string& link,
+void check_urdf_inertial(const XmlElement& inertial, const std::string& link,
                          const InertialFindings& findings) {
   const std::string where = fmt::format("link '{}'", link);
-  const XMLElement* mass = inertial.FirstChildElement("mass");
-  const XMLElement* inertia = inertial.FirstChildElement("inertia");
+  const XmlElement* mass = inertial.child("mass");
+  const XmlElement* inertia = inertial.child("inertia");
   for (const auto& [element, name] : {std::pair{mass, "mass"}, std::pair{inertia, "inertia"}}) {
     if (element != nullptr) continue;
-    findings.refused->add(inertial.GetLineNum(), where,
+    findings.refused->add(inertial.line, where,
                           fmt::format("<inertial> without <{}>; leave <inertial> out altogether "
                                       "for a link without mass",
                                       name));
@@ -88,12 +86,12 @@ void check_urdf_inertial(const XMLElement& inertial, const std::string& link,
   if (!value || !tensor) return;
   const bool no_inertia = tensor->cwiseAbs().maxCoeff() < kNothing_kgm2;
   if (no_inertia && *value > 0.0) {
-    findings.told->add(inertia->GetLineNum(), where,
+    findings.told->add(inertia->line, where,
                        fmt::format("mass {} kg without inertia: a point mass", *value));
   } else if (!no_inertia && *value == 0.0) {
-    findings.told->add(mass->GetLineNum(), where, "inertia without mass" + findings.consequence);
+    findings.told->add(mass->line, where, "inertia without mass" + findings.consequence);
   }
-  if (!no_inertia) check_tensor(*tensor, inertia->GetLineNum(), link, findings);
+  if (!no_inertia) check_tensor(*tensor, inertia->line, link, findings);
 }
 
 }  // namespace limber

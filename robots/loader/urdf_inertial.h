@@ -1,12 +1,11 @@
 // Masses and inertias: what no body can have is refused; what is only odd is told.
 #pragma once
 
-#include <tinyxml2.h>
-
 #include <string>
 #include <vector>
 
 #include "common/complaints.h"
+#include "robots/loader/xml_element.h"
 
 namespace limber {
 
@@ -30,7 +29,7 @@ struct InertialFindings {
 /// inertia, inertia without mass, and inertias that no body has (a moment slightly below zero, or
 /// greater than the sum of the other two, to 1e-9), which also go to `unphysical`. All of it zero
 /// is a link without mass. Attributes that are not numbers are left to check_urdf_numbers().
-void check_urdf_inertial(const tinyxml2::XMLElement& inertial, const std::string& link,
+void check_urdf_inertial(const XmlElement& inertial, const std::string& link,
                          const InertialFindings& findings);
 
 }  // namespace limber

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kLargestTravel_rad = 4.0 * std::numbers::pi;
 
-void read_travel(const tinyxml2::XMLElement& limit, const std::string& type,
-                 const std::string& where, const LimitFindings& findings, UrdfLimits* limits) {
+void read_travel(const XmlElement& limit, const std::string& type, const std::string& where,
+                 const LimitFindings& findings, UrdfLimits* limits) {
   const double lower = attribute_number(limit, "lower", 0.0);
   const double upper = attribute_number(limit, "upper", 0.0);
-  const int line = limit.GetLineNum();
+  const int line = limit.line;
   if (lower == 0.0 && upper == 0.0) {
     findings.placeholders->add(line, where, "<limit>: lower and upper are 0 (or absent)");
     return;
@@ -36,19 +36,18 @@ void read_travel(const tinyxml2::XMLElement& limit, const std::string& type,
   limits->upper = upper;
 }
 
-void read_most(const tinyxml2::XMLElement& limit, const char* attribute, const std::string& where,
+void read_most(const XmlElement& limit, const char* attribute, const std::string& where,
                const LimitFindings& findings, double* most) {
-  if (limit.Attribute(attribute) == nullptr) {
-    findings.placeholders->add(limit.GetLineNum(), where,
-                               fmt::format("<limit> without {}", attribute));
+  if (limit.attribute(attribute) == nullptr) {
+    findings.placeholders->add(limit.line, where, fmt::format("<limit> without {}", attribute));
     return;
   }
   const auto value = attribute_numbers(limit, attribute);
   if (value.empty()) return;
   if (value[0] == 0.0) {
-    findings.placeholders->add(limit.GetLineNum(), where, fmt::format("<limit> {}: 0", attribute));
+    findings.placeholders->add(limit.line, where, fmt::format("<limit> {}: 0", attribute));
   } else if (!(value[0] > 0.0)) {
-    findings.refused->add(limit.GetLineNum(), where,
+    findings.refused->add(limit.line, where,
                           fmt::format("<limit> {}: {} must be above 0", attribute, value[0]));
   } else {
     *most = value[0];
@@ -60,7 +59,7 @@ void read_most(const tinyxml2::XMLElement& limit, const char* attribute, const s
 UrdfLimits read_urdf_limits(const UrdfJointText& joint, const std::string& where,
                             const LimitFindings& findings) {
   UrdfLimits limits;
-  const tinyxml2::XMLElement* limit = joint.element->FirstChildElement("limit");
+  const XmlElement* limit = joint.element->child("limit");
   if (limit == nullptr) {
     if (joint.type != "continuous")
       findings.placeholders->add(joint.line, where, "no <limit lower upper effort velocity>");

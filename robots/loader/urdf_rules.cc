@@ -14,8 +14,6 @@
 namespace limber {
 namespace {
 
-using tinyxml2::XMLElement;
-
 /// No joint limit or mounting angle is two turns; 90 or 180 is.
 constexpr double kLargestAngle_rad = 4.0 * std::numbers::pi;
 
@@ -73,7 +71,7 @@ constexpr NumberRule kNumberRules[] = {
 constexpr const char* kClosedElements[] = {"origin", "mass", "inertia", "axis", "limit"};
 /// Simulators keep figures of their own here, as "mu_viscous"; what is close to ours is a slip.
 constexpr const char* kSharedElement = "dynamics";
-/// Elements that may stand only once in their parent: the library reads the first.
+/// Elements that may stand only once in their parent: the first counts.
 constexpr const char* kSingleElements[] = {"origin", "mass",  "inertia",  "axis",  "limit",
                                            "parent", "child", "inertial", "mimic", "dynamics"};
 /// What may stand below <link> and <joint>; something close to one of these is a slip.
@@ -84,9 +82,9 @@ const std::vector<std::string> kJointChildren = {
 const std::vector<std::string> kInertialChildren = {"origin", "mass", "inertia"};
 
 template <std::size_t n>
-bool is_one_of(const char* name, const char* const (&names)[n]) {
+bool is_one_of(const std::string& name, const char* const (&names)[n]) {
   return std::any_of(std::begin(names), std::end(names),
-                     [&](const char* other) { return std::strcmp(name, other) == 0; });
+                     [&](const char* other) { return name == other; });
 }
 
 std::string quote(const char* text) {
@@ -95,105 +93,102 @@ std::string quote(const char* text) {
   return fmt::format("\"{}{}\"", all.substr(0, kLongest), all.size() > kLongest ? "..." : "");
 }
 
-void check_angle(const XMLElement& element, const char* attribute, const std::string& where,
+void check_angle(const XmlElement& element, const char* attribute, const std::string& where,
                  Complaints* complaints) {
   for (const double angle : attribute_numbers(element, attribute)) {
     if (std::abs(angle) <= kLargestAngle_rad) continue;
-    complaints->add(element.GetLineNum(), where,
+    complaints->add(element.line, where,
                     fmt::format("<{}> {}: {} rad is more than two turns; are these degrees?",
-                                element.Name(), attribute, angle));
+                                element.name, attribute, angle));
   }
 }
 
-void check_quaternion(const XMLElement& element, const std::string& where, Complaints* complaints) {
+void check_quaternion(const XmlElement& element, const std::string& where, Complaints* complaints) {
   const auto q = attribute_numbers(element, "quat_xyzw");
   if (q.size() != 4) return;
-  const std::string place = fmt::format("<{}> quat_xyzw: ", element.Name());
-  if (element.Attribute("rpy") != nullptr)
-    complaints->add(element.GetLineNum(), where, place + "rpy is here, too; leave one of them out");
+  const std::string place = fmt::format("<{}> quat_xyzw: ", element.name);
+  if (element.attribute("rpy") != nullptr)
+    complaints->add(element.line, where, place + "rpy is here, too; leave one of them out");
   const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (std::abs(norm - 1.0) <= kRoundedQuaternion) return;
   complaints->add(
-      element.GetLineNum(), where,
+      element.line, where,
       place + fmt::format("a quaternion of length {:.6g} is no rotation; expected 1", norm));
 }
 
-void check_number(const XMLElement& element, const NumberRule& rule, const std::string& where,
+void check_number(const XmlElement& element, const NumberRule& rule, const std::string& where,
                   Complaints* complaints) {
-  const char* text = element.Attribute(rule.attribute);
-  const std::string place = fmt::format("<{}> {}", element.Name(), rule.attribute);
+  const char* text = element.attribute(rule.attribute);
+  const std::string place = fmt::format("<{}> {}", element.name, rule.attribute);
   if (text == nullptr) {
-    if (rule.required) complaints->add(element.GetLineNum(), where, place + " is missing");
+    if (rule.required) complaints->add(element.line, where, place + " is missing");
     return;
   }
   if (attribute_numbers(element, rule.attribute).size() == rule.count) return;
   const std::string what =
       rule.count == 1 ? "a finite number" : fmt::format("{} finite numbers", rule.count);
-  complaints->add(element.GetLineNum(), where,
-                  fmt::format("{}: {} is not {}", place, quote(text), what));
+  complaints->add(element.line, where, fmt::format("{}: {} is not {}", place, quote(text), what));
 }
 
-void check_attribute_names(const XMLElement& element, const std::string& where,
+void check_attribute_names(const XmlElement& element, const std::string& where,
                            Complaints* complaints) {
-  const bool shared = std::strcmp(element.Name(), kSharedElement) == 0;
-  if (!shared && !is_one_of(element.Name(), kClosedElements)) return;
+  const bool shared = element.name == kSharedElement;
+  if (!shared && !is_one_of(element.name, kClosedElements)) return;
   std::vector<std::string> allowed;
   for (const NumberRule& rule : kNumberRules) {
-    if (std::strcmp(rule.element, element.Name()) == 0) allowed.push_back(rule.attribute);
+    if (element.name == rule.element) allowed.push_back(rule.attribute);
   }
-  for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
-    if (std::find(allowed.begin(), allowed.end(), attribute->Name()) != allowed.end()) continue;
-    if (is_foreign(attribute->Name())) continue;
-    if (shared && nearest_word(attribute->Name(), allowed).empty()) continue;
-    complaints->add(attribute->GetLineNum(), where,
-                    fmt::format("<{}>: unknown attribute '{}'; allowed here: {}", element.Name(),
-                                attribute->Name(), joined(allowed)));
+  for (const auto& [name, value] : element.attributes) {
+    if (std::find(allowed.begin(), allowed.end(), name) != allowed.end()) continue;
+    if (is_foreign(name)) continue;
+    if (shared && nearest_word(name, allowed).empty()) continue;
+    complaints->add(element.line, where,
+                    fmt::format("<{}>: unknown attribute '{}'; allowed here: {}", element.name,
+                                name, joined(allowed)));
   }
 }
 
-void check_children(const XMLElement& element, const std::string& where,
+void check_children(const XmlElement& element, const std::string& where,
                     const ComplaintsOf& complaints_of) {
-  const std::string name = element.Name();
+  const std::string name = element.name;
   const std::vector<std::string>* known = name == "link"       ? &kLinkChildren
                                           : name == "joint"    ? &kJointChildren
                                           : name == "inertial" ? &kInertialChildren
                                                                : nullptr;
-  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
-    const std::string tag = child->Name();
-    if (is_foreign(child->Name())) continue;
-    if (is_one_of(child->Name(), kSingleElements) &&
-        element.FirstChildElement(child->Name()) != child) {
-      complaints_of(tag)->add(child->GetLineNum(), where, fmt::format("<{}> is here twice", tag));
+  for (const XmlElement& child : element.children) {
+    const std::string& tag = child.name;
+    if (is_foreign(tag)) continue;
+    if (is_one_of(tag, kSingleElements) && element.child(tag) != &child) {
+      complaints_of(tag)->add(child.line, where, fmt::format("<{}> is here twice", tag));
     }
     if (known == nullptr || std::find(known->begin(), known->end(), tag) != known->end()) continue;
     const std::string near = nearest_word(tag, *known);
     if (near.empty()) continue;
-    complaints_of(near)->add(child->GetLineNum(), where,
+    complaints_of(near)->add(child.line, where,
                              fmt::format("<{}>: unknown element; did you mean <{}>?", tag, near));
   }
 }
 
-void check_element(const XMLElement& element, const std::string& where, Complaints* complaints) {
+void check_element(const XmlElement& element, const std::string& where, Complaints* complaints) {
   for (const NumberRule& rule : kNumberRules) {
-    if (std::strcmp(rule.element, element.Name()) == 0)
-      check_number(element, rule, where, complaints);
+    if (element.name == rule.element) check_number(element, rule, where, complaints);
   }
   check_angle(element, "rpy", where, complaints);
   check_quaternion(element, where, complaints);
   check_attribute_names(element, where, complaints);
   check_children(element, where, [&](const std::string&) { return complaints; });
   // The parser refuses nesting deeper than 100, so this recursion is bounded.
-  for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
-    if (!is_foreign(child->Name())) check_element(*child, where, complaints);
+  for (const XmlElement& child : element.children) {
+    if (!is_foreign(child.name)) check_element(child, where, complaints);
   }
 }
 
 }  // namespace
 
-bool is_foreign(const char* name) { return std::strchr(name, ':') != nullptr; }
+bool is_foreign(std::string_view name) { return name.find(':') != std::string_view::npos; }
 
-std::vector<double> attribute_numbers(const XMLElement& element, const char* attribute) {
-  const char* text = element.Attribute(attribute);
+std::vector<double> attribute_numbers(const XmlElement& element, const char* attribute) {
+  const char* text = element.attribute(attribute);
   std::istringstream words(text == nullptr ? "" : text);
   std::vector<double> numbers;
   for (std::string word; words >> word;) {
@@ -204,16 +199,16 @@ std::vector<double> attribute_numbers(const XMLElement& element, const char* att
   return numbers;
 }
 
-double attribute_number(const XMLElement& element, const char* attribute, double otherwise) {
+double attribute_number(const XmlElement& element, const char* attribute, double otherwise) {
   const auto numbers = attribute_numbers(element, attribute);
   return numbers.empty() ? otherwise : numbers.front();
 }
 
-void check_urdf_numbers(const XMLElement& top, const std::string& where,
+void check_urdf_numbers(const XmlElement& top, const std::string& where,
                         const ComplaintsOf& complaints_of) {
   check_children(top, where, complaints_of);
-  for (auto* child = top.FirstChildElement(); child; child = child->NextSiblingElement()) {
-    if (!is_foreign(child->Name())) check_element(*child, where, complaints_of(child->Name()));
+  for (const XmlElement& child : top.children) {
+    if (!is_foreign(child.name)) check_element(child, where, complaints_of(child.name));
   }
 }
 

@@ -6,13 +6,10 @@
 
 #include "common/complaints.h"
 #include "robots/loader/doubtful_figures.h"
-#include "robots/loader/urdf_reduce.h"
 #include "robots/loader/urdf_rules.h"
 
 namespace limber {
 namespace {
-
-using tinyxml2::XMLElement;
 
 /// Where a finding goes.
 struct Findings {
@@ -27,29 +24,29 @@ struct Findings {
   std::vector<const UrdfJointText*> frozen;  ///< joints that the arm carries
 };
 
-void check_axis(const XMLElement& joint, const std::string& where, Complaints* wrong,
+void check_axis(const XmlElement& joint, const std::string& where, Complaints* wrong,
                 Complaints* told) {
-  const XMLElement* axis = joint.FirstChildElement("axis");
+  const XmlElement* axis = joint.child("axis");
   if (axis == nullptr) return;
   const auto xyz = attribute_numbers(*axis, "xyz");
   if (xyz.size() != 3) return;
   const double length = std::hypot(xyz[0], xyz[1], xyz[2]);
   if (!(length > 1e-6)) {
-    wrong->add(axis->GetLineNum(), where, "<axis> xyz: the axis has no length");
+    wrong->add(axis->line, where, "<axis> xyz: the axis has no length");
   } else if (std::abs(length - 1.0) > 1e-3) {
-    told->add(axis->GetLineNum(), where, fmt::format("axis of length {:.6g} normalised", length));
+    told->add(axis->line, where, fmt::format("axis of length {:.6g} normalised", length));
   }
 }
 
-void check_link(const XMLElement& link, const UrdfUse& use, Findings* findings) {
-  const std::string name = link.Attribute("name");
+void check_link(const XmlElement& link, const UrdfUse& use, Findings* findings) {
+  const std::string name = link.attribute("name");
   const bool moves = use.moving_links.contains(name);
   const std::string where = fmt::format("link '{}'", name);
   Complaints* wrong = moves ? &findings->refused : &findings->elsewhere;
   check_urdf_numbers(link, where, [&](const std::string& tag) {
     return tag == "inertial" ? wrong : &findings->elsewhere;
   });
-  const XMLElement* inertial = link.FirstChildElement("inertial");
+  const XmlElement* inertial = link.child("inertial");
   if (inertial == nullptr) return;
   std::vector<UnphysicalLink> fixed;
   check_urdf_inertial(*inertial, name,
@@ -59,12 +56,12 @@ void check_link(const XMLElement& link, const UrdfUse& use, Findings* findings) 
 
 /// Ends of a joint that has none.
 void tell_of_travel(const UrdfJointText& joint, const std::string& where, Complaints* told) {
-  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  const XmlElement* limit = joint.element->child("limit");
   if (limit == nullptr || joint.type != "continuous") return;
   const double lower = attribute_number(*limit, "lower", 0.0);
   const double upper = attribute_number(*limit, "upper", 0.0);
   if (lower == 0.0 && upper == 0.0) return;
-  told->add(limit->GetLineNum(), where,
+  told->add(limit->line, where,
             fmt::format("<limit>: lower {} and upper {} are ignored: a continuous joint turns "
                         "without end; with ends it is revolute",
                         lower, upper));
@@ -72,22 +69,22 @@ void tell_of_travel(const UrdfJointText& joint, const std::string& where, Compla
 
 /// A speed that no joint reaches.
 void tell_of_speed(const UrdfJointText& joint, const std::string& where, Complaints* told) {
-  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  const XmlElement* limit = joint.element->child("limit");
   if (limit == nullptr) return;
   const double speed = attribute_number(*limit, "velocity", 0.0);
   const std::string doubt = doubtful_speed(speed, joint.type == "prismatic");
   if (!doubt.empty())
-    told->add(limit->GetLineNum(), where, fmt::format("<limit> velocity: {}{}", speed, doubt));
+    told->add(limit->line, where, fmt::format("<limit> velocity: {}{}", speed, doubt));
 }
 
 /// Distances that no arm has.
 void tell_of_lengths(const UrdfJointText& joint, const std::string& where, Complaints* told) {
-  const XMLElement* origin = joint.element->FirstChildElement("origin");
+  const XmlElement* origin = joint.element->child("origin");
   if (origin == nullptr) return;
   for (const double length : attribute_numbers(*origin, "xyz")) {
     const std::string doubt = doubtful_length(length);
     if (!doubt.empty())
-      told->add(origin->GetLineNum(), where, fmt::format("<origin> xyz: {} m{}", length, doubt));
+      told->add(origin->line, where, fmt::format("<origin> xyz: {} m{}", length, doubt));
   }
 }
 
@@ -98,7 +95,7 @@ UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bo
     return tag == "limit" && ignores_limit ? &findings->elsewhere : &findings->refused;
   });
   check_axis(*joint.element, where, &findings->refused, &findings->told);
-  if (joint.element->FirstChildElement("mimic") != nullptr)
+  if (joint.element->child("mimic") != nullptr)
     findings->told.add(joint.line, where, "<mimic> is ignored: it moves by itself");
   tell_of_travel(joint, where, &findings->told);
   tell_of_speed(joint, where, &findings->told);
@@ -106,7 +103,7 @@ UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bo
     findings->told.add(joint.line, where, "<limit> ignored (urdf_limits: ignore)");
     return {};
   }
-  if (joint.type == "continuous" && joint.element->FirstChildElement("limit") == nullptr) {
+  if (joint.type == "continuous" && joint.element->child("limit") == nullptr) {
     findings->told.add(joint.line, where,
                        "no <limit>, so neither speed nor torque is limited by the URDF");
   }
@@ -115,13 +112,13 @@ UrdfLimits check_moving(const UrdfJointText& joint, const std::string& where, bo
 
 /// A joint that is frozen where it cannot be.
 void tell_of_zero(const UrdfJointText& joint, const std::string& where, Complaints* told) {
-  const XMLElement* limit = joint.element->FirstChildElement("limit");
+  const XmlElement* limit = joint.element->child("limit");
   if (limit == nullptr || joint.type == "continuous") return;
   const double lower = attribute_number(*limit, "lower", 0.0);
   const double upper = attribute_number(*limit, "upper", 0.0);
   if (!(lower < upper) || (lower <= 0.0 && upper >= 0.0)) return;
   told->add(
-      limit->GetLineNum(), where,
+      limit->line, where,
       fmt::format("frozen at zero, which lies outside its limits {} to {}: what hangs from it "
                   "is placed, and weighs, as if it were there; a fixed joint at the pose it "
                   "has would be right",
@@ -151,7 +148,7 @@ void tell_of_frozen(const std::vector<const UrdfJointText*>& frozen, Complaints*
   if (frozen.empty()) return;
   std::string names;
   for (const UrdfJointText* joint : frozen) {
-    const bool follows = joint->element->FirstChildElement("mimic") != nullptr;
+    const bool follows = joint->element->child("mimic") != nullptr;
     names += fmt::format("{}'{}' (line {}{})", names.empty() ? "" : ", ", joint->name, joint->line,
                          follows ? ", its <mimic> is ignored" : "");
   }
@@ -183,7 +180,7 @@ const std::map<std::string, std::string> kUnread = {
 /// What is in the file and nobody reads, each kind once, with the first line of it.
 class Unread {
  public:
-  explicit Unread(const XMLElement& root) { visit(root); }
+  explicit Unread(const XmlElement& root) { visit(root); }
 
   void tell(Complaints* told) const {
     for (const auto& [name, place] : places_) {
@@ -196,18 +193,16 @@ class Unread {
   }
 
  private:
-  void visit(const XMLElement& element) {
-    const bool limit = std::string_view(element.Name()) == "limit";
-    for (auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) {
-      const std::string name = attribute->Name();
+  void visit(const XmlElement& element) {
+    for (const auto& [name, value] : element.attributes) {
       const bool declares = name.starts_with("xmlns:");
-      if ((is_foreign(name.c_str()) && !declares) || (limit && kUnread.contains(name)))
-        add(name, attribute->GetLineNum());
+      const bool limit = element.name == "limit" && kUnread.contains(name);
+      if ((is_foreign(name) && !declares) || limit) add(name, element.line);
     }
-    for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
-      const std::string name = fmt::format("<{}>", child->Name());
-      if (is_foreign(child->Name()) || kUnread.contains(name)) add(name, child->GetLineNum());
-      if (!is_foreign(child->Name())) visit(*child);
+    for (const XmlElement& child : element.children) {
+      const std::string name = fmt::format("<{}>", child.name);
+      if (is_foreign(child.name) || kUnread.contains(name)) add(name, child.line);
+      if (!is_foreign(child.name)) visit(child);
     }
   }
 
@@ -231,20 +226,17 @@ UrdfText check_urdf(const UrdfTree& tree, const UrdfUse& use,
   UrdfText urdf;
   Findings findings(tree.file);
   auto joint = tree.joints.begin();  // both in file order
-  for (auto* element = tree.document->RootElement()->FirstChildElement(); element != nullptr;
-       element = element->NextSiblingElement()) {
-    const std::string tag = element->Name();
-    if (tag == "link") check_link(*element, use, &findings);
-    if (tag == "joint") check_joint(*joint++, use, ignored, &findings, &urdf.limits);
+  for (const XmlElement& element : tree.robot->children) {
+    if (element.name == "link") check_link(element, use, &findings);
+    if (element.name == "joint") check_joint(*joint++, use, ignored, &findings, &urdf.limits);
   }
   findings.refused.throw_if_any();
   tell_of_frozen(findings.frozen, &findings.told);
-  Unread(*tree.document->RootElement()).tell(&findings.told);
+  Unread(*tree.robot).tell(&findings.told);
   urdf.placeholders = findings.placeholders.lines();
   urdf.unphysical = std::move(findings.unphysical);
   append(findings.told, "", &urdf.notes);
   append(findings.elsewhere, " (of no effect on this arm)", &urdf.notes);
-  urdf.text = reduced_urdf(tree, use);
   return urdf;
 }
 

@@ -1,5 +1,5 @@
-// Checks the numbers of a URDF as text, because the URDF library reads mass "1,5" as 0 without a
-// word, and keeps what counts for one chain.
+// Checks the numbers of a URDF as text: "1,5" is no mass. Tells what counts for one chain from what
+// does not.
 #pragma once
 
 #include <map>
@@ -14,7 +14,6 @@
 namespace limber {
 
 struct UrdfText {
-  std::string text;                          ///< what counts, as a URDF for the library
   std::map<std::string, UrdfLimits> limits;  ///< of the joints that move, by name
   /// Complaints of joints whose limits are absent or zero; such a limit counts as none.
   std::vector<std::string> placeholders;

@@ -13,48 +13,47 @@
 namespace limber {
 namespace {
 
-using tinyxml2::XMLElement;
-
 const std::vector<std::string> kJointTypes = {"revolute", "continuous", "prismatic",
                                               "fixed",    "floating",   "planar"};
 
 /// The name attribute, or empty after a complaint. `lines`: where names were taken.
-std::string name_of(const XMLElement& element, std::map<std::string, int>* lines,
+std::string name_of(const XmlElement& element, std::map<std::string, int>* lines,
                     Complaints* complaints) {
-  const char* name = element.Attribute("name");
-  const std::string tag = fmt::format("<{}>", element.Name());
+  const char* name = element.attribute("name");
+  const std::string tag = fmt::format("<{}>", element.name);
   if (name == nullptr || *name == '\0') {
-    complaints->add(element.GetLineNum(), tag, "has no name");
+    complaints->add(element.line, tag, "has no name");
     return "";
   }
   if (const std::string problem = shown_name_problem(name); !problem.empty())
-    complaints->add(element.GetLineNum(), tag, problem);
-  const auto [earlier, added] = lines->emplace(name, element.GetLineNum());
+    complaints->add(element.line, tag, problem);
+  const auto [earlier, added] = lines->emplace(name, element.line);
   if (!added) {
-    complaints->add(element.GetLineNum(), tag,
+    complaints->add(element.line, tag,
                     fmt::format("the name '{}' is taken by line {}", name, earlier->second));
   }
   return name;
 }
 
-std::string link_of(const XMLElement& joint, const char* end, const std::string& where,
+std::string link_of(const XmlElement& joint, const char* end, const std::string& where,
                     Complaints* complaints) {
-  const XMLElement* element = joint.FirstChildElement(end);
-  const char* link = element == nullptr ? nullptr : element->Attribute("link");
-  if (element != nullptr && element->NextSiblingElement(end) != nullptr)
-    complaints->add(joint.GetLineNum(), where, fmt::format("<{}> is here twice", end));
+  const XmlElement* element = joint.child(end);
+  const char* link = element == nullptr ? nullptr : element->attribute("link");
+  const auto same = [&](const XmlElement& child) { return child.name == end; };
+  if (std::ranges::count_if(joint.children, same) > 1)
+    complaints->add(joint.line, where, fmt::format("<{}> is here twice", end));
   if (link != nullptr && *link != '\0') return link;
-  complaints->add(joint.GetLineNum(), where, fmt::format("<{} link=\"...\"/> is missing", end));
+  complaints->add(joint.line, where, fmt::format("<{} link=\"...\"/> is missing", end));
   return "";
 }
 
-UrdfJointText read_joint_text(const XMLElement& element, std::map<std::string, int>* lines,
+UrdfJointText read_joint_text(const XmlElement& element, std::map<std::string, int>* lines,
                               Complaints* complaints) {
   UrdfJointText joint;
   joint.element = &element;
-  joint.line = element.GetLineNum();
+  joint.line = element.line;
   joint.name = name_of(element, lines, complaints);
-  const char* type = element.Attribute("type");
+  const char* type = element.attribute("type");
   joint.type = type == nullptr ? "" : type;
   const std::string where = fmt::format("joint '{}'", joint.name);
   joint.parent = link_of(element, "parent", where, complaints);
@@ -118,7 +117,7 @@ void find_root(UrdfTree* tree, Complaints* complaints) {
     complaints->add(0, "", "several roots, expected one tree: " + joined(roots));
   } else if (const auto left = unreached(*tree); !left.empty()) {
     complaints->add(
-        tree->links.at(left.front())->GetLineNum(), "",
+        tree->links.at(left.front())->line, "",
         "not connected to the root '" + roots.front() + "', they form a loop: " + joined(left));
   }
 }
@@ -140,15 +139,15 @@ std::vector<const UrdfJointText*> UrdfTree::joints_below(const std::string& link
 UrdfTree read_urdf_tree(const std::string& path) {
   UrdfTree tree;
   tree.file = path;
-  tree.document = read_urdf_file(path);
+  tree.robot = std::make_shared<const XmlElement>(read_urdf_file(path));
   Complaints complaints(path);
   std::map<std::string, int> link_lines;
   std::map<std::string, int> joint_lines;
-  for (auto* element = tree.document->RootElement()->FirstChildElement(); element != nullptr;
-       element = element->NextSiblingElement()) {
-    const std::string tag = element->Name();
-    if (tag == "link") tree.links.emplace(name_of(*element, &link_lines, &complaints), element);
-    if (tag == "joint") tree.joints.push_back(read_joint_text(*element, &joint_lines, &complaints));
+  for (const XmlElement& element : tree.robot->children) {
+    if (element.name == "link")
+      tree.links.emplace(name_of(element, &link_lines, &complaints), &element);
+    if (element.name == "joint")
+      tree.joints.push_back(read_joint_text(element, &joint_lines, &complaints));
   }
   connect(&tree, &complaints);
   if (!complaints.any()) find_root(&tree, &complaints);

@@ -1,12 +1,12 @@
 // The links and joints of a URDF file and how they hang together, before any number is read.
 #pragma once
 
-#include <tinyxml2.h>
-
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "robots/loader/xml_element.h"
 
 namespace limber {
 
@@ -15,7 +15,7 @@ struct UrdfJointText {
   std::string type;  ///< as in the file
   std::string parent;
   std::string child;
-  const tinyxml2::XMLElement* element = nullptr;
+  const XmlElement* element = nullptr;
   int line = 0;
 
   bool moves() const { return type != "fixed"; }
@@ -26,8 +26,8 @@ struct UrdfJointText {
 /// One tree: every link but the root is the child of one joint. Names are unique.
 struct UrdfTree {
   std::string file;
-  std::shared_ptr<const tinyxml2::XMLDocument> document;  ///< owns the elements
-  std::map<std::string, const tinyxml2::XMLElement*> links;
+  std::shared_ptr<const XmlElement> robot;  ///< the top element; owns the others
+  std::map<std::string, const XmlElement*> links;
   std::vector<UrdfJointText> joints;  ///< in file order
   std::string root;
   std::map<std::string, std::size_t> above;          ///< index of the joint above a link

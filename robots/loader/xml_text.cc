@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "common/config_error.h"
 
 namespace limber {
 namespace {
+
+constexpr std::size_t kDeepest = 100;  ///< elements; what follows may be recursive
 
 std::size_t first_beyond_ascii(const std::string& text) {
   const auto found =
@@ -35,10 +39,40 @@ bool in_comment(const std::string& text, std::size_t end) {
 }
 
 std::string hint(const std::string& text, std::size_t at, XML_Error error) {
+  if (error == XML_ERROR_ABORTED)
+    return fmt::format("; elements may be {} deep, one in another", kDeepest);
   if (error != XML_ERROR_INVALID_TOKEN) return "";
   if (at < text.size() && static_cast<unsigned char>(text[at]) > 0x7F)
     return "; is the file UTF-8? `iconv -f ENCODING -t UTF-8` converts it";
   return in_comment(text, at) ? "; two dashes are not allowed inside a comment" : "";
+}
+
+/// What expat has met so far.
+struct Document {
+  XML_Parser parser;
+  std::string encoding;                    ///< as declared
+  XmlElement top;                          ///< its only child is the root
+  std::vector<XmlElement*> open = {&top};  ///< vectors of children grow at their end alone
+};
+
+void begin_element(void* user, const XML_Char* name, const XML_Char** attributes) {
+  auto* document = static_cast<Document*>(user);
+  if (document->open.size() > kDeepest) {
+    XML_StopParser(document->parser, XML_FALSE);
+    return;
+  }
+  XmlElement& element = document->open.back()->children.emplace_back();
+  element.name = name;
+  element.line = static_cast<int>(XML_GetCurrentLineNumber(document->parser));
+  for (; *attributes != nullptr; attributes += 2)
+    element.attributes.emplace_back(attributes[0], attributes[1]);
+  document->open.push_back(&element);
+}
+
+void end_element(void* user, const XML_Char*) { static_cast<Document*>(user)->open.pop_back(); }
+
+void declare(void* user, const XML_Char*, const XML_Char* encoding, int) {
+  if (encoding != nullptr) static_cast<Document*>(user)->encoding = encoding;
 }
 
 }  // namespace
@@ -48,18 +82,17 @@ int line_at(const std::string& text, std::size_t position) {
                  std::count(text.begin(), text.begin() + static_cast<long>(position), '\n'));
 }
 
-void check_xml_text(const std::string& text, const std::string& path) {
+XmlElement parse_xml(const std::string& text, const std::string& path) {
   // The encoding given here overrides the declared one; ASCII is the same in both.
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(
       XML_ParserCreate("UTF-8"), &XML_ParserFree);
-  std::string declared;
-  XML_SetUserData(parser.get(), &declared);
-  XML_SetXmlDeclHandler(parser.get(),
-                        [](void* user, const XML_Char*, const XML_Char* encoding, int) {
-                          if (encoding != nullptr) *static_cast<std::string*>(user) = encoding;
-                        });
+  Document document{.parser = parser.get()};
+  XML_SetUserData(parser.get(), &document);
+  XML_SetXmlDeclHandler(parser.get(), declare);
+  XML_SetElementHandler(parser.get(), begin_element, end_element);
   const bool read = XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), XML_TRUE) ==
                     XML_STATUS_OK;
+  const std::string& declared = document.encoding;
   const std::size_t beyond = first_beyond_ascii(text);
   if (beyond != text.size() && !is_utf8(declared)) {
     throw ConfigError::at(
@@ -68,7 +101,7 @@ void check_xml_text(const std::string& text, const std::string& path) {
                     "> {}, and take encoding=\"{}\" out of the new file's first line",
                     declared, declared, path, converted_name(path), declared));
   }
-  if (read) return;
+  if (read) return std::move(document.top.children.front());
   const XML_Error error = XML_GetErrorCode(parser.get());
   const auto at =
       static_cast<std::size_t>(std::max<long>(XML_GetCurrentByteIndex(parser.get()), 0));

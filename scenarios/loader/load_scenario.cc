@@ -60,6 +60,20 @@ WireOptions read_wire(const YamlMap& yaml, std::uint64_t seed) {
   return wire;
 }
 
+/// A mapping; a list is for the experiment tools.
+MeasureTolerances read_measure(const YamlMap& yaml) {
+  MeasureTolerances measure;
+  if (!yaml.has("measure") || yaml.is_list("measure")) return measure;
+  if (!yaml.is_map("measure"))
+    yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");
+  const YamlMap given = yaml.map("measure");
+  const Range share = {1e-6, 1.0};
+  measure.stiffness = given.number_or("stiffness", share, measure.stiffness);
+  measure.contact_force = given.number_or("contact_force", share, measure.contact_force);
+  given.finish();
+  return measure;
+}
+
 void set_seq(std::int64_t seq, std::int64_t time_ns, ScenarioMessage* message) {
   std::visit(
       [&](auto& typed) {
@@ -148,10 +162,10 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   const char* overrides = yaml.has("plant_overrides") ? "plant_overrides" : "reality";
   if (yaml.has(overrides)) scenario.plant = read_plant(yaml.map(overrides), robot);
   scenario.start_q = read_start(yaml, robot.robot);
-  if (yaml.has("measure") && !yaml.is_map("measure") && !yaml.is_list("measure"))
-    yaml.refuse("measure", "expected a mapping or a list (read by the experiment tools)");
-  yaml.boolean_or("record", true);  // read by `limber run`
-  yaml.text_or("law_file", "");  // scenario_laws()
+  scenario.measure = read_measure(yaml);
+  scenario.record = yaml.boolean_or("record", true);
+  yaml.has("law_file");
+  scenario.law_files = scenario_laws(path);
   yaml.has("timeline");
   yaml.finish();
   scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);

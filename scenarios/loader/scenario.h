@@ -36,19 +36,28 @@ struct WireOptions {
   std::uint64_t seed = 1;
 };
 
+/// Key `measure`: how far what `limber run` measures may be off, relative.
+struct MeasureTolerances {
+  double stiffness = 0.02;
+  double contact_force = 0.02;
+};
+
 enum class Integrator : std::uint8_t { kOde, kReference };
 
 struct Scenario {
   std::string name;
   std::string path;
-  std::string robot;     ///< name or folder, as written
-  bool lockstep = true;  ///< the file's wish; the command line may say otherwise
+  std::string robot;                   ///< name or folder, as written
+  std::vector<std::string> law_files;  ///< none or one: scenario_laws()
+  bool lockstep = true;                ///< the file's wish; the command line may say otherwise
   double duration_s = 10.0;
   std::uint64_t seed = 1;
   Integrator integrator = Integrator::kOde;
   double step_s = 250e-6;  ///< integration step; a whole number of them makes a control period
   bool friction = true;
   bool allow_unstable = false;  ///< gains known to be unstable act, with a warning; else refused
+  bool record = true;           ///< `limber run` keeps a log
+  MeasureTolerances measure;
   WireOptions wire;
   bool stand = true;  ///< the arm is carried at its start pose until the drives hold it
   /// The simulated arm, where it differs from what drives and controller believe.

@@ -10,12 +10,12 @@
 namespace limber {
 namespace {
 
+// By scenario_event_t::FAULT_*.
+constexpr std::array kFaultWords = {"silent",        "frozen_encoder", "drive_error",
+                                    "drop_commands", "pressed",        "hot"};
+// That a joint can have.
 const std::vector<std::string> kFaults = {"silent", "frozen_encoder", "drive_error",
                                           "drop_commands", "hot"};
-constexpr std::array<std::int8_t, 5> kFaultNumbers = {
-    scenario_event_t::FAULT_SILENT, scenario_event_t::FAULT_FROZEN_ENCODER,
-    scenario_event_t::FAULT_DRIVE_ERROR, scenario_event_t::FAULT_DROP_COMMANDS,
-    scenario_event_t::FAULT_HOT};
 constexpr double kLongestPush_s = 60.0;
 
 }  // namespace
@@ -103,11 +103,14 @@ void read_joint_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t*
   std::vector<std::string> names;
   for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
   event->joint = index_of(yaml.word("joint", names), names);
+  const std::string kind = yaml.word("kind", kFaults);
   event->fault =
-      kFaultNumbers[static_cast<std::size_t>(index_of(yaml.word("kind", kFaults), kFaults))];
+      static_cast<std::int8_t>(std::ranges::find(kFaultWords, kind) - kFaultWords.begin());
 }
 
 }  // namespace
+
+const char* fault_word(std::int8_t fault) { return kFaultWords[static_cast<std::size_t>(fault)]; }
 
 scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot) {
   scenario_event_t event{};

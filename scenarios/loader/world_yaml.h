@@ -14,6 +14,9 @@ namespace limber {
 push_t read_push(const YamlMap& yaml, const LoadedRobot& robot);
 scenario_event_t read_fault(const YamlMap& yaml, const Robot& robot);
 
+/// The word of scenario_event_t::FAULT_*.
+const char* fault_word(std::int8_t fault);
+
 // Each reads its key of the entry, as the value may be the word off.
 scenario_event_t read_wall(const YamlMap& entry);
 scenario_event_t read_payload(const YamlMap& entry);

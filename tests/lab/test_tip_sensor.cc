@@ -10,8 +10,8 @@
 #include "controller/model/arm_terms.h"
 #include "controller/observers/tip_force.h"
 #include "lab/lab.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/mutation.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_tip_sensor {
 namespace {

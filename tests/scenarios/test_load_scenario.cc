@@ -8,8 +8,8 @@
 #include "controller/laws/registry.h"
 #include "lcmtypes/gains_merge.h"
 #include "scenarios/loader/scenario.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/mutation.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_load_scenario {
 namespace {
@@ -40,6 +40,9 @@ TEST_F(GoodScenario, HeadIsRead) {
   EXPECT_EQ(scenario_.integrator, Integrator::kReference);
   EXPECT_EQ(scenario_.step_s, 0.0005);
   EXPECT_FALSE(scenario_.friction);
+  EXPECT_TRUE(scenario_.record);
+  EXPECT_EQ(scenario_.measure.stiffness, 0.05);
+  EXPECT_EQ(scenario_.measure.contact_force, 0.02);
   EXPECT_FALSE(scenario_.stand);
   EXPECT_EQ(scenario_.start_q, (std::vector<double>{0.1, 0.2, 0.0}));
 }

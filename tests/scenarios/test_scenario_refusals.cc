@@ -51,6 +51,10 @@ const Mutation kHead[] = {
     {"StartOutside", "start_q: [0.1, 0.2, 0]", "start_q: [0.1, 0.4, 0]",
      "0.4 for slide is outside"},
     {"Measure", "measure: {stiffness: 0.05}", "measure: 0.05", "expected a mapping or a list"},
+    {"MeasureKey", "measure: {stiffness: 0.05}", "measure: {stifness: 0.05}",
+     "unknown key 'stifness'; did you mean 'stiffness'?"},
+    {"MeasureZero", "measure: {stiffness: 0.05}", "measure: {stiffness: 0}", "out of range"},
+    {"MeasureAbove", "measure: {stiffness: 0.05}", "measure: {contact_force: 1.1}", "out of range"},
 };
 INSTANTIATE_TEST_SUITE_P(Head, ScenarioRefusal, ::testing::ValuesIn(kHead),
                          testing::MutationName());

@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from limber.lcmtypes.push_t import push_t
-from limber.model.robot import load_robot, read_yaml
+from limber.model.robot import load_robot
 from limber.model.urdf import MOVING
 from stack import Stack
 
@@ -19,8 +19,7 @@ class Hand:
     def __init__(self, stack: Stack, robot: str) -> None:
         self.stack = stack
         self.robot = load_robot(robot)
-        content = read_yaml(self.robot.folder / "robot.yaml")["joints"]
-        self.friction = [content[name]["friction"] for name in self.robot.joint_names]
+        self.friction = [joint["friction"] for joint in self.robot.resolved["joints"]]
         self.links = [j.child for j in self.robot.chain.joints if j.kind in MOVING]
         self.number = 0
 

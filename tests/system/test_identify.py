@@ -19,7 +19,6 @@ from limber.identify.arm import Arm, load_arm
 from limber.identify.motion import Motion, read_motion
 from limber.identify.static_poses import static_poses
 from limber.identify.urdf_edit import with_inertials
-from limber.model.bodies import read_inertials
 from stack import BIN, ROOT
 
 pytestmark = pytest.mark.lockstep
@@ -152,7 +151,7 @@ def test_heavier_links_of_a_series_elastic_arm(tmp_path):
     """The URDF that is proposed pulls at the joints as the arm that was hidden does."""
     robot = Path(shutil.copytree(ROOT / "robots" / "baxter", tmp_path / "baxter"))
     arm = load_arm(str(robot))
-    inertials = read_inertials(arm.robot.urdf)
+    inertials = arm.robot.inertials
     changes = {}
     for i, body in enumerate(arm.robot.dynamics.bodies):
         link = inertials[body.heaviest]
@@ -196,7 +195,7 @@ def test_all_in_one_go_takes_the_sag_away(tmp_path):
     """
     robot = Path(shutil.copytree(ROOT / "robots" / "planar2r", tmp_path / "planar2r"))
     arm = load_arm(str(robot))
-    inertials = read_inertials(arm.robot.urdf)
+    inertials = arm.robot.inertials
     links = [body.heaviest for body in arm.robot.dynamics.bodies]
     heavier = {name: (1.2 * inertials[name].mass, 1.05 * inertials[name].com) for name in links}
     (robot / "heavier.urdf").write_text(with_inertials(arm.robot.urdf, heavier))

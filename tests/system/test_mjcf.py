@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from limber.export import mjcf
-from limber.identify.arm import load_arm
 from limber.log.reader import Log
+from limber.model.robot import load_robot
 from stack import BIN
 
 pytestmark = pytest.mark.lockstep
@@ -39,7 +39,7 @@ def test_a_fall(tmp_path):
     command = [str(BIN / "limber-lab"), str(tmp_path / "fall.yaml"), "--log", str(log)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    model = mujoco.MjModel.from_xml_string(mjcf.text(load_arm("openarm")))
+    model = mujoco.MjModel.from_xml_string(mjcf.text(load_robot("openarm")))
     data, n = mujoco.MjData(model), model.nv
     truth = Log(log).read("SIM_TRUTH")
     time_s = (truth["time_ns"] - truth["time_ns"][0]) * 1e-9

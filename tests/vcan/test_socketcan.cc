@@ -11,8 +11,8 @@
 #include "common/config_error.h"
 #include "drivers/can/link_details.h"
 #include "drivers/can/socketcan.h"
-#include "tools/allocations/allocations.h"
 #include "tests/vcan/lab.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_socketcan {
 namespace {

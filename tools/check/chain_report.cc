@@ -23,6 +23,28 @@ const char* kind_name(TransmissionKind kind) {
   return "";
 }
 
+const char* law_name(SpringLaw law) {
+  switch (law) {
+    case SpringLaw::kLinear:
+      return "linear";
+    case SpringLaw::kQuadratic:
+      return "quadratic";
+    case SpringLaw::kCubic:
+      return "cubic";
+    case SpringLaw::kExponential:
+      return "exponential";
+    case SpringLaw::kSinh:
+      return "sinh";
+  }
+  return "";
+}
+
+std::string friction_json(const FrictionConfig& friction) {
+  return json::object({{"coulomb_Nm", json::number(friction.coulomb_Nm)},
+                       {"static_Nm", json::number(friction.static_Nm)},
+                       {"viscous_Nms_per_rad", json::number(friction.viscous_Nms_per_rad)}});
+}
+
 std::string spring_text(const SpringConfig& spring) {
   switch (spring.law) {
     case SpringLaw::kLinear:
@@ -84,16 +106,20 @@ std::string chain_table(const Robot& robot) {
   return table;
 }
 
-std::vector<std::pair<std::string, std::string>> chain_json(const JointConfig& joint) {
-  const auto flag = [](bool value) { return std::string(value ? "true" : "false"); };
-  return {
-      {"transmission", json::text(kind_name(joint.transmission.kind))},
-      {"motors", json::number(joint.motors())},
-      {"spring_stiffness_Nm_per_rad", json::number(joint.transmission.spring.stiffness_Nm_per_rad)},
-      {"joint_damping_Nms_per_rad", json::number(joint.transmission.damping_Nms_per_rad)},
-      {"link_encoder", flag(joint.link_encoder.present)},
-      {"torque_sensor", flag(joint.torque_sensor.present)},
-      {"torque_loop_inertia_ratio", json::number(joint.torque_loop.inertia_ratio)}};
+json::Members chain_members(const JointConfig& joint) {
+  const SpringConfig& spring = joint.transmission.spring;
+  return {{"transmission", json::text(kind_name(joint.transmission.kind))},
+          {"motors", json::number(joint.motors())},
+          {"spring_law", json::text(law_name(spring.law))},
+          {"spring_stiffness_Nm_per_rad", json::number(spring.stiffness_Nm_per_rad)},
+          {"spring_k2_Nm_per_rad2", json::number(spring.k2_Nm_per_rad2)},
+          {"preload_max_rad", json::number(joint.transmission.preload_max_rad)},
+          {"joint_damping_Nms_per_rad", json::number(joint.transmission.damping_Nms_per_rad)},
+          {"friction", friction_json(joint.friction)},
+          {"link_friction", friction_json(joint.link_friction)},
+          {"link_encoder", json::flag(joint.link_encoder.present)},
+          {"torque_sensor", json::flag(joint.torque_sensor.present)},
+          {"torque_loop_inertia_ratio", json::number(joint.torque_loop.inertia_ratio)}};
 }
 
 std::vector<std::string> chain_warnings(const Robot& robot) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robots/loader/robot.h"
+#include "tools/check/json.h"
 
 namespace limber {
 
@@ -18,8 +19,8 @@ double largest_inertia_ratio(const JointConfig& joint);
 
 /// A table of springs, sensors and loops; empty if all joints are rigid.
 std::string chain_table(const Robot& robot);
-/// Members of a joint's JSON object: transmission, stiffness, sensors, torque loop.
-std::vector<std::pair<std::string, std::string>> chain_json(const JointConfig& joint);
+/// Members of a joint's JSON object: transmission, stiffness, friction, sensors, torque loop.
+json::Members chain_members(const JointConfig& joint);
 /// What to think about: loops faster than their rule allows.
 std::vector<std::string> chain_warnings(const Robot& robot);
 

@@ -20,6 +20,8 @@ std::string text(const std::string& value) {
   return quoted + "\"";
 }
 
+std::string flag(bool value) { return value ? "true" : "false"; }
+
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "null";
 }
@@ -44,7 +46,7 @@ std::string texts(const std::vector<std::string>& values) {
   return list(written);
 }
 
-std::string object(const std::vector<std::pair<std::string, std::string>>& members) {
+std::string object(const Members& members) {
   std::string joined;
   for (const auto& [key, value] : members)
     joined += (joined.empty() ? "" : ", ") + text(key) + ": " + value;

@@ -14,6 +14,7 @@
 #include "robots/loader/required_keys.h"
 #include "tools/check/law_check.h"
 #include "tools/check/print.h"
+#include "tools/check/robot_json.h"
 
 using namespace limber;
 
@@ -28,6 +29,7 @@ struct Arguments {
   std::string scenario;
   std::string law_file;
   bool as_json = false;
+  bool resolved = false;
   bool keys = false;
   bool protocols = false;
 };
@@ -52,9 +54,10 @@ std::vector<double> parse_gravity(const std::string& text) {
   return gravity;
 }
 
-std::string check_arm(const LoadedRobot& robot, bool as_json) {
+std::string check_arm(const LoadedRobot& robot, const Arguments& given) {
+  if (given.resolved) return robot_json(robot) + "\n";
   const ArmReport report = make_arm_report(robot);
-  return as_json ? arm_json(robot, report) : arm_text(robot, report);
+  return given.as_json ? arm_json(robot, report) : arm_text(robot, report);
 }
 
 /// Base and tip of the only arm there is; else the arms are listed.
@@ -83,17 +86,18 @@ void choose_ends(Arguments* given) {
 std::string check_urdf_file(Arguments given) {
   const std::vector<double> gravity = parse_gravity(given.gravity);
   if (given.base.empty() || given.tip.empty()) choose_ends(&given);
-  return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given.as_json);
+  return check_arm(load_urdf(given.urdf, given.base, given.tip, gravity.data()), given);
 }
 
 std::string check(const Arguments& given) {
   if (given.keys) return required_keys_table();
   if (given.protocols) return protocols_json();
   if (!given.urdf.empty()) return check_urdf_file(given);
-  if (given.scenario.empty()) return check_arm(load_robot(given.robot), given.as_json);
+  if (given.scenario.empty()) return check_arm(load_robot(given.robot), given);
   controller::load_laws(scenario_laws(given.scenario));
   std::string note;
-  LoadedRobot robot = load_robot(scenario_robot(given.scenario, &note));
+  LoadedRobot robot =
+      load_robot(given.robot.empty() ? scenario_robot(given.scenario, &note) : given.robot);
   if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   return given.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
@@ -109,6 +113,7 @@ void define(CommandLine& line, Arguments* given) {
   urdf.text("--gravity", &given->gravity, "x,y,z in m/s^2, axes of the URDF's root link");
   auto& scenario = line.command("scenario", "a scenario file, against its robot");
   scenario.text("file", &given->scenario, "scenario file").required();
+  scenario.text("--robot", &given->robot, "name or folder of another robot than the file's");
   auto& law = line.command("law", "a law of your own: the shared library it was compiled to");
   law.text("file", &given->law_file, "shared library").required();
   auto& keys = line.command("keys", "lists the keys that every robot.yaml needs, in Markdown");
@@ -117,6 +122,9 @@ void define(CommandLine& line, Arguments* given) {
   protocols.when_chosen([given] { given->protocols = true; });
   for (auto* command : {&robot, &urdf, &scenario})
     command->flag("--json", &given->as_json, "print one JSON object");
+  for (auto* command : {&robot, &urdf})
+    command->flag("--resolved", &given->resolved,
+                  "print what was read, in full, as JSON; no report");
 }
 
 int check_law(const std::string& file) {

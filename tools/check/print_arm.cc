@@ -8,21 +8,10 @@
 #include "tools/check/chain_report.h"
 #include "tools/check/json.h"
 #include "tools/check/print.h"
+#include "tools/check/robot_json.h"
 
 namespace limber {
 namespace {
-
-const char* type_name(JointType type) {
-  switch (type) {
-    case JointType::kRevolute:
-      return "revolute";
-    case JointType::kContinuous:
-      return "continuous";
-    case JointType::kPrismatic:
-      return "prismatic";
-  }
-  return "";
-}
 
 std::string bus_text(const BusConfig& bus, const BusReport& report, double rate_hz) {
   const std::string speed = bus.fd ? fmt::format("CAN-FD {:g}/{:g} Mbit/s", bus.bitrate_bps * 1e-6,
@@ -48,19 +37,6 @@ std::string tip_sensor_text(const Robot& robot) {
       "  tip sensor: {} on {}, id {}; +-{:g} N, +-{:g} N m along its z; tool behind it {:g} kg\n",
       sensor.model, robot.buses[static_cast<std::size_t>(sensor.bus)].name, sensor.command_id,
       sensor.range[2], sensor.range[5], sensor.tool_mass_kg);
-}
-
-std::string tip_sensor_json(const Robot& robot) {
-  if (!robot.has_tip_sensor) return "null";
-  const TipSensorConfig& sensor = robot.tip_sensor;
-  std::vector<double> replies(sensor.reply_ids.begin(),
-                              sensor.reply_ids.begin() + sensor.replies());
-  return json::object({{"model", json::text(sensor.model)},
-                       {"bus", json::text(robot.buses[static_cast<std::size_t>(sensor.bus)].name)},
-                       {"id", json::number(sensor.command_id)},
-                       {"reply_ids", json::numbers(replies)},
-                       {"range_N_Nm", json::numbers({sensor.range.begin(), sensor.range.end()})},
-                       {"tool_mass_kg", json::number(sensor.tool_mass_kg)}});
 }
 
 // As the makers' tools write them: hexadecimal, or the node numbers of CANopen and moteus, whose
@@ -96,33 +72,9 @@ std::string joint_table(const Robot& robot, const ArmReport& report) {
 }
 
 std::string joint_json(const Robot& robot, const ArmReport& report, std::size_t i) {
-  const JointConfig& joint = robot.joints[i];
-  std::vector<std::pair<std::string, std::string>> members = {
-      {"name", json::text(joint.name)},
-      {"type", json::text(type_name(joint.type))},
-      {"position_min", json::number(joint.position_min)},
-      {"position_max", json::number(joint.position_max)},
-      {"velocity_limit", json::number(joint.velocity_limit)},
-      {"torque_limit_Nm", json::number(joint.torque_limit_Nm)},
-      {"torque_rate_limit_Nm_per_s", json::number(joint.torque_rate_limit_Nm_per_s)},
-      {"home", json::number(joint.home)},
-      {"home_gravity_Nm", json::number(report.home_gravity_Nm[i])},
-      {"worst_gravity_Nm", json::number(report.worst_gravity_Nm[i])}};
-  if (robot.has_drives) {
-    const DriveConfig& drive = joint.drive;
-    const std::string& bus = robot.buses[static_cast<std::size_t>(drive.bus)].name;
-    members.insert(members.end(),
-                   {{"motor", json::text(drive.motor)},
-                    {"bus", json::text(bus)},
-                    {"id", json::number(drive.command_id)},
-                    {"reply_id", json::number(drive.reply_id)},
-                    {"limit_temperature_degC", json::number(drive.limit_temperature_degC)},
-                    {"rotor_inertia_kgm2", json::number(drive.rotor_inertia_kgm2)},
-                    {"torque_constant_Nm_per_A", json::number(drive.torque_constant_Nm_per_A)},
-                    {"short_circuit_damping_Nms", json::number(drive.short_circuit_damping_Nms)}});
-    const auto chain = chain_json(joint);
-    members.insert(members.end(), chain.begin(), chain.end());
-  }
+  json::Members members = joint_members(robot, robot.joints[i]);
+  members.emplace_back("home_gravity_Nm", json::number(report.home_gravity_Nm[i]));
+  members.emplace_back("worst_gravity_Nm", json::number(report.worst_gravity_Nm[i]));
   return json::object(members);
 }
 
@@ -173,41 +125,32 @@ std::string timeline_json(const Robot& robot, int bus) {
   return json::list(frames);
 }
 
+std::string bus_json(const Robot& robot, const BusReport& report, std::size_t i) {
+  json::Members members = bus_members(robot.buses[i]);
+  members.insert(members.end(), {{"predicted_load", json::number(report.load)},
+                                 {"predicted_end_s", json::number(report.end_s)},
+                                 {"reply_window_s", json::number(report.window_s)},
+                                 {"highest_rate_hz", json::object(adapter_rates(report))},
+                                 {"cycle", timeline_json(robot, static_cast<int>(i))}});
+  return json::object(members);
+}
+
 std::string arm_json(const LoadedRobot& robot, const ArmReport& report) {
   const Robot& arm = robot.robot;
   std::vector<std::string> joints;
   for (std::size_t i = 0; i < arm.joints.size(); ++i) joints.push_back(joint_json(arm, report, i));
   std::vector<std::string> buses;
-  for (std::size_t i = 0; i < report.buses.size(); ++i) {
-    buses.push_back(json::object({{"name", json::text(arm.buses[i].name)},
-                                  {"can", json::text(arm.buses[i].can)},
-                                  {"fd", arm.buses[i].fd ? "true" : "false"},
-                                  {"predicted_load", json::number(report.buses[i].load)},
-                                  {"predicted_end_s", json::number(report.buses[i].end_s)},
-                                  {"reply_window_s", json::number(report.buses[i].window_s)},
-                                  {"highest_rate_hz", json::object(adapter_rates(report.buses[i]))},
-                                  {"cycle", timeline_json(arm, static_cast<int>(i))}}));
-  }
-  return json::object(
-             {{"ok", "true"},
-              {"name", json::text(arm.name)},
-              {"folder", json::text(arm.folder)},
-              {"urdf", json::text(arm.urdf_path)},
-              {"base", json::text(arm.base)},
-              {"tip", json::text(arm.tip)},
-              {"links", json::texts(robot.segment_links)},
-              {"rate_hz", json::number(arm.rate_hz)},
-              {"energy_limit_J", json::number(robot.robot.energy_limit_J)},
-              {"gravity_m_per_s2", json::numbers({arm.gravity[0], arm.gravity[1], arm.gravity[2]})},
-              {"moving_mass_kg", json::number(report.moving_mass_kg)},
-              {"home_p_BT", json::numbers(report.home_p_BT)},
-              {"home_quat_BT", json::numbers(report.home_quat_BT)},
-              {"joints", json::list(joints)},
-              {"buses", json::list(buses)},
-              {"tip_sensor", tip_sensor_json(arm)},
-              {"warnings", json::texts(report.warnings)},
-              {"notes", json::texts(robot.notes)}}) +
-         "\n";
+  for (std::size_t i = 0; i < report.buses.size(); ++i)
+    buses.push_back(bus_json(arm, report.buses[i], i));
+  json::Members members = robot_members(robot);
+  members.insert(members.begin(), {"ok", "true"});
+  members.insert(members.end(), {{"moving_mass_kg", json::number(report.moving_mass_kg)},
+                                 {"home_p_BT", json::numbers(report.home_p_BT)},
+                                 {"home_quat_BT", json::numbers(report.home_quat_BT)},
+                                 {"joints", json::list(joints)},
+                                 {"buses", json::list(buses)},
+                                 {"warnings", json::texts(report.warnings)}});
+  return json::object(members) + "\n";
 }
 
 std::string refusal_json(const std::string& what) {

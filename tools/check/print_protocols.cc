@@ -6,7 +6,6 @@ namespace limber {
 namespace {
 
 std::string text_of(std::string_view text) { return json::text(std::string(text)); }
-std::string yes_or_no(bool value) { return value ? "true" : "false"; }
 
 std::string key_json(const ProtocolKey& key) {
   const std::string_view usual(key.key);
@@ -24,11 +23,11 @@ std::string protocol_json(const DriveProtocol& protocol) {
   for (const ProtocolKey& key : protocol.required) keys.push_back(key_json(key));
   return json::object({{"word", text_of(protocol.word)},
                        {"title", text_of(protocol.title)},
-                       {"needs_fd", yes_or_no(protocol.needs_fd)},
-                       {"usually_fd", yes_or_no(protocol.usually_fd)},
-                       {"reports_link", yes_or_no(protocol.reports_link)},
-                       {"rotary_only", yes_or_no(protocol.rotary_only)},
-                       {"hex_ids", yes_or_no(protocol.hex_ids)},
+                       {"needs_fd", json::flag(protocol.needs_fd)},
+                       {"usually_fd", json::flag(protocol.usually_fd)},
+                       {"reports_link", json::flag(protocol.reports_link)},
+                       {"rotary_only", json::flag(protocol.rotary_only)},
+                       {"hex_ids", json::flag(protocol.hex_ids)},
                        {"id_found", json::text(protocol.id_found)},
                        {"sample_point", json::number(protocol.sample_point)},
                        {"usual_gear_ratio", json::number(protocol.usual_gear_ratio)},

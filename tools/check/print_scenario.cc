@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "lcmtypes/mode_words.h"
-#include "tools/check/json.h"
+#include "scenarios/loader/world_yaml.h"
 #include "tools/check/pose_report.h"
 #include "tools/check/print.h"
 #include "tools/check/refusal_report.h"
+#include "tools/check/scenario_json.h"
 #include "tools/check/stiffness_report.h"
 
 namespace limber {
@@ -40,12 +41,11 @@ std::string describe(const push_t& push) {
 }
 
 std::string describe(const scenario_event_t& event) {
-  const char* const faults[] = {"silent", "frozen encoder", "drive error", "drop commands"};
   if (event.kind == scenario_event_t::EVENT_FAULT) {
     const std::string who = event.joint == scenario_event_t::NODE_TIP_SENSOR
                                 ? "tip sensor"
                                 : fmt::format("joint {}", event.joint);
-    return fmt::format("fault: {} {}{}", who, faults[event.fault],
+    return fmt::format("fault: {} {}{}", who, fault_word(event.fault),
                        event.duration_s > 0.0 ? fmt::format(" for {:g} s", event.duration_s) : "");
   }
   if (event.kind == scenario_event_t::EVENT_PAYLOAD) {
@@ -98,31 +98,16 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
 }
 
 std::string scenario_json(const Scenario& scenario, const LoadedRobot& robot) {
-  std::vector<std::string> timeline;
-  for (const TimedMessage& timed : scenario.timeline) {
-    timeline.push_back(
-        json::object({{"at_s", json::number(static_cast<double>(timed.time_ns) * 1e-9)},
-                      {"what", json::text(describe(timed))}}));
-  }
   std::vector<StiffnessReport> reports;
   if (robot.robot.has_drives) reports = make_stiffness_reports(scenario, robot);
-  return json::object({{"ok", "true"},
-                       {"name", json::text(scenario.name)},
-                       {"robot", json::text(robot.robot.name)},
-                       {"mode", json::text(mode_name(scenario))},
-                       {"duration_s", json::number(scenario.duration_s)},
-                       {"integrator", json::text(integrator_name(scenario))},
-                       {"step_s", json::number(scenario.step_s)},
-                       {"friction", scenario.friction ? "true" : "false"},
-                       {"seed", fmt::format("{}", scenario.seed)},
-                       {"plant_overrides", scenario.plant ? "true" : "false"},
-                       {"start_q", json::numbers(scenario.start_q)},
-                       {"timeline", json::list(timeline)},
-                       {"stiffness", stiffness_json(reports)},
-                       {"warnings", json::texts(stiffness_warnings(reports, robot.robot))},
-                       {"refused", json::texts(doubtful_requests(scenario, robot))},
-                       {"notes", json::texts(all_notes(scenario, robot))}}) +
-         "\n";
+  json::Members members = scenario_members(scenario, robot);
+  members.insert(members.begin(), {"ok", "true"});
+  members.insert(members.end(),
+                 {{"stiffness", stiffness_json(reports)},
+                  {"warnings", json::texts(stiffness_warnings(reports, robot.robot))},
+                  {"refused", json::texts(doubtful_requests(scenario, robot))},
+                  {"notes", json::texts(all_notes(scenario, robot))}});
+  return json::object(members) + "\n";
 }
 
 }  // namespace limber

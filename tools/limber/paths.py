@@ -54,12 +54,9 @@ def robot_names() -> list[str]:
     return sorted(path.parent.name for path in robots_root().glob("*/robot.yaml"))
 
 
-def robot_folder(name_or_path: str, beside: Path | None = None) -> Path:
-    """Folder with robot.yaml: a path, or a shipped robot's name. For a scenario, what lies `beside`
-    its file comes first, then the shipped robots.
-    """
-    here, shipped = Path(name_or_path), robots_root() / name_or_path
-    candidates = [here, shipped] if beside is None else [beside / name_or_path, shipped, here]
+def robot_folder(name_or_path: str) -> Path:
+    """Folder with robot.yaml: a path, or a shipped robot's name."""
+    candidates = [Path(name_or_path), robots_root() / name_or_path]
     for folder in candidates:
         if (folder / "robot.yaml").is_file():
             return folder.resolve()

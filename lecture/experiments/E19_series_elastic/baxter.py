@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import fsolve
 from scipy.spatial.transform import Rotation
 
-from limber.model.robot import Robot, load_robot, read_yaml
+from limber.model.robot import Robot, load_robot
 from limber_lecture.context import Comparison, Context
 from limber_lecture.timeline import in_turn, tip_gains
 from limber_lecture.truth import motion, status
@@ -23,8 +23,7 @@ LAWS = {"motor": "law on the motors", "static": "law at the link's rest"}
 def arm() -> tuple[Robot, np.ndarray]:
     """The robot and its springs, N m/rad."""
     robot = load_robot(ROBOT)
-    joints = read_yaml(robot.folder / "robot.yaml")["joints"].values()
-    springs = [joint["transmission"]["spring"]["stiffness_Nm_per_rad"] for joint in joints]
+    springs = [joint["spring_stiffness_Nm_per_rad"] for joint in robot.resolved["joints"]]
     return robot, np.array(springs)
 
 

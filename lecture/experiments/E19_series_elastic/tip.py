@@ -6,8 +6,8 @@ import numpy as np
 from numpy.linalg import eigvalsh
 from scipy.optimize import fsolve
 
-from limber.model.robot import read_yaml
 from limber.paths import robot_folder
+from limber.yaml_file import read_yaml
 from limber_lecture import planar2r as arm
 from limber_lecture.context import Comparison, Context
 from limber_lecture.pictures import BLUE, ORANGE, Axes, ellipse, name_axes

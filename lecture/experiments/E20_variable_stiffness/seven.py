@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from limber.messages import message_class
-from limber.model.robot import load_robot, read_yaml
+from limber.model.robot import load_robot
+from limber.yaml_file import read_yaml
 from limber_lecture.context import Comparison, Context, at_most, case, near_zero
 from limber_lecture.timeline import tip_gains
 from limber_lecture.truth import Log, motion, status
@@ -73,12 +74,10 @@ def on_arm(context: Context) -> list[Comparison]:
 
 def held_by_friction(sigma: np.ndarray) -> np.ndarray:
     """2 k₂ δc with δc = 2 F_c/(K_c + σ): servo and springs against both motors' friction."""
-    content = read_yaml(load_robot(ROBOT).folder / "robot.yaml")
     held = []
-    for joint, stiffness in zip(content["joints"].values(), sigma, strict=True):
-        motor = content["motors"][joint["motor"]]
-        servo = 2 * motor["rotor_inertia_kgm2"] * motor["gear_ratio"] ** 2 * PRELOAD_SERVO**2
-        k_2 = joint["transmission"]["spring"]["k2_Nm_per_rad2"]
+    for joint, stiffness in zip(load_robot(ROBOT).resolved["joints"], sigma, strict=True):
+        servo = 2 * joint["rotor_inertia_kgm2"] * PRELOAD_SERVO**2
+        k_2 = joint["spring_k2_Nm_per_rad2"]
         held.append(4 * k_2 * joint["friction"]["coulomb_Nm"] / (servo + stiffness))
     return np.array(held)
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from limber.model.robot import read_yaml
 from limber.paths import robot_folder
+from limber.yaml_file import read_yaml
 from limber_lecture.context import Context
 from limber_lecture.probing import Probing
 from limber_lecture.timeline import UNBOUNDED, in_turn, tip_gains

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from limber.model.robot import read_yaml
 from limber.paths import robot_folder
+from limber.yaml_file import read_yaml
 from limber_lecture import truth
 from limber_lecture.context import Comparison, Context, at_least, at_most
 from limber_lecture.pictures import BLACK, BLUE, GREEN, ORANGE, PINK, name_axes

@@ -1,4 +1,7 @@
-"""What robot.yaml and its URDF say of each motor: where it is on the bus, and its limits."""
+"""What robot.yaml and its URDF say of each motor: where it is on the bus, and its limits.
+
+Read here once more, on purpose: the referee takes nothing from the programs that it judges.
+"""
 
 import math
 from dataclasses import dataclass, field
@@ -6,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from limber.errors import InputError
-from limber.model.robot import load_robot, read_yaml
-from limber.model.xml_file import attribute, read_xml
+from limber.paths import robot_folder
+from limber.yaml_file import read_yaml
+from limber_qa.check_trace.urdf import Limits, joint_limits
 
 TURN_rad = 2.0 * math.pi
 PERMILLE_MOST = 32.767  # of the rated torque, in 16 bits
@@ -53,26 +57,17 @@ def read_arm(name_or_path: str, addresses: dict[str, str] | None = None) -> Arm:
 
     Raises InputError; `limber check` explains a robot.yaml that is wrong.
     """
-    robot = load_robot(name_or_path)
-    file = robot.folder / "robot.yaml"
+    file = robot_folder(name_or_path) / "robot.yaml"
     content = read_yaml(file)
     try:
         buses = _buses(content, addresses or {}, file)
-        limits = _urdf_limits(robot.urdf, content["joints"])
+        limits = joint_limits(file.parent / content["urdf"], content["base"], content["tip"])
         motors = [
-            motor
-            for joint in robot.joints
-            for motor in _motors(
-                joint.name,
-                (joint.low, joint.high),
-                limits.get(joint.name, (math.inf, math.inf)),
-                content,
-                buses,
-            )
+            motor for name, urdf in limits.items() for motor in _motors(name, urdf, content, buses)
         ]
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{file}: {error} is missing or wrong; see `limber check`") from error
-    return Arm(robot.name, round(1e9 / robot.rate_hz), motors)
+    return Arm(content["name"], round(1e9 / content["rate_hz"]), motors)
 
 
 def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> dict[str, Any]:
@@ -84,40 +79,22 @@ def _buses(content: dict[str, Any], addresses: dict[str, str], file: Path) -> di
     return buses
 
 
-def _urdf_limits(urdf: Path, joints: dict[str, Any]) -> dict[str, tuple[float, float]]:
-    """Velocity and effort of those joints of robot.yaml that do not ignore them."""
-    found = {}
-    for joint in read_xml(urdf).findall("joint"):
-        name, limit = attribute(joint, "name", urdf), joint.find("limit")
-        own = joints.get(name, {"urdf_limits": "ignore"})
-        if limit is not None and own.get("urdf_limits") != "ignore":
-            velocity, effort = (attribute(limit, key, urdf) for key in ("velocity", "effort"))
-            found[name] = (float(velocity), float(effort))
-    return found
-
-
-def _motors(
-    name: str,
-    position: tuple[float, float],
-    urdf: tuple[float, float],
-    content: dict[str, Any],
-    buses: dict[str, Any],
-) -> list[Motor]:
+def _motors(name: str, urdf: Limits, content: dict[str, Any], buses: dict[str, Any]) -> list[Motor]:
     joint = content["joints"][name]
-    first = _motor(name, joint, joint, position, urdf, content, buses)
+    if joint.get("urdf_limits") == "ignore":
+        urdf = Limits()
+    first = _motor(name, joint, joint, urdf, content, buses)
     if "antagonist" not in joint:
         return [first]
     other = {"motor": joint["motor"], "bus": joint["bus"], **joint["antagonist"]}
-    second = _motor(f"{name} (antagonist)", other, joint, position, urdf, content, buses)
-    return [first, second]
+    return [first, _motor(f"{name} (antagonist)", other, joint, urdf, content, buses)]
 
 
 def _motor(
     name: str,
     place: dict[str, Any],
     joint: dict[str, Any],
-    position: tuple[float, float],
-    urdf: tuple[float, float],
+    urdf: Limits,
     content: dict[str, Any],
     buses: dict[str, Any],
 ) -> Motor:
@@ -128,13 +105,12 @@ def _motor(
     mit = kind.get("mit_range", {})
     field_Nm = mit.get("torque_Nm", PERMILLE_MOST * kind.get("rated_torque_Nm", math.inf))
     own_Nm = min(kind["peak_torque_Nm"], field_Nm)
-    velocity, effort = urdf
-    joint_Nm = min(effort, own_Nm, _of(joint, "torque_limit", math.inf))
+    joint_Nm = min(urdf.effort, own_Nm, _of(joint, "torque_limit", math.inf))
     rate = _of(joint, "torque_rate_limit", min(joint_Nm / 0.02, 1000.0))
     step_Nm = rate / content["rate_hz"]
     hold = joint.get("hold", {})
     judged = link is not None or not two
-    velocity = min(velocity, mit.get("velocity_rad_per_s", math.inf))
+    velocity = min(urdf.velocity, mit.get("velocity_rad_per_s", math.inf))
     return Motor(
         name=name,
         protocol=kind["protocol"],
@@ -148,7 +124,7 @@ def _motor(
         # Torque may step by one limit and preload by two; a motor makes half of each.
         torque_step_Nm=1.5 * step_Nm if two else step_Nm,
         velocity=min(velocity, _of(joint, "velocity_limit", math.inf)) if judged else None,
-        position=position if judged else None,
+        position=_position(joint, urdf) if judged else None,
         kp=_of(hold, "kp", 0.0),
         kd=_of(hold, "kd", 0.0),
         keys=kind,
@@ -156,6 +132,10 @@ def _motor(
         link_counts_per_turn=2.0 ** link["bits"] if link else None,
         torque_sensor=bool(joint.get("torque_sensor")) and joint is place,
     )
+
+
+def _position(joint: dict[str, Any], urdf: Limits) -> tuple[float, float]:
+    return _of(joint, "position_min", urdf.low), _of(joint, "position_max", urdf.high)
 
 
 def _counts(kind: dict[str, Any]) -> float:

@@ -21,8 +21,8 @@
 #include "drivers/can/virtual_bus.h"
 #include "drivers/can/virtual_frame.h"
 #include "tests/drivers/can/private_network.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/bus_frames.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::test_virtual_bus {
 namespace {

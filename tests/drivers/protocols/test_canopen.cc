@@ -7,8 +7,8 @@
 
 #include "drivers/protocols/canopen.h"
 #include "drivers/protocols/canopen_sdo.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::canopen::test_canopen {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "drivers/protocols/cia402_pdos.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::cia402::test_cia402 {
 namespace {

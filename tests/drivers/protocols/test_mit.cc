@@ -9,8 +9,8 @@
 #include <string>
 
 #include "drivers/protocols/mit.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::mit::test_mit {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
-#include "tools/allocations/allocations.h"
 #include "tests/support/frame_text.h"
+#include "tools/allocations/allocations.h"
 
 namespace limber::moteus::test_moteus {
 namespace {

@@ -6,37 +6,35 @@ import numpy as np
 import pytest
 
 from limber.export import mjcf
-from limber.identify.arm import load_arm
+from limber.model.robot import load_robot
 
 
 @pytest.mark.parametrize("name", ["openarm", "planar2r", "panda", "desktop2r", "antagonist2r"])
 def test_inverse_dynamics(name):
     """tau = M a + C v + g + n² B a, without friction."""
     mujoco = pytest.importorskip("mujoco")
-    arm = load_arm(name)
+    arm = load_robot(name)
     model = mujoco.MjModel.from_xml_string(mjcf.text(arm))
     data = mujoco.MjData(model)
     model.dof_damping[:] = 0.0
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     q, v, a = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 10, model.nv))
-    rotors = np.array([joint.rotor_inertia for joint in arm.joints])
-    expected = arm.robot.dynamics.torque(q, v, a) + rotors * a
+    rotors = np.array([joint["rotor_inertia_kgm2"] for joint in arm.resolved["joints"]])
+    expected = arm.dynamics.torque(q, v, a) + rotors * a
     for k, torque in enumerate(expected):
         data.qpos[:], data.qvel[:], data.qacc[:] = q[k], v[k], a[k]
         mujoco.mj_inverse(model, data)
         np.testing.assert_allclose(data.qfrc_inverse, torque, atol=1e-6 * np.abs(torque).max())
         mujoco.mj_kinematics(model, data)
-        np.testing.assert_allclose(
-            data.site_xpos[0], arm.robot.chain.forward(q[k])[:3, 3], atol=1e-6
-        )
+        np.testing.assert_allclose(data.site_xpos[0], arm.chain.forward(q[k])[:3, 3], atol=1e-6)
 
 
 def test_numbers_of_robot_yaml():
-    arm = load_arm("panda")
+    arm = load_robot("panda")
     root = ElementTree.fromstring(mjcf.text(arm))
     joints = {joint.get("name"): joint for joint in root.iter("joint")}
     motors = {motor.get("name"): motor for motor in root.iter("motor")}
-    first, limits = joints["joint1"], arm.robot.joints[0]
+    first, limits = joints["joint1"], arm.joints[0]
     assert float(first.get("armature")) == pytest.approx(100**2 * 6.05721456e-5, rel=1e-5)
     assert float(first.get("damping")) == 16.0
     assert float(first.get("frictionloss")) == pytest.approx(4.0 + 0.2731)

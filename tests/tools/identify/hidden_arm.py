@@ -206,10 +206,13 @@ def write_robot(arm: HiddenArm, folder: Path) -> Path:
     joints, motors = [], []
     for i, joint in enumerate(arm.joints):
         motors.append(f"""  m{i}: {{protocol: cia402, gear_ratio: {GEAR},
-    rotor_inertia_kgm2: {joint.rotor / GEAR**2}, rotor_torque_constant_Nm_per_A: {CONSTANT}}}""")
+    rotor_inertia_kgm2: {joint.rotor / GEAR**2}, rotor_torque_constant_Nm_per_A: {CONSTANT},
+    phase_resistance_ohm: 0.2, peak_torque_Nm: 200, rated_torque_Nm: 200, encoder_bits: 18}}""")
         spring = "transmission: {kind: elastic, spring: {law: linear, stiffness_Nm_per_rad: 7000}}"
         friction = "friction: {coulomb_Nm: 1, viscous_Nms_per_rad: 0.5}"
-        joints.append(f"  j{i}: {{motor: m{i}, {spring if joint.sensor else ''}, {friction}}}")
+        drive = f"motor: m{i}, bus: arm, id: {i + 1}, home_rad: 0"
+        drive += ", hold: {kp_Nm_per_rad: 40, kd_Nms_per_rad: 5}"
+        joints.append(f"  j{i}: {{{drive}, {spring if joint.sensor else ''}, {friction}}}")
     text = "\n".join(["motors:", *motors, "joints:", *joints]).replace(", ,", ",")
     (folder / "robot.yaml").write_text(f"""format: limber-robot/1
 name: hidden
@@ -217,8 +220,10 @@ urdf: robot.urdf
 base: base
 tip: l{len(arm.joints) - 1}
 rate_hz: 200
-buses: [{{name: arm, can: "virtual:hidden", fd: true}}]
+buses: [{{name: arm, can: "virtual:hidden", bitrate_bps: 1000000}}]
 {text}
-gains: {{K_q_Nm_per_rad: 400, K_x_translation_N_per_m: 500, K_x_rotation_Nm_per_rad: 20}}
+gains: {{K_q_Nm_per_rad: 400, K_x_translation_N_per_m: 500, K_x_rotation_Nm_per_rad: 20,
+  joint_damping_ratio: 0.7, damping_ratio: 0.7, K_null_Nm_per_rad: 0, D_null_Nms_per_rad: 1}}
+watchdog: {{timeout_s: 0.1, reaction: damp}}
 """)
     return folder

@@ -17,7 +17,7 @@ from limber.identify.arm import Arm, load_arm
 from limber.identify.findings import Findings
 from limber.identify.motion import Motion, motion_of
 from limber.identify.urdf_edit import with_inertials
-from limber.model.dynamics import ArmDynamics
+from limber.model.robot import load_urdf
 
 ARMS = int(os.environ.get("LIMBER_HIDDEN_ARMS", "16"))
 WITHIN = 3.0  # standard errors
@@ -149,7 +149,7 @@ def judge_weights(tally: Tally, arm: Arm, hidden: HiddenArm, other: Motion, foun
         return
     proposed = arm.robot.folder / "proposed.urdf"
     proposed.write_text(with_inertials(arm.robot.urdf, found.inertials))
-    changed = ArmDynamics(proposed, arm.robot.chain, arm.robot.gravity)
+    changed = load_urdf(proposed, arm.robot.base, arm.robot.tip).dynamics
     measured = np.empty_like(other.q)
     for i, joint in enumerate(hidden.joints):
         needed = joint.friction(other.theta_dot[:, i]) / joint.kappa

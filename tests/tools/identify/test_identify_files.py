@@ -9,7 +9,6 @@ from limber.identify.arm import JointBelief, load_arm
 from limber.identify.excitation import poses, reach, scenario_text
 from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import fragment, set_number
-from limber.model.bodies import read_inertials
 from limber.model.robot import load_robot
 
 TEXT = """# an arm
@@ -70,8 +69,8 @@ def test_fragment():
 
 
 def test_urdf_keeps_all_but_the_inertial():
-    urdf = load_robot("openarm").urdf
-    before = read_inertials(urdf)
+    robot = load_robot("openarm")
+    urdf, before = robot.urdf, robot.inertials
     text = with_inertials(urdf, {"link3": (1.25, np.array([0.01, -0.02, 0.03]))})
     lines, canon = text.splitlines(), with_inertials(urdf, {}).splitlines()
     assert 1 <= sum(a != b for a, b in zip(lines, canon, strict=True)) <= 3

@@ -80,20 +80,29 @@ tip: flange
 rate_hz: {RATE_HZ}
 gravity_m_per_s2: [0, {-GRAVITY}, 0]
 buses:
-  - {{name: arm, can: "virtual:bench", fd: true}}
+  - {{name: arm, can: "virtual:bench", bitrate_bps: 1000000}}
 motors:
   drive:
     protocol: cia402
     gear_ratio: {GEAR} # datasheet
     rotor_inertia_kgm2: {believed.rotor / GEAR**2}
     rotor_torque_constant_Nm_per_A: {CONSTANT} # datasheet
+    phase_resistance_ohm: 0.2
+    peak_torque_Nm: 100
+    rated_torque_Nm: 100
+    encoder_bits: 18
 joints:
   j1:
     motor: drive
+    bus: arm
+    id: 1
+    hold: {{kp_Nm_per_rad: 40, kd_Nms_per_rad: 5}}
     home_rad: 0
     transmission: {kind} # guessed
     friction: {{coulomb_Nm: {believed.friction.coulomb}, viscous_Nms_per_rad: {viscous}}}
-gains: {{K_q_Nm_per_rad: 400, K_x_translation_N_per_m: 500, K_x_rotation_Nm_per_rad: 20}}
+gains: {{K_q_Nm_per_rad: 400, K_x_translation_N_per_m: 500, K_x_rotation_Nm_per_rad: 20,
+  joint_damping_ratio: 0.7, damping_ratio: 0.7, K_null_Nm_per_rad: 0, D_null_Nms_per_rad: 1}}
+watchdog: {{timeout_s: 0.02, reaction: damp}}
 """)
     return folder
 

@@ -1,17 +1,23 @@
 """Inverse dynamics from a URDF against the controller's own terms, energy and closed forms."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from limber.model.dynamics import ArmDynamics
-from limber.model.robot import load_robot
-from limber.model.urdf import Chain
+from limber.model.robot import load_robot, load_urdf
 from limber_lecture.evaluate import case, evaluate
 
 
 def dynamics_of(name: str) -> ArmDynamics:
-    robot = load_robot(name)
-    return ArmDynamics(robot.urdf, robot.chain, robot.gravity)
+    return load_robot(name).dynamics
+
+
+def dynamics_in(path: Path, text: str, base: str, tip: str, g: float) -> ArmDynamics:
+    path.write_text(text)
+    robot = load_urdf(path, base, tip)
+    return ArmDynamics(robot.chain, robot.bodies, np.array([0.0, 0.0, -g]))
 
 
 @pytest.mark.parametrize(
@@ -51,11 +57,11 @@ def test_torque_is_linear_in_masses_moments_and_inertias(name):
 URDF = """<robot name="r">
   <link name="base"><inertial><mass value="50"/></inertial></link>
   <link name="carriage"><inertial><mass value="2"/>
-    <inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <link name="arm"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>
-    <inertia ixx="0.01" iyy="0.02" izz="0.02"/></inertial></link>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link>
   <link name="tool"><inertial><origin xyz="0.1 0 0"/><mass value="0.5"/>
-    <inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial></link>
+    <inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial></link>
   <joint name="slide" type="prismatic"><parent link="base"/><child link="carriage"/>
     <axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
   <joint name="turn" type="continuous"><parent link="carriage"/><child link="arm"/>
@@ -68,9 +74,7 @@ URDF = """<robot name="r">
 
 def test_sliding_joint_and_a_branch_by_hand(tmp_path):
     """A carriage that slides upwards with a pendulum on it; the tool hangs on as load."""
-    path = tmp_path / "r.urdf"
-    path.write_text(URDF)
-    arm = ArmDynamics(path, Chain(path, "base", "arm"), np.array([0, 0, -10.0]))
+    arm = dynamics_in(tmp_path / "r.urdf", URDF, "base", "arm", 10.0)
     mass, moment = 1.5, 0.3 + 0.5 * 0.7
     inertia = 0.02 + 0.3**2 + 0.001 + 0.5 * 0.7**2  # about the turning axis
     assert arm.bodies[1].heaviest == "arm"
@@ -84,9 +88,9 @@ def test_sliding_joint_and_a_branch_by_hand(tmp_path):
 TELESCOPE = """<robot name="r">
   <link name="base"/>
   <link name="boom"><inertial><mass value="3"/>
-    <inertia ixx="1" iyy="1" izz="0.5"/></inertial></link>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0.5"/></inertial></link>
   <link name="rod"><inertial><mass value="2"/>
-    <inertia ixx="1" iyy="1" izz="0.25"/></inertial></link>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0.25"/></inertial></link>
   <joint name="turn" type="continuous"><parent link="base"/><child link="boom"/>
     <axis xyz="0 0 1"/></joint>
   <joint name="reach" type="prismatic"><parent link="boom"/><child link="rod"/>
@@ -97,9 +101,7 @@ TELESCOPE = """<robot name="r">
 
 def test_turning_telescope_by_hand(tmp_path):
     """Polar coordinates: m (r'' - r w²) along the rod, (I + m r²) w' + 2 m r r' w about z."""
-    path = tmp_path / "r.urdf"
-    path.write_text(TELESCOPE)
-    arm = ArmDynamics(path, Chain(path, "base", "rod"), np.array([0, 0, -9.81]))
+    arm = dynamics_in(tmp_path / "r.urdf", TELESCOPE, "base", "rod", 9.81)
     r, w, rate = 0.8, 1.5, -0.6
     tau = arm.torque(np.array([[2.0, 0.3]]), np.array([[w, rate]]), np.array([[0.7, 0.9]]))[0]
     turn = (0.75 + 2.0 * r**2) * 0.7 + 2.0 * 2.0 * r * rate * w
@@ -137,9 +139,9 @@ def test_quirks_of_vendors_are_read_as_the_controller_reads_them(tmp_path):
     """Slips where they do not count, and inertias that no body has."""
     path = tmp_path / "quirks.urdf"
     path.write_text(QUIRKS)
-    chain = Chain(path, "base", "tip")
-    assert chain.limits("pan") == (-np.inf, np.inf)
-    arm = ArmDynamics(path, chain, np.array([0, 0, -9.81]))
+    robot = load_urdf(path, "base", "tip")
+    assert (robot.joints[0].low, robot.joints[0].high) == (-np.inf, np.inf)
+    chain, arm = robot.chain, robot.dynamics
     q, rest = np.array([0.3, -0.7]), np.zeros((2, 2))
     file = {"urdf": str(path), "base": "base", "tip": "tip"}
     told = evaluate([case("kin_dyn", file, q=q, v=np.zeros(2))])[0]
@@ -151,7 +153,5 @@ def test_quirks_of_vendors_are_read_as_the_controller_reads_them(tmp_path):
 
 
 def test_a_joint_without_a_mass_of_its_own(tmp_path):
-    path = tmp_path / "quirks.urdf"
-    path.write_text(QUIRKS)
-    arm = ArmDynamics(path, Chain(path, "base", "tip"), np.array([0, 0, -9.81]))
+    arm = dynamics_in(tmp_path / "quirks.urdf", QUIRKS, "base", "tip", 9.81)
     assert [body.mass for body in arm.bodies] == [0.0, 1503.0]

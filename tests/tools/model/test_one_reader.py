@@ -1,15 +1,13 @@
 """URDFs as exporters write them: check, new and Python come to one verdict, and to one arm."""
 
-import json
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from limber.errors import InputError
-from limber.model.bodies import read_inertials
-from limber.model.urdf import Chain, read_joints
-from limber.model.validation import run_checker
+from limber.model.checker import resolved, run_checker
+from limber.model.robot import load_robot, load_urdf
+from limber.model.xml_file import read_xml
 from limber.monitor.shapes import figure
 
 ARM = """<robot name="six"{root}>
@@ -65,11 +63,9 @@ def test_one_arm_for_all_readers(kind, limber, tmp_path):
     if head:
         text = f'<?xml version="1.0" encoding="{head}"?>\n' + path.read_text()
         path.write_text(text)
-    done = run_checker(["urdf", str(path), "--base", "base", "--tip", "two", "--json"])
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    chain = Chain(path, "base", "two")
-    X = chain.forward(np.zeros(2))
+    ends = ["--base", "base", "--tip", "two"]
+    found, robot = resolved(["urdf", str(path), *ends, "--json"]), load_urdf(path, "base", "two")
+    X = robot.chain.forward(np.zeros(2))
     np.testing.assert_allclose(X[:3, 3], found["home_p_BT"], atol=1e-9)
     R = Rotation.from_euler("xyz", ROLL_PITCH_YAW)
     expected = np.array([0.02, 0, 0.1]) + R.apply([0, 0, 0.3])
@@ -77,7 +73,7 @@ def test_one_arm_for_all_readers(kind, limber, tmp_path):
     np.testing.assert_allclose(X[:3, :3], (R * R).as_matrix(), atol=1e-9)
     tensor = np.array([[0.03, 0.001, 0], [0.001, 0.02, 0], [0, 0, 0.01]])
     turned = R.as_matrix() @ tensor @ R.as_matrix().T
-    np.testing.assert_allclose(read_inertials(path)["one"].inertia, turned, atol=1e-12)
+    np.testing.assert_allclose(robot.inertials["one"].inertia, turned, atol=1e-12)
     made = limber("new", str(path), "--base", "base", "--tip", "two", *AS_A, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
 
@@ -102,7 +98,7 @@ def test_one_refusal_for_all_readers(kind, limber, tmp_path):
     made = limber("new", str(path), "--base", "base", "--tip", "two", *AS_A, cwd=tmp_path)
     assert made.returncode == 2 and f"arm.urdf:{line}: not well-formed XML" in made.stderr
     with pytest.raises(InputError, match=f"arm.urdf:{line}: .*not well-formed XML"):
-        read_joints(path)
+        read_xml(path)
 
 
 def test_a_capsule_is_drawn_as_long_as_it_is(limber, tmp_path):
@@ -110,8 +106,6 @@ def test_a_capsule_is_drawn_as_long_as_it_is(limber, tmp_path):
     path = written(tmp_path)
     made = limber("new", str(path), "--base", "base", "--tip", "two", *AS_A, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
-    from limber.model.robot import load_robot
-
     drawn = figure(load_robot(str(tmp_path / "a")))
     assert drawn.troubles == []
     (shape,) = [
@@ -133,4 +127,4 @@ def test_a_proposal_keeps_prefixes_and_quaternions(tmp_path):
     text = with_inertials(path, {"one": (2.5, np.array([0, 0, 0.2]))})
     assert text.count('drake:acceleration="9"') == 2 and text.count("quat_xyzw") == 4
     (tmp_path / "new.urdf").write_text(text)
-    assert read_inertials(tmp_path / "new.urdf")["one"].mass == 2.5
+    assert load_urdf(tmp_path / "new.urdf", "base", "two").inertials["one"].mass == 2.5

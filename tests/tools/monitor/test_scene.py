@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from limber.model.robot import load_robot
+from limber.model.scenario import load_scenario
 from limber.monitor import ghost
 from limber.monitor.arm_view import ArmView
 from limber.monitor.marks import ELLIPSOID_M, ForceArrow, StiffnessEllipsoid, WallView, ellipsoid
@@ -63,13 +64,13 @@ def test_the_ghost_stands_with_its_tip_at_the_goal():
 def test_the_wall_of_a_scenario_at_a_time(tmp_path, served):
     path = tmp_path / "scenario.yaml"
     path.write_text(
-        """timeline:
-          - {at_s: 3, wall: "off"}
-          - {at_s: 1, wall: {point_m: [1, 0, 0], normal: [-1, 0, 0]}}
-          - {at_s: 2, mode: hold}""",
+        """{format: limber-scenario/1, robot: openarm, duration_s: 4, timeline: [
+          {at_s: 3, wall: "off"},
+          {at_s: 1, wall: {point_m: [1, 0, 0], normal: [-1, 0, 0], stiffness_N_per_m: 1000}},
+          {at_s: 2, mode: hold}]}""",
         encoding="utf-8",
     )
-    changes = wall_changes(path)
+    changes = wall_changes(load_scenario(path))
     assert wall_at(changes, 0.5) is None
     point, normal = wall_at(changes, 2.5)
     assert wall_at(changes, 3.5) is None

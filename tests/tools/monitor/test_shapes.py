@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from limber.model.robot import load_robot
+from limber.model.robot import load_robot, load_urdf
 from limber.monitor.arm_view import ArmView
 from limber.monitor.scene import camera
 from limber.monitor.shapes import LIMB, figure
@@ -65,13 +65,7 @@ def write_arm(folder, visual: str):
           <link name="tip"/></robot>""",
         encoding="utf-8",
     )
-    (folder / "robot.yaml").write_text(
-        """{name: a, urdf: robot.urdf, base: base, tip: tip, rate_hz: 1000,
-          buses: [{name: b, can: "virtual:a"}], joints: {j: {}},
-          gains: {K_x_translation_N_per_m: 1, K_x_rotation_Nm_per_rad: 1, K_q_Nm_per_rad: 1}}""",
-        encoding="utf-8",
-    )
-    return load_robot(str(folder))
+    return load_urdf(folder / "robot.urdf", "base", "tip")
 
 
 def test_visuals_of_the_urdf_are_drawn_in_their_place_and_color(tmp_path):

@@ -17,7 +17,7 @@ from limber.log.commands import show_events
 from limber.log.events import Names
 from limber.log.reader import Log, log_file
 from limber.model.gains_table import law_names
-from limber.model.robot import Robot, copy_description, load_robot
+from limber.model.robot import Robot, keep_description, load_robot, robot_beside
 from limber.output import write_again
 from limber.paths import existing_file, run_folder
 from limber.plot.commands import plot
@@ -75,10 +75,9 @@ def show(path: Path | None, out: Path | None, console: Console) -> None:
 def reproduce(path: Path, robot: str | None, out: Path | None, console: Console) -> None:
     """A scenario from any log. `robot`: where the log lies in no folder of a run."""
     log = log_file(path)
-    beside = (log.parent / "robot.yaml").is_file()
-    if robot is None and not beside:
+    loaded = robot_beside(log.parent) if robot is None else load_robot(robot)
+    if loaded is None:
         raise InputError(f"no robot.yaml beside {log}: give --robot")
-    loaded = load_robot(robot or str(log.parent.resolve()))
     _reproduce(Log(log), loaded, out or log.parent / "reproduce.yaml", console)
 
 
@@ -120,5 +119,5 @@ def _robot_of(name: str, target: Path, console: Console) -> Robot | None:
             soft_wrap=True,
         )
         return None
-    copy_description(robot, target)
-    return load_robot(str(target.resolve()))
+    keep_description(robot, target)
+    return robot_beside(target)

@@ -18,10 +18,9 @@ def mjcf(
 ) -> None:
     """Write a MuJoCo model: bodies, armature, damping, friction loss, limits, motors."""
     from limber.export import mjcf as module
-    from limber.identify.arm import Arm
-    from limber.model.validation import load_checked_robot
+    from limber.model.robot import load_robot
 
-    arm = Arm(load_checked_robot(robot))
+    arm = load_robot(robot)
     module.write(arm, out)
     console.print(f"wrote {out}", soft_wrap=True)
     for what in module.left_out(arm):

@@ -204,7 +204,7 @@ def check(
     ] = None,
 ) -> None:
     """Check a robot, URDF or scenario with the code that all programs share."""
-    from limber.model.validation import checker_arguments
+    from limber.model.checker import checker_arguments
 
     arguments = checker_arguments(what, base, tip)
     if picture is not None:
@@ -242,7 +242,7 @@ def service(
 
 
 def _bus_picture(arguments: list[str], path: Path) -> None:
-    from limber.model.validation import run_checker
+    from limber.model.checker import run_checker
 
     if arguments[0] != "robot":
         raise InputError("--picture is for a robot: only it has buses")

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from limber.errors import InputError
 from limber.model.protocols import protocol
-from limber.model.robot import read_yaml
-from limber.paths import robot_folder, robot_names
+from limber.model.robot import load_robot
+from limber.paths import robot_names
 
 TX_QUEUE = 64  # frames: more than a cycle of the largest arm
 RESTART_MS = 100  # after bus-off
@@ -57,26 +56,16 @@ class BusNeeds:
 
 def needs_of(robot: str) -> dict[str, BusNeeds]:
     """Bus name -> needs."""
-    folder = robot_folder(robot)
-    content = read_yaml(folder / "robot.yaml")
-    try:
-        sample_points = {
-            joint["bus"]: protocol(content["motors"][joint["motor"]]["protocol"]).sample_point
-            for joint in content["joints"].values()
-        }
-        return {
-            bus["name"]: _needs(bus, sample_points.get(bus["name"], 0.0))
-            for bus in content["buses"]
-        }
-    except (KeyError, TypeError, AttributeError) as error:
-        raise InputError(
-            f"{folder / 'robot.yaml'}: {error} is missing or wrong; see `limber check {folder}`"
-        ) from error
+    found = load_robot(robot).resolved
+    sample_points = {
+        joint["bus"]: protocol(joint["protocol"]).sample_point for joint in found["joints"]
+    }
+    return {bus["name"]: _needs(bus, sample_points.get(bus["name"], 0.0)) for bus in found["buses"]}
 
 
 def _needs(bus: dict[str, Any], sample_point: float) -> BusNeeds:
-    data_bitrate = int(bus["data_bitrate_bps"]) if bus.get("fd") else None
-    return BusNeeds(str(bus["can"]), int(bus["bitrate_bps"]), data_bitrate, sample_point)
+    data_bitrate = int(bus["data_bitrate_bps"]) if bus["fd"] else None
+    return BusNeeds(bus["can"], int(bus["bitrate_bps"]), data_bitrate, sample_point)
 
 
 def lines_to_bring_up(robot: str | None) -> Iterator[tuple[str, str]]:

@@ -10,29 +10,28 @@ Element and attribute names: MuJoCo's XML reference.
 
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from limber.errors import InputError
-from limber.identify.arm import Arm, JointBelief
 from limber.model.bodies import Body
+from limber.model.robot import Robot
 from limber.model.rotations import quaternion_of
 from limber.model.urdf import MOVING
 from limber.output import write_again
 
 LEAST_MASS = 1e-6  # kg; MuJoCo wants every moving body to have one
-LEFT_OUT = {
-    "static_Nm": "breakaway friction",
-    "transmission": "springs between motor and link: motors and links are one, with B as armature",
-    "antagonist": "the second motor of a joint",
-}
+SPRINGS = "springs between motor and link: motors and links are one, with B as armature"
+SECOND_MOTOR = "the second motor of a joint"
+BREAKAWAY = "breakaway friction"
+FRICTIONS = ("friction", "link_friction")
 
 
-def text(arm: Arm) -> str:
+def text(robot: Robot) -> str:
     """Throws InputError if a joint has no torque limit that MuJoCo could be given."""
-    robot = arm.robot
     root = ElementTree.Element("mujoco", model=robot.name)
-    root.append(ElementTree.Comment(_comment(arm)))
+    root.append(ElementTree.Comment(_comment(robot)))
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
     step_s = f"{1.0 / robot.rate_hz:.9g}"
     gravity = _numbers(robot.gravity)
@@ -40,11 +39,12 @@ def text(arm: Arm) -> str:
         root, "option", timestep=step_s, gravity=gravity, integrator="implicitfast"
     )
     world = ElementTree.SubElement(root, "worldbody")
-    _bodies(arm, world)
+    _bodies(robot, world)
     actuators = ElementTree.SubElement(root, "actuator")
-    for joint in arm.joints:
-        limit = torque_limit(arm, joint)
-        span = f"{-limit:.6g} {limit:.6g}"
+    for joint in robot.joints:
+        if not np.isfinite(joint.torque):
+            raise InputError(f"{joint.name}: neither robot.yaml nor the URDF limits its torque")
+        span = f"{-joint.torque:.6g} {joint.torque:.6g}"
         ElementTree.SubElement(
             actuators, "motor", name=joint.name, joint=joint.name, ctrlrange=span, forcerange=span
         )
@@ -54,63 +54,62 @@ def text(arm: Arm) -> str:
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def write(arm: Arm, out: Path) -> None:
-    write_again(out, text(arm))
+def write(robot: Robot, out: Path) -> None:
+    write_again(out, text(robot))
 
 
-def left_out(arm: Arm) -> list[str]:
+def left_out(robot: Robot) -> list[str]:
     """What of robot.yaml the model does not have."""
-    found = []
-    for joint in arm.joints:
-        rigid = joint.transmission.get("kind", "rigid") == "rigid"
-        found += [LEFT_OUT["transmission"]] if not rigid else []
-        found += [LEFT_OUT["antagonist"]] if joint.two_motors else []
-        for section in ("friction", "link_friction"):
-            if joint.believed(section, joint.key("static_Nm")) is not None:
-                found.append(LEFT_OUT["static_Nm"])
-    return list(dict.fromkeys(found))
+    joints = robot.resolved["joints"]
+    breakaway = any(
+        joint[side]["static_Nm"] > joint[side]["coulomb_Nm"]
+        for joint in joints
+        for side in FRICTIONS
+    )
+    found = {
+        SPRINGS: any(joint["transmission"] != "rigid" for joint in joints),
+        SECOND_MOTOR: any(joint["motors"] > 1 for joint in joints),
+        BREAKAWAY: breakaway,
+    }
+    return [what for what, there in found.items() if there]
 
 
-def _comment(arm: Arm) -> str:
-    missing = left_out(arm)
-    words = f" From {arm.yaml.name} and {arm.robot.urdf.name} of {arm.robot.name} by limber. "
+def _comment(robot: Robot) -> str:
+    missing = left_out(robot)
+    words = f" From robot.yaml and {robot.urdf.name} of {robot.name} by limber. "
     return words + (f"Left out: {'; '.join(missing)}. " if missing else "")
 
 
-def _bodies(arm: Arm, parent: ElementTree.Element) -> None:
+def _bodies(robot: Robot, parent: ElementTree.Element) -> None:
     """The chain from the base to the tip; fixed joints only move the next frame."""
-    bodies, beliefs = iter(arm.robot.dynamics.bodies), iter(arm.joints)
-    limits = iter(arm.robot.joints)
+    bodies, infos, found = iter(robot.bodies), iter(robot.joints), iter(robot.resolved["joints"])
     X = np.eye(4)
-    for joint in arm.robot.chain.joints:
+    for joint in robot.chain.joints:
         X = X @ joint.X_PF
         if joint.kind not in MOVING:
             continue
         parent = ElementTree.SubElement(parent, "body", {"name": joint.child, **_pose(X)})
         _inertial(next(bodies), parent)
-        info = next(limits)
-        element = _joint(next(beliefs), joint.axis, parent)
+        element, info = _joint(next(found), joint.axis, parent), next(infos)
         if np.isfinite([info.low, info.high]).all():
             element.set("range", _numbers([info.low, info.high]))
         X = np.eye(4)
-    ElementTree.SubElement(parent, "site", {"name": arm.robot.tip, "size": "0.01", **_pose(X)})
+    ElementTree.SubElement(parent, "site", {"name": robot.tip, "size": "0.01", **_pose(X)})
 
 
 def _joint(
-    belief: JointBelief, axis: np.ndarray, parent: ElementTree.Element
+    found: dict[str, Any], axis: np.ndarray, parent: ElementTree.Element
 ) -> ElementTree.Element:
-    sections = ("friction", "link_friction")
     coulomb, viscous = (
-        sum(belief.believed(section, belief.key(key)) or 0.0 for section in sections)
-        for key in ("coulomb_Nm", "viscous_Nms_per_rad")
+        sum(found[side][key] for side in FRICTIONS) for key in ("coulomb_Nm", "viscous_Nms_per_rad")
     )
     return ElementTree.SubElement(
         parent,
         "joint",
-        name=belief.name,
-        type="slide" if belief.prismatic else "hinge",
+        name=found["name"],
+        type="slide" if found["type"] == "prismatic" else "hinge",
         axis=_numbers(axis),
-        armature=f"{belief.rotor_inertia:.6g}",
+        armature=f"{found['rotor_inertia_kgm2']:.6g}",
         damping=f"{viscous:.6g}",
         frictionloss=f"{coulomb:.6g}",
     )
@@ -128,14 +127,6 @@ def _inertial(body: Body, parent: ElementTree.Element) -> None:
     ElementTree.SubElement(
         parent, "inertial", pos=_numbers(com), mass=f"{mass:.9g}", fullinertia=_numbers(full)
     )
-
-
-def torque_limit(arm: Arm, joint: JointBelief) -> float:
-    """The tightest of URDF, motor and joint, N m or N."""
-    limit = next(info.torque for info in arm.robot.joints if info.name == joint.name)
-    if not np.isfinite(limit):
-        raise InputError(f"{joint.name}: neither robot.yaml nor the URDF limits its torque")
-    return limit
 
 
 def _pose(X: np.ndarray) -> dict[str, str]:

@@ -1,9 +1,12 @@
-"""Parameters of each joint in robot.yaml, which identification starts from and may change."""
+"""Parameters of each joint as robot.yaml's text has them, which identification starts from and may
+change: what stands there by default is another matter.
+"""
 
 from dataclasses import dataclass
 from typing import Any
 
-from limber.model.robot import Robot, load_robot, read_yaml
+from limber.model.robot import Robot, load_robot
+from limber.yaml_file import read_yaml
 
 # Endings of keys, rotary and prismatic joints.
 UNITS = {

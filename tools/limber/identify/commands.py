@@ -24,12 +24,8 @@ from limber.identify.findings import Findings
 from limber.identify.motion import Motion, motion_of
 from limber.identify.recording import Recording, read_logs
 from limber.log.reader import Log, log_file
-from limber.model.validation import (
-    checker_arguments,
-    load_checked,
-    load_checked_robot,
-    run_checker,
-)
+from limber.model.robot import load_robot, robot_beside
+from limber.model.scenario import load_scenario
 from limber.paths import output_folder
 
 KINDS: dict[str, Callable[[Arm, Motion, float | None], Findings]] = {
@@ -63,14 +59,14 @@ class Source:
         if self.csv is None:
             if not self.runs:
                 raise InputError("missing 'runs': logs or folders of runs; or a --csv recording")
-            arm = checked(arm_of(self.runs, self.robot))
+            arm = arm_of(self.runs, self.robot)
             if self.run is None:
                 for line in several_runs(self.runs):
                     console.print(line, soft_wrap=True)
             return arm, read_logs(self.runs, arm, self.run), folder_of(self.runs)
         if self.runs or self.columns is None or self.robot is None:
             raise InputError("--csv FILE goes with --columns FILE and --robot, and without runs")
-        arm = checked(load_arm(self.robot))
+        arm = load_arm(self.robot)
         return arm, read_csv(self.csv, self.columns, arm), self.csv.parent / "identify"
 
 
@@ -120,7 +116,7 @@ def _recorded(source: Source, scenario: Path, out: Path | None) -> tuple[Source,
     if len(source.runs) > 1 or source.csv is not None:
         raise InputError("a scenario is run by itself: name no other runs and no CSV file")
     folder = output_folder(out or Path("out") / f"identify_{scenario.stem}")
-    loaded = load_checked(scenario)
+    loaded = load_scenario(scenario)
     log = whole_arm.record(scenario, folder / "before.lcmlog")
     return replace(source, runs=[log], robot=str(loaded.robot.folder)), folder
 
@@ -136,7 +132,7 @@ def _again(
 
 
 def plan(robot: str, spread: float, count: int, seed: int, out: Path, console: Console) -> None:
-    arm = Arm(load_checked_robot(robot))
+    arm = Arm(load_robot(robot))
     console.print(excitation.write(arm, robot, spread, count, seed, out))
     console.print(
         "The motion avoids no obstacles: give the arm room. Record it with limber lab, limber run, "
@@ -157,20 +153,10 @@ def arm_of(runs: list[Path], robot: str | None) -> Arm:
     """The robot that is named, else the copy that lies beside the first log."""
     if robot is not None:
         return load_arm(robot)
-    folder = log_file(runs[0]).parent
-    if not (folder / "robot.yaml").is_file():
+    beside = robot_beside(log_file(runs[0]).parent)
+    if beside is None:
         raise InputError(f"no robot.yaml lies beside {runs[0]}: name the arm with --robot")
-    return load_arm(str(folder.resolve()))
-
-
-def checked(arm: Arm) -> Arm:
-    """Raises InputError if the URDF is one that limber's programs refuse."""
-    robot = arm.robot
-    done = run_checker(checker_arguments(str(robot.urdf), robot.base, robot.tip))
-    if done.returncode != 0:
-        lines = [line for line in done.stderr.splitlines() if line.strip()]
-        raise InputError(lines[-1].removeprefix("limber-check: ") if lines else str(robot.urdf))
-    return arm
+    return Arm(beside)
 
 
 def folder_of(runs: list[Path]) -> Path:

@@ -21,7 +21,7 @@ from limber.arrays import Floats, Integers
 from limber.errors import InputError
 from limber.identify.arm import Arm
 from limber.identify.recording import LEAST_S, Recording
-from limber.model.robot import read_yaml
+from limber.yaml_file import read_yaml
 
 FORMAT = "limber-columns/1"
 SIGNALS = ("position", "motor_position", "motor_torque", "motor_current", "joint_torque")

@@ -37,9 +37,9 @@ def poses(arm: Arm, spread: float, count: int, seed: int) -> Floats:
 def within(arm: Arm, away: float) -> Floats:
     """Home and so much further, as far as the joints' limits permit."""
     limits = arm.robot.joints
-    return np.clip(
-        arm.robot.home + away, [j.low + MARGIN for j in limits], [j.high - MARGIN for j in limits]
-    )
+    low, high = [j.low + MARGIN for j in limits], [j.high - MARGIN for j in limits]
+    poses: Floats = np.clip(arm.robot.home + away, low, high)
+    return poses
 
 
 def timeline(arm: Arm, tour: Floats) -> tuple[list[dict], float]:

@@ -21,9 +21,10 @@ from limber.identify.proposal import DIGITS
 from limber.identify.static_poses import StaticPoses, static_poses
 from limber.identify.urdf_edit import with_inertials
 from limber.identify.yaml_edit import set_number
-from limber.model.robot import copy_description, read_yaml
+from limber.model.robot import copy_description
 from limber.output import copy_new, write_again
 from limber.paths import captured, program
+from limber.yaml_file import read_yaml
 
 
 @dataclass(frozen=True)

@@ -130,7 +130,8 @@ class Quantities:
     @property
     def law(self) -> str:
         """Name of the control law that is selected."""
-        return law_names()[int(self._records()[1]["law"])]
+        names, law = law_names(), int(self._records()[1]["law"])
+        return names[law] if law < len(names) else f"law {law}"  # of $LIMBER_LAWS there
 
     @property
     def stiffness(self) -> np.ndarray:

@@ -1,6 +1,5 @@
 """The story of each fault: when, which joint, what was measured, what the arm did then."""
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +10,6 @@ from limber import messages
 from limber.log.reader import Log, time_s
 from limber.log.rows import active
 from limber.model.robot import Robot
-from limber.model.validation import run_checker
 from limber.problems import MORE, Problem, groups, problem, sentence
 
 JOINTS = np.arange(16)
@@ -118,7 +116,6 @@ class Evidence:
         self.state = _before(log.read("JOINT_STATE"), end_s)
         self.status = _before(log.read("CONTROLLER_STATUS"), end_s)
         self.driver = log.read("DRIVER_STATUS")
-        self._arm: dict[str, Any] | None = None
 
     def active_again_s(self, time: float) -> float:
         times = time_s(self.status[active(self.status)])
@@ -134,15 +131,9 @@ class Evidence:
         unique = tuple(dict.fromkeys(code for code in also if code != onset.problem.code))
         return Fault(onset.problem, onset.time_s, joint, measured, then, unique, until_s)
 
-    def arm(self) -> dict[str, Any]:
-        """As limber-check describes it; empty if it cannot."""
-        if self._arm is None:
-            done = run_checker(["robot", str(self.robot.folder), "--json"])
-            self._arm = json.loads(done.stdout) if done.returncode == 0 else {}
-        return self._arm
-
     def joint(self, index: int) -> dict[str, Any]:
-        joints = self.arm().get("joints", [])
+        """As limber-check resolves it."""
+        joints = self.robot.resolved["joints"]
         return joints[index] if index < len(joints) else {}
 
     def unit(self, index: int) -> str:
@@ -314,7 +305,7 @@ def _stands(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
 def _energy(evidence: Evidence, _rows: Rows, onset: _Onset) -> str:
     last = evidence.status[max(onset.row - 1, 0) : onset.row + 1]
     both = np.minimum(last["kinetic_energy_J"], last["unexplained_energy_J"])
-    limit = evidence.arm().get("energy_limit_J")
+    limit = evidence.robot.resolved["energy_limit_J"]
     return f"{both.max():.3g} J" + (f", limit {limit:.3g} J" if limit is not None else "")
 
 

@@ -1,7 +1,10 @@
 """The numbers of a run, computed from its log alone, without the code that produced it."""
 
+import os
 import platform
+from hashlib import sha256
 from importlib import metadata
+from pathlib import Path
 
 from limber import __version__
 from limber.log.reader import Log
@@ -52,6 +55,13 @@ def _header(log: Log, scenario: Scenario, mode: str) -> dict:
             "machine": platform.machine(),
         },
     }
+    files = [*scenario.law_files, *filter(None, os.environ.get("LIMBER_LAWS", "").split(":"))]
+    if files:
+        header["law_files_sha256"] = {file: _sha256(Path(file)) for file in files}
     if log.damage():
         header["damage"] = log.damage()
     return header
+
+
+def _sha256(file: Path) -> str | None:
+    return sha256(file.read_bytes()).hexdigest() if file.is_file() else None

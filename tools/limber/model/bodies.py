@@ -1,18 +1,16 @@
 """What each moving joint of a chain carries: the masses of a URDF, lumped.
 
 Links joined by fixed joints are one body; whatever branches off the chain belongs to the body it
-hangs from, its own joints at zero. Links that do not move are not read.
+hangs from, its own joints at zero. Links that do not move have no inertial.
 """
 
 from dataclasses import dataclass
-from pathlib import Path
-from xml.etree.ElementTree import Element
+from typing import Any
 
 import numpy as np
 
 from limber.arrays import Floats
-from limber.model.urdf import MOVING, Chain, carrier, numbers_of, pose_of, read_joints
-from limber.model.xml_file import attribute, read_xml
+from limber.model.urdf import MOVING, Chain, Joint, carrier, pose_of
 
 
 @dataclass(frozen=True)
@@ -40,44 +38,27 @@ class Body:
     X_CH: Floats
 
 
-def bodies(urdf: Path, chain: Chain) -> list[Body]:
-    """One for each moving joint of the chain, in order."""
-    joints = read_joints(urdf)
+def bodies(chain: Chain, joints: dict[str, Joint], inertials: dict[str, Inertial]) -> list[Body]:
+    """One for each moving joint of the chain, in order. `joints`: all of the tree."""
     children = [joint.child for joint in chain.joints if joint.kind in MOVING]
     parts: dict[str, list[tuple[str, Inertial, Floats]]] = {child: [] for child in children}
-    for link, element in _inertial_elements(urdf):
+    for link, inertial in inertials.items():
         owner, X = carrier(link, parts, joints)
-        if owner is None:
-            continue
-        inertial = _inertial(element)
-        if inertial is not None:
+        if owner is not None:
             parts[owner].append((link, inertial, X))
     return [_lump(child, parts[child]) for child in children]
 
 
-def read_inertials(urdf: Path) -> dict[str, Inertial]:
-    """By link; links without mass and inertia are left out."""
-    read = ((link, _inertial(element)) for link, element in _inertial_elements(urdf))
-    return {link: inertial for link, inertial in read if inertial is not None}
+def inertials_of(tree: dict[str, Any]) -> dict[str, Inertial]:
+    """Of limber-check's `tree`, by link; those without mass and inertia are left out."""
+    read = {entry["link"]: _inertial(entry) for entry in tree["inertials"]}
+    return {link: found for link, found in read.items() if found.mass or found.inertia.any()}
 
 
-def _inertial_elements(urdf: Path) -> list[tuple[str, Element]]:
-    links = read_xml(urdf).findall("link")
-    found = ((attribute(link, "name", urdf), link.find("inertial")) for link in links)
-    return [(link, element) for link, element in found if element is not None]
-
-
-def _inertial(element: Element) -> Inertial | None:
-    mass = numbers_of(element.find("mass"), "value", "0")[0]
-    X, tensor = pose_of(element.find("origin")), element.find("inertia")
-    xx, xy, xz, yy, yz, zz = (
-        numbers_of(tensor, key, "0")[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    )
+def _inertial(entry: dict[str, Any]) -> Inertial:
+    X, (xx, xy, xz, yy, yz, zz) = pose_of(entry), entry["xx_xy_xz_yy_yz_zz_kgm2"]
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    if mass == 0 and not inertia.any():
-        return None
-    R = X[:3, :3]
-    return Inertial(mass, X[:3, 3], R @ inertia @ R.T)
+    return Inertial(entry["mass_kg"], X[:3, 3], X[:3, :3] @ inertia @ X[:3, :3].T)
 
 
 def _lump(child: str, parts: list[tuple[str, Inertial, Floats]]) -> Body:

@@ -1,4 +1,4 @@
-"""Inverse dynamics of a serial arm from its URDF, for many samples at once.
+"""Inverse dynamics of a serial arm, for many samples at once.
 
     tau = M(q) a + C(q, v) v + g(q)
 
@@ -9,12 +9,11 @@ independent of the C++ chain on purpose. Rotors are not part of it.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
 from limber.arrays import Floats
-from limber.model.bodies import Body, bodies
+from limber.model.bodies import Body
 from limber.model.rotations import turned_about
 from limber.model.urdf import MOVING, Chain
 
@@ -35,9 +34,9 @@ class Frames:
 class ArmDynamics:
     """`gravity`: acceleration in base axes, m/s²."""
 
-    def __init__(self, urdf: Path, chain: Chain, gravity: Floats) -> None:
-        self.chain, self.gravity = chain, np.asarray(gravity, float)
-        self.bodies = bodies(urdf, chain)
+    def __init__(self, chain: Chain, bodies: list[Body], gravity: Floats) -> None:
+        self.chain, self.bodies = chain, bodies
+        self.gravity = np.asarray(gravity, float)
         self._slides = [j.kind == "prismatic" for j in chain.joints if j.kind in MOVING]
 
     @cached_property

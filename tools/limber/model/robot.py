@@ -1,23 +1,24 @@
-"""A robot folder as the tools need it; the C++ programs are the ones that check it."""
+"""A robot as the tools need it, made from what limber-check resolves its folder to."""
 
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
-from limber.errors import InputError
+from limber.arrays import Floats
+from limber.model.bodies import Body, Inertial, bodies, inertials_of
+from limber.model.checker import kept, resolved
 from limber.model.dynamics import ArmDynamics
-from limber.model.names import require_name
-from limber.model.urdf import Chain, Joint
-from limber.output import copy_new
+from limber.model.urdf import Chain, Joint, joints_of
+from limber.output import copy_new, write_new
 from limber.paths import robot_folder
 
-EARTH = (0.0, 0.0, -9.81)  # m/s², root axes
-# libyaml reads several times faster; a PyYAML built from source may lack it.
-SAFE_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+FORMAT = "limber-resolved-robot/1"
+
+_known: dict[Path, tuple[list[int], dict[str, Any]]] = {}
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,8 @@ class JointInfo:
 class Robot:
     """`K_q`, N m/rad, and `K_x`, 6x6 [linear; angular], are what a law starts with.
 
-    `gravity` is the acceleration in base axes, m/s²; `home` in rad or m.
+    `gravity` is the acceleration in base axes, m/s²; `home` in rad or m. `resolved`: all that
+    limber-check gives, by its keys.
     """
 
     name: str
@@ -58,113 +60,134 @@ class Robot:
     base: str
     tip: str
     rate_hz: float
-    gravity: np.ndarray
+    gravity: Floats
     buses: dict[str, str]  # name -> address
     joints: list[JointInfo]
-    home: np.ndarray
-    K_q: np.ndarray
-    K_x: np.ndarray
+    home: Floats
+    K_q: Floats
+    K_x: Floats
+    resolved: dict[str, Any] = field(repr=False, compare=False)
+
+    @cached_property
+    def frames(self) -> dict[str, Joint]:
+        """All joints of the URDF, by child link."""
+        return joints_of(self.resolved["tree"])
+
+    @cached_property
+    def inertials(self) -> dict[str, Inertial]:
+        """Of the links that move."""
+        return inertials_of(self.resolved["tree"])
 
     @cached_property
     def chain(self) -> Chain:
-        return Chain(self.urdf, self.base, self.tip)
+        return Chain(self.frames, self.base, self.tip)
+
+    @cached_property
+    def bodies(self) -> list[Body]:
+        return bodies(self.chain, self.frames, self.inertials)
 
     @cached_property
     def dynamics(self) -> ArmDynamics:
-        return ArmDynamics(self.urdf, self.chain, self.gravity)
+        return ArmDynamics(self.chain, self.bodies, self.gravity)
 
     @property
     def joint_names(self) -> list[str]:
         return [joint.name for joint in self.joints]
 
 
-def read_yaml(path: Path) -> dict[str, Any]:
-    try:
-        with open(path, encoding="utf-8") as file:
-            content = yaml.load(file, SAFE_LOADER)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
-    if not isinstance(content, dict):
-        raise InputError(f"{path} is not a table of keys and values")
-    return content
+def load_robot(name_or_path: str) -> Robot:
+    """A shipped robot's name, or a folder. Raises InputError with limber-check's complaints."""
+    return robot_of(_description(robot_folder(name_or_path)))
 
 
-def load_robot(name_or_path: str, beside: Path | None = None) -> Robot:
-    folder = robot_folder(name_or_path, beside)
-    content = read_yaml(folder / "robot.yaml")
-    try:
-        return _robot(content, folder)
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(
-            f"{folder / 'robot.yaml'}: {error} is missing or wrong; see `limber check {folder}`"
-        ) from error
+def load_urdf(urdf: Path, base: str, tip: str) -> Robot:
+    """Without robot.yaml: no buses, and soft gains. Raises InputError."""
+    return robot_of(resolved(["urdf", str(urdf), "--base", base, "--tip", tip, "--resolved"]))
+
+
+def robot_beside(folder: Path) -> Robot | None:
+    """Of a log: as it was resolved when the run was recorded, or the copy of robot.yaml; None
+    without either. Raises InputError.
+    """
+    found = kept(folder / "robot.json", FORMAT)
+    if found is not None:
+        return placed(robot_of(found), folder)
+    return load_robot(str(folder.resolve())) if (folder / "robot.yaml").is_file() else None
+
+
+def placed(robot: Robot, folder: Path) -> Robot:
+    """Read from its description beside a log, where copies of its files lie."""
+    folder = folder.resolve()
+    return replace(robot, folder=folder, urdf=folder / robot.urdf.name)
 
 
 def copy_description(robot: Robot, folder: Path) -> None:
-    """robot.yaml and the URDF, as they are beside a log."""
+    """robot.yaml and the URDF, for a folder that programs may load."""
     copy_new(robot.folder / "robot.yaml", folder / "robot.yaml")
     copy_new(robot.urdf, folder / robot.urdf.name)
 
 
-def _robot(content: dict[str, Any], folder: Path) -> Robot:
-    urdf, gains = folder / content["urdf"], content["gains"]
-    chain = Chain(urdf, content["base"], content["tip"])
+def keep_description(robot: Robot, folder: Path) -> None:
+    """The same beside a log, and what they were resolved to."""
+    copy_description(robot, folder)
+    write_new(folder / "robot.json", json.dumps(robot.resolved))
+
+
+def robot_of(found: dict[str, Any]) -> Robot:
+    """From limber-check's description."""
+    gains, joints = found["gains"], found["joints"]
     K_t, K_r = gains["K_x_translation_N_per_m"], gains["K_x_rotation_Nm_per_rad"]
-    names, motors = chain.joint_names, content.get("motors") or {}
-    joints = [content["joints"][name] for name in names]
     return Robot(
-        name=require_name(content["name"], folder / "robot.yaml"),
-        folder=folder,
-        urdf=urdf,
-        base=content["base"],
-        tip=content["tip"],
-        rate_hz=float(content["rate_hz"]),
-        gravity=chain.R_RB.T @ np.asarray(content.get("gravity_m_per_s2", EARTH), float),
-        buses={bus["name"]: bus["can"] for bus in content["buses"]},
-        joints=[
-            _joint(chain.joint(name), joint, motors.get(joint.get("motor")) or {})
-            for name, joint in zip(names, joints, strict=True)
-        ],
-        home=np.array([_either(joint, "home_rad", "home_m", otherwise=0.0) for joint in joints]),
-        K_q=np.broadcast_to(np.asarray(gains["K_q_Nm_per_rad"], float), len(names)).copy(),
+        name=found["name"],
+        folder=Path(found["folder"]).resolve(),
+        urdf=Path(found["urdf"]).resolve(),
+        base=found["base"],
+        tip=found["tip"],
+        rate_hz=found["rate_hz"],
+        gravity=np.array(found["gravity_m_per_s2"], float),
+        buses={bus["name"]: bus["can"] for bus in found["buses"]},
+        joints=[_joint(joint) for joint in joints],
+        home=np.array([joint["home"] for joint in joints], float),
+        K_q=np.array(gains["K_q_Nm_per_rad"], float),
         K_x=np.diag([float(K_t)] * 3 + [float(K_r)] * 3),
+        resolved=found,
     )
 
 
-def _joint(urdf: Joint, content: dict[str, Any], motor: dict[str, Any]) -> JointInfo:
-    ignored = content.get("urdf_limits") == "ignore"
-    low, high = (-np.inf, np.inf) if ignored else urdf.limits
-    velocity, effort = (np.inf if ignored else urdf.most(key) for key in ("velocity", "effort"))
-    peak = _either(motor, "peak_torque_Nm", "peak_torque_N", otherwise=np.inf)
-    own = _either(content, "torque_limit_Nm", "torque_limit_N", otherwise=np.inf)
+def _description(folder: Path) -> dict[str, Any]:
+    """Resolved again only after a change of robot.yaml or the URDF."""
+    stamps, found = _known.get(folder, ([], {}))
+    if not found or _stamps(folder, found) != stamps:
+        found = resolved(["robot", str(folder), "--resolved"])
+        _known[folder] = _stamps(folder, found), found
+    return found
+
+
+def _stamps(folder: Path, found: dict[str, Any]) -> list[int]:
+    files = (folder / "robot.yaml", Path(found["urdf"]))
+    return [path.stat().st_mtime_ns if path.exists() else 0 for path in files]
+
+
+def _joint(found: dict[str, Any]) -> JointInfo:
+    friction, link_friction = (found.get(key, {}) for key in ("friction", "link_friction"))
     return JointInfo(
-        urdf.name,
-        _either(content, "position_min_rad", "position_min_m", otherwise=low),
-        _either(content, "position_max_rad", "position_max_m", otherwise=high),
-        _at_rest(content.get("friction") or {}),
-        _at_rest(content.get("link_friction") or {}),
-        _pair(content.get("transmission") or {}),
-        _either(content, "velocity_limit_rad_per_s", "velocity_limit_m_per_s", otherwise=velocity),
-        min(own, peak, effort),
+        found["name"],
+        _limit(found["position_min"], -np.inf),
+        _limit(found["position_max"], np.inf),
+        friction.get("static_Nm", 0.0),
+        link_friction.get("static_Nm", 0.0),
+        _pair(found),
+        _limit(found["velocity_limit"], np.inf),
+        _limit(found["torque_limit_Nm"], np.inf),
     )
 
 
-def _at_rest(friction: dict[str, Any]) -> float:
-    return max(
-        _either(friction, "coulomb_Nm", "coulomb_N", otherwise=0.0),
-        _either(friction, "static_Nm", "static_N", otherwise=0.0),
-    )
-
-
-def _pair(transmission: dict[str, Any]) -> SpringPair | None:
-    spring = transmission.get("spring") or {}
-    if transmission.get("kind") != "antagonistic" or spring.get("law") != "quadratic":
+def _pair(found: dict[str, Any]) -> SpringPair | None:
+    if found.get("transmission") != "antagonistic" or found["spring_law"] != "quadratic":
         return None
-    return SpringPair(float(spring["k2_Nm_per_rad2"]), float(transmission["preload_max_rad"]))
+    return SpringPair(found["spring_k2_Nm_per_rad2"], found["preload_max_rad"])
 
 
-def _either(mapping: dict[str, Any], *keys: str, otherwise: float) -> float:
-    """The value of whichever key there is: rotary and prismatic joints name their units."""
-    return float(next((mapping[key] for key in keys if key in mapping), otherwise))
+def _limit(value: float | None, otherwise: float) -> float:
+    """JSON has no infinity: null."""
+    return otherwise if value is None else float(value)

@@ -1,18 +1,20 @@
-"""A scenario as the tools need it; the C++ programs are the ones that check it."""
+"""A scenario as the tools need it, made from what limber-check resolves its file to."""
 
-from dataclasses import dataclass, field, fields
+import json
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from limber.arrays import Floats
-from limber.errors import InputError
-from limber.model.names import require_name
-from limber.model.robot import Robot, load_robot, read_yaml
+from limber.model.checker import kept, resolved
+from limber.model.robot import Robot, keep_description, placed, robot_of
+from limber.output import copy_new, write_new
+from limber.paths import scenario_file
 
 GAINS_S = 1.0  # when the gains of `active_with` arrive
-DEFAULT_LAW = "cartesian_impedance"
+FORMAT = "limber-resolved-scenario/1"
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,8 @@ class Gains:
 
 @dataclass(frozen=True)
 class Wall:
+    """A point, m, and the unit normal towards free space, base axes."""
+
     at_s: float
     point: Floats
     normal: Floats
@@ -72,58 +76,70 @@ class Wall:
 class Tolerances:
     """Relative; from the scenario's `measure` section."""
 
-    stiffness: float = 0.02
-    contact_force: float = 0.02
+    stiffness: float
+    contact_force: float
 
 
 @dataclass
 class Scenario:
+    """`gains` starts with the robot's own. `timeline`: limber-check's entries, in order of time.
+    `resolved`: all that limber-check gives, by its keys.
+    """
+
     name: str
     path: Path
     robot: Robot
-    lockstep: bool = True
-    duration_s: float = 10.0
-    seed: int = 1
-    friction: bool = True
-    record: bool = True
-    pushes: list[Push] = field(default_factory=list)
-    gains: list[Gains] = field(default_factory=list)
-    walls: list[Wall] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
-    event_times: list[float] = field(default_factory=list)
-    tolerances: Tolerances = field(default_factory=Tolerances)
-    warnings: list[str] = field(default_factory=list)  # of limber-check
-    notes: list[str] = field(default_factory=list)  # limber-check's, of the robot
+    lockstep: bool
+    duration_s: float
+    seed: int
+    friction: bool
+    record: bool
+    law_files: list[str]  # laws of one's own
+    pushes: list[Push]
+    gains: list[Gains]
+    walls: list[Wall]
+    faults: list[str]
+    timeline: list[dict[str, Any]]
+    tolerances: Tolerances
+    warnings: list[str]
+    notes: list[str]  # the robot's, too
+    resolved: dict[str, Any] = field(repr=False)
 
     def gains_at(self, time_s: float) -> Gains:
-        """The requested gains at a time; `gains` starts with the robot's own."""
+        """The requested gains at a time."""
         return [gains for gains in self.gains if gains.at_s <= time_s][-1]
+
+    @property
+    def event_times(self) -> list[float]:
+        return [entry["at_s"] for entry in self.timeline]
 
 
 def load_scenario(path: Path, robot: Path | None = None) -> Scenario:
-    """`robot`: the folder to read it from instead of the one the scenario names."""
-    content = read_yaml(path)
-    try:
-        loaded = load_robot(str(robot or content["robot"]), beside=path.resolve().parent)
-        scenario = Scenario(
-            name=require_name(content["name"], path) if "name" in content else path.stem,
-            path=path.resolve(),
-            robot=loaded,
-            lockstep=content.get("mode", "lockstep") == "lockstep",
-            duration_s=float(content["duration_s"]),
-            seed=int(content.get("seed", 1)),
-            friction=bool(content.get("friction", True)),
-            record=bool(content.get("record", True)),
-            gains=[Gains(0.0, DEFAULT_LAW, loaded.K_x, loaded.K_q)],
-            tolerances=_tolerances(content.get("measure"), path),
-        )
-        for entry in sorted(content.get("timeline") or [], key=lambda entry: float(entry["at_s"])):
-            _add(scenario, entry)
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(
-            f"{path}: {error} is missing or wrong; see `limber check {path}`"
-        ) from error
-    return scenario
+    """`robot`: the folder to read it from instead of the one the scenario names. Raises InputError
+    with limber-check's complaints.
+    """
+    path = scenario_file(path)
+    other = [] if robot is None else ["--robot", str(robot)]
+    return _scenario(resolved(["scenario", str(path), "--json", *other]), path.resolve())
+
+
+def scenario_beside(folder: Path) -> Scenario | None:
+    """Of a log: as it was resolved when the run was recorded, or its copy with that of the robot;
+    None without either. Raises InputError.
+    """
+    found = kept(folder / "scenario.json", FORMAT)
+    path = folder.resolve() / "scenario.yaml"
+    if found is None:
+        return load_scenario(path, robot=path.parent) if path.is_file() else None
+    scenario = _scenario(found, path)
+    return replace(scenario, robot=placed(scenario.robot, folder))
+
+
+def keep_scenario(scenario: Scenario, folder: Path) -> None:
+    """Scenario and robot as they were, beside a log, and what they were resolved to."""
+    copy_new(scenario.path, folder / "scenario.yaml")
+    write_new(folder / "scenario.json", json.dumps(scenario.resolved))
+    keep_description(scenario.robot, folder)
 
 
 def active_with(gains: dict[str, Any]) -> list[dict[str, Any]]:
@@ -135,73 +151,41 @@ def active_with(gains: dict[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _tolerances(content: Any, path: Path) -> Tolerances:
-    """The mapping `measure`: {stiffness: 0.02, contact_force: 0.02}; a list is for the
-    experiments.
-    """
-    if not isinstance(content, dict):
-        return Tolerances()
-    known = [item.name for item in fields(Tolerances)]
-    for key, value in content.items():
-        if key not in known:
-            raise InputError(
-                f"{path}: measure: unknown key '{key}'; allowed here: {', '.join(known)}"
-            )
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
-            raise InputError(
-                f"{path}: measure: {key}: '{value}' is wrong; expected a number in (0, 1]"
-            )
-    return Tolerances(**content)
-
-
-def _add(scenario: Scenario, entry: dict[str, Any]) -> None:
-    at_s = float(entry["at_s"])
-    kind = next(key for key in entry if key != "at_s")
-    content = entry[kind]
-    scenario.event_times.append(at_s)
-    if kind == "push":
-        scenario.pushes.append(_push(at_s, content))
-    elif kind == "gains":
-        law = scenario.gains[-1].law  # a reset keeps it
-        before = scenario.gains[0 if content.get("reset") else -1]
-        scenario.gains.append(_changed(before, at_s, {"law": law, **content}))
-    elif kind == "wall" and isinstance(content, dict):
-        normal = np.asarray(content["normal"], float)
-        stiffness = float(content["stiffness_N_per_m"])
-        point = np.asarray(content["point_m"], float)
-        scenario.walls.append(Wall(at_s, point, normal / np.linalg.norm(normal), stiffness))
-    elif kind == "fault":
-        scenario.faults.append(str(content["kind"]))
-
-
-def _push(at_s: float, content: dict[str, Any]) -> Push:
-    wrench = np.zeros(6)
-    wrench[:3] = content.get("force_N", 0.0)
-    wrench[3:] = content.get("torque_Nm", 0.0)
-    ramp_s, duration_s = float(content.get("ramp_s", 0.0)), float(content["for_s"])
-    return Push(at_s, wrench, ramp_s, duration_s, str(content.get("link", "")))
-
-
-def _changed(before: Gains, at_s: float, content: dict[str, Any]) -> Gains:
-    """What is not named stays as it was. Naming one half's diagonal clears the coupling with the
-    other.
-    """
-    K_x, K_q = before.K_x.copy(), before.K_q.copy()
-    if "K_x" in content:
-        K_x = np.asarray(content["K_x"], float)
-    blocks = {"K_x_translation_N_per_m": slice(0, 3), "K_x_rotation_Nm_per_rad": slice(3, 6)}
-    for key, rows in blocks.items():
-        if key in content:
-            K_x[rows, :] = K_x[:, rows] = 0.0
-            K_x[rows, rows] = np.diag(np.broadcast_to(np.asarray(content[key], float), 3))
-    if "K_q_Nm_per_rad" in content:
-        K_q[:] = content["K_q_Nm_per_rad"]
-    return Gains(
-        at_s,
-        str(content.get("law", before.law)),
-        K_x,
-        K_q,
-        str(content.get("friction_compensation", before.friction_compensation)),
-        float(content.get("friction_share", before.friction_share)),
-        str(content.get("frame", before.frame)),
+def _scenario(found: dict[str, Any], path: Path) -> Scenario:
+    timeline = found["timeline"]
+    return Scenario(
+        name=found["name"],
+        path=path,
+        robot=robot_of(found["robot"]),
+        lockstep=found["mode"] == "lockstep",
+        duration_s=found["duration_s"],
+        seed=found["seed"],
+        friction=found["friction"],
+        record=found["record"],
+        law_files=found["law_files"],
+        pushes=[_push(entry["at_s"], entry["push"]) for entry in timeline if "push" in entry],
+        gains=[_gains(entry) for entry in found["gains"]],
+        walls=[_wall(entry["at_s"], entry["wall"]) for entry in timeline if entry.get("wall")],
+        faults=[entry["fault"] for entry in timeline if "fault" in entry],
+        timeline=timeline,
+        tolerances=Tolerances(**found["measure"]),
+        warnings=[*found["warnings"], *found["refused"]],
+        notes=found["notes"],
+        resolved=found,
     )
+
+
+def _push(at_s: float, entry: dict[str, Any]) -> Push:
+    wrench = np.array(entry["wrench_N_Nm"], float)
+    return Push(at_s, wrench, entry["ramp_s"], entry["for_s"], entry["link"])
+
+
+def _wall(at_s: float, entry: dict[str, Any]) -> Wall:
+    point, normal = (np.array(entry[key], float) for key in ("point_m", "normal"))
+    return Wall(at_s, point, normal, entry["stiffness_N_per_m"])
+
+
+def _gains(entry: dict[str, Any]) -> Gains:
+    K_x, K_q = (np.array(entry[key], float) for key in ("K_x", "K_q_Nm_per_rad"))
+    words = (entry[key] for key in ("friction_compensation", "friction_share", "frame"))
+    return Gains(entry["at_s"], entry["law"], K_x, K_q, *words)

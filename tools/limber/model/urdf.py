@@ -1,75 +1,45 @@
-"""Forward kinematics and Jacobian of a serial arm, straight from its URDF.
+"""Forward kinematics and Jacobian of a serial arm, from the joint frames of its URDF.
 
-Independent of the C++ chain on purpose: what `limber` measures shall not lean on the code it
-measures.
+The frames are those that limber-check resolves; what is made of them is independent of the C++
+chain on purpose: what `limber` measures shall not lean on the code it measures.
 """
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
-from xml.etree.ElementTree import Element
+from typing import Any
 
 import numpy as np
 
 from limber.arrays import Floats
-from limber.errors import InputError
 from limber.model.rotations import matrix_of, turned_about
-from limber.model.xml_file import attribute, inside, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
 
 
 @dataclass(frozen=True)
 class Joint:
-    """Numbers are read when they are needed: elsewhere in the file they may be wrong."""
+    """`X_PF`: 4x4, joint frame in the parent link at zero. `axis`: unit, joint frame; of a joint
+    that moves. Joints that are no part of the arm are "fixed", at zero.
+    """
 
     name: str
     kind: str
     parent: str
     child: str
-    element: Element
-
-    @cached_property
-    def X_PF(self) -> Floats:
-        """4x4, joint frame in the parent link at zero."""
-        return pose_of(self.element.find("origin"))
-
-    @cached_property
-    def axis(self) -> Floats:
-        """Unit, joint frame; of a joint that moves."""
-        axis = numbers_of(self.element.find("axis"), "xyz", "1 0 0")
-        return axis / np.linalg.norm(axis)
-
-    @cached_property
-    def limits(self) -> tuple[float, float]:
-        """Of the position; infinite for continuous joints, and where both are 0 or absent."""
-        limit = self.element.find("limit") if self.kind != "continuous" else None
-        low, high = (numbers_of(limit, key, "0")[0] for key in ("lower", "upper"))
-        return (low, high) if low or high else (-np.inf, np.inf)
-
-    def most(self, key: str) -> float:
-        """`velocity` or `effort` of its <limit>; infinite where it is absent or zero."""
-        return float(numbers_of(self.element.find("limit"), key, "0")[0]) or np.inf
+    X_PF: Floats
+    axis: Floats
 
 
 class Chain:
-    """The joints from `base` to `tip`, in order; `joint_names` are those that move.
+    """The joints from `base` to `tip`, in order; `joint_names` are those that move."""
 
-    `R_RB` turns base axes into those of the URDF's root link, every joint between at zero.
-    """
-
-    def __init__(self, urdf: Path, base: str, tip: str) -> None:
-        joints = read_joints(urdf)
-        self.joints = _path_between(joints, base, tip, urdf)
-        self.R_RB = _rotation_of(joints, base)
+    def __init__(self, joints: dict[str, Joint], base: str, tip: str) -> None:
+        """`joints`: by the name of their child link, as joints_of() gives them."""
+        self.joints: list[Joint] = []
+        while tip != base:
+            self.joints.insert(0, joints[tip])
+            tip = joints[tip].parent
         self.joint_names = [joint.name for joint in self.joints if joint.kind in MOVING]
-
-    def joint(self, name: str) -> Joint:
-        return next(joint for joint in self.joints if joint.name == name)
-
-    def limits(self, name: str) -> tuple[float, float]:
-        return self.joint(name).limits
 
     def forward(self, q: Floats) -> Floats:
         """X_BT, 4x4."""
@@ -100,44 +70,17 @@ class Chain:
         return X, axes
 
 
-def _motion(joint: Joint, value: float) -> Floats:
+def joints_of(tree: dict[str, Any]) -> dict[str, Joint]:
+    """Of limber-check's `tree`, by the name of their child link."""
+    return {entry["child"]: _joint(entry) for entry in tree["joints"]}
+
+
+def pose_of(entry: dict[str, Any]) -> Floats:
+    """4x4."""
     X = np.eye(4)
-    if joint.kind == "prismatic":
-        X[:3, 3] = value * joint.axis
-    else:
-        X[:3, :3] = turned_about(value * joint.axis)
+    X[:3, :3] = matrix_of(np.roll(entry["quat_xyzw"], 1))
+    X[:3, 3] = entry["p_m"]
     return X
-
-
-def numbers_of(element: Element | None, key: str, default: str) -> Floats:
-    text = element.get(key, default) if element is not None else default
-    return np.array([float(part) for part in text.split()])
-
-
-def pose_of(origin: Element | None) -> Floats:
-    """4x4, of an <origin>: rpy turns by roll about x, then pitch about y, then yaw about z, all of
-    the parent's axes; quat_xyzw, of URDF 1.1, stands in its place.
-    """
-    X = np.eye(4)
-    X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
-    if origin is not None and origin.get("quat_xyzw") is not None:
-        X[:3, :3] = matrix_of(np.roll(numbers_of(origin, "quat_xyzw", ""), 1))
-    else:
-        roll, pitch, yaw = np.diag(numbers_of(origin, "rpy", "0 0 0"))
-        X[:3, :3] = turned_about(yaw) @ turned_about(pitch) @ turned_about(roll)
-    return X
-
-
-def read_joints(urdf: Path) -> dict[str, Joint]:
-    """Joints by the name of their child link."""
-    found = {}
-    for element in read_xml(urdf).findall("joint"):
-        name, kind = (attribute(element, key, urdf) for key in ("name", "type"))
-        parent, child = (
-            attribute(inside(element, key, urdf), "link", urdf) for key in ("parent", "child")
-        )
-        found[child] = Joint(name, kind, parent, child, element)
-    return found
 
 
 def carrier(
@@ -155,21 +98,19 @@ def carrier(
     return link, X
 
 
-def _path_between(joints: dict[str, Joint], base: str, tip: str, urdf: Path) -> list[Joint]:
-    path = []
-    link = tip
-    while link != base:
-        if link not in joints:
-            raise InputError(f"{urdf}: no chain of joints leads from link '{base}' to link '{tip}'")
-        path.append(joints[link])
-        link = joints[link].parent
-    return path[::-1]
+def _joint(entry: dict[str, Any]) -> Joint:
+    axis = np.array(entry["axis"], float)
+    length = float(np.linalg.norm(axis))
+    axis = axis / length if length > 0 else axis
+    return Joint(
+        entry["name"], entry["type"], entry["parent"], entry["child"], pose_of(entry), axis
+    )
 
 
-def _rotation_of(joints: dict[str, Joint], link: str) -> Floats:
-    """Axes of a link in those of the root link."""
-    R = np.eye(3)
-    while link in joints:
-        R = joints[link].X_PF[:3, :3] @ R
-        link = joints[link].parent
-    return R
+def _motion(joint: Joint, value: float) -> Floats:
+    X = np.eye(4)
+    if joint.kind == "prismatic":
+        X[:3, 3] = value * joint.axis
+    else:
+        X[:3, :3] = turned_about(value * joint.axis)
+    return X

@@ -6,7 +6,11 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
+import numpy as np
+
+from limber.arrays import Floats
 from limber.errors import InputError
+from limber.model.rotations import matrix_of, turned_about
 
 
 def read_xml(path: Path, comments: bool = False) -> Element:
@@ -46,6 +50,25 @@ def attribute(element: Element, key: str, path: Path) -> str:
     if value is None:
         raise InputError(f'{path}: {_words(element)} has no {key}=""')
     return value
+
+
+def numbers_of(element: Element | None, key: str, default: str) -> Floats:
+    text = element.get(key, default) if element is not None else default
+    return np.array([float(part) for part in text.split()])
+
+
+def origin_pose(parent: Element) -> Floats:
+    """4x4, of the <origin> in it: rpy turns by roll about x, then pitch about y, then yaw about z,
+    all of the parent's axes; quat_xyzw, of URDF 1.1, stands in its place.
+    """
+    X, origin = np.eye(4), parent.find("origin")
+    X[:3, 3] = numbers_of(origin, "xyz", "0 0 0")
+    if origin is not None and origin.get("quat_xyzw") is not None:
+        X[:3, :3] = matrix_of(np.roll(numbers_of(origin, "quat_xyzw", ""), 1))
+    else:
+        roll, pitch, yaw = np.diag(numbers_of(origin, "rpy", "0 0 0"))
+        X[:3, :3] = turned_about(yaw) @ turned_about(pitch) @ turned_about(roll)
+    return X
 
 
 def _words(element: Element) -> str:

@@ -12,7 +12,8 @@ from rich.console import Console
 from limber.errors import InputError
 from limber.log.reader import Log, log_file
 from limber.messages import MONITOR_CLIENT
-from limber.model.robot import load_robot
+from limber.model.robot import load_robot, robot_beside
+from limber.model.scenario import load_scenario, scenario_beside
 from limber.monitor import server
 from limber.monitor.control import ControlPanel
 from limber.monitor.goal_handle import GoalHandle
@@ -41,7 +42,7 @@ def live(
     """
     os.nice(NICENESS)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    walls = wall_changes(scenario) if scenario else []
+    walls = wall_changes(load_scenario(scenario)) if scenario else []
     running = RunningArm()
     with closing(LiveFeed()) as feed:
         if named is None:
@@ -110,14 +111,14 @@ def play(path: Path, robot_name: str | None, port: int, console: Console) -> Non
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     file = log_file(path)
     folder = file.parent
-    if robot_name is None and not (folder / "robot.yaml").is_file():
+    robot = robot_beside(folder) if robot_name is None else load_robot(robot_name)
+    if robot is None:
         raise InputError(f"{folder} holds no robot.yaml: name the arm with --robot")
-    robot = load_robot(robot_name or str(folder.resolve()))
     feed = LogFeed(Log(file), HISTORY_S)
     laws = list_laws(robot.folder)
-    scenario = folder / "scenario.yaml"
+    scenario = scenario_beside(folder)
     served = _serve(port, console)
-    walls = wall_changes(scenario) if scenario.is_file() else []
+    walls = wall_changes(scenario) if scenario else []
     page = Page(served, robot, laws, feed, walls, Guard(console))
     typed = TypedFields(served.link, page.tell_typed)
     panel = PlaybackPanel(served, feed, Log(file), robot.joint_names, laws, typed)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from limber.model.robot import Robot, read_yaml
+from limber.model.robot import Robot
 from limber.monitor.feed import Feed
 from limber.monitor.field_values import show
 from limber.monitor.laws import Gain, Law, LawList
@@ -51,7 +51,7 @@ class ControlPanel:
         self._gui, self._robot, self._laws = gui, robot, laws
         self._requests, self._feed = requests, feed
         self._typed, self._pending = typed, pending
-        self._standard = read_yaml(robot.folder / "robot.yaml").get("gains") or {}
+        self._standard = robot.resolved["gains"]
         self._lock = threading.Lock()  # callbacks come from the server's thread
         self._waiting: dict[str, Any] = {}
         self._sent_s = 0.0

@@ -11,8 +11,8 @@ import numpy as np
 import trimesh
 
 from limber.model.robot import Robot
-from limber.model.urdf import MOVING, Joint, carrier, numbers_of, pose_of, read_joints
-from limber.model.xml_file import attribute, inside, read_xml
+from limber.model.urdf import MOVING, Joint, carrier
+from limber.model.xml_file import attribute, inside, numbers_of, origin_pose, read_xml
 
 LIMB, JOINT, TIP = (222, 226, 232), (62, 70, 84), (240, 140, 45)
 THICKNESS = (0.062, 0.034)  # radius of the limbs at shoulder and tip over the arm's reach
@@ -50,7 +50,7 @@ class Figure:
 
 def figure(robot: Robot) -> Figure:
     made = _skeleton(robot)
-    visuals = _visuals(robot.urdf, made)
+    visuals = _visuals(robot, made)
     drawn = {shape.link for shape in visuals}
     limbs = [shape for shape in _limbs(robot, made) if shape.link not in drawn]
     made.shapes = [*visuals, *limbs]
@@ -70,14 +70,13 @@ def _skeleton(robot: Robot) -> Figure:
     return Figure(robot.base, joints, poses, X, reach_m=max(float(sum(lengths)), 0.1))
 
 
-def _visuals(urdf: Path, made: Figure) -> list[Shape]:
-    joints = read_joints(urdf)
+def _visuals(robot: Robot, made: Figure) -> list[Shape]:
     shapes: list[Shape] = []
-    root = read_xml(urdf)
+    urdf, root = robot.urdf, read_xml(robot.urdf)
     materials = {m.get("name"): m for m in root.findall("material")}
     for link in root.findall("link"):
         name = attribute(link, "name", urdf)
-        owner, X = carrier(name, made.links, joints)
+        owner, X = carrier(name, made.links, robot.frames)
         if owner is None:
             continue
         for visual in link.findall("visual"):
@@ -86,7 +85,7 @@ def _visuals(urdf: Path, made: Figure) -> list[Shape]:
             except Exception as error:  # trimesh raises whatever its file readers raise
                 made.troubles.append(f"visual of {name}: {error}")
                 continue
-            mesh.apply_transform(X @ pose_of(visual.find("origin")))
+            mesh.apply_transform(X @ origin_pose(visual))
             shapes.append(Shape(owner, mesh, _color(visual, materials)))
     return shapes
 

@@ -2,16 +2,15 @@
 
 import json
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from limber.errors import InputError
-from limber.model.dynamics import ArmDynamics
-from limber.model.urdf import Chain
-from limber.model.validation import checker_arguments, run_checker
+from limber.model.checker import checker_arguments, run_checker
+from limber.model.robot import JointInfo, load_urdf
 
 WALL, WALL_SHARE = 0.1, 0.1  # width of the soft wall, rad or m, and share of the travel at most
 ROOM_rad, ROOM_m = 0.1, 0.03  # before it, to give way in
@@ -59,41 +58,34 @@ def read(urdf: Path, base: str | None, tip: str | None) -> ArmFacts:
         listed = run_checker(checker_arguments(str(urdf), base, tip))
         raise InputError(f"{listed.stderr.strip()}\n{listed.stdout.rstrip()}")
     found = json.loads(done.stdout)
-    chain = Chain(urdf, found["base"], found["tip"])
-    home = np.array([_home(joint) for joint in found["joints"]])
-    dynamics = ArmDynamics(urdf, chain, np.array(found["gravity_m_per_s2"]))
-    weight = dynamics.gravity_torque(home[None])[0]
-    accelerated = np.tile(home, (len(home), 1))
-    M = dynamics.torque(accelerated, np.zeros_like(accelerated), np.eye(len(home))) - weight
-    facts = zip(found["joints"], weight, np.diag(M), strict=True)
+    robot = load_urdf(urdf, found["base"], found["tip"])
+    joints = list(zip(robot.joints, found["joints"], strict=True))
+    home = np.array([_home(limits, joint["type"]) for limits, joint in joints])
+    weight = np.abs(robot.dynamics.gravity_torque(home[None])[0])
+    facts = zip(joints, weight, np.diag(robot.dynamics.inertia(home)), strict=True)
     return ArmFacts(
         urdf,
-        found["base"],
-        found["tip"],
+        robot.base,
+        robot.tip,
         found["moving_mass_kg"],
         home,
-        chain.jacobian(home),
-        [_joint(joint, abs(g), inertia) for joint, g, inertia in facts],
+        robot.chain.jacobian(home),
+        [_joint(*joint, gravity, inertia) for joint, gravity, inertia in facts],
     )
 
 
-def _joint(found: dict[str, Any], gravity: float, inertia: float) -> JointFacts:
+def _joint(limits: JointInfo, found: dict[str, Any], gravity: float, inertia: float) -> JointFacts:
     return JointFacts(
-        found["name"],
+        limits.name,
         found["type"],
-        _number(found["position_min"], -inf),
-        _number(found["position_max"], inf),
-        _number(found["velocity_limit"], inf),
-        _number(found["torque_limit_Nm"], inf),
+        limits.low,
+        limits.high,
+        limits.velocity,
+        limits.torque,
         gravity,
         max(gravity, found["worst_gravity_Nm"]),
         inertia,
     )
-
-
-def _number(value: float | None, otherwise: float) -> float:
-    """JSON has no infinity."""
-    return otherwise if value is None else value
 
 
 def wall(low: float, high: float) -> float:
@@ -101,13 +93,13 @@ def wall(low: float, high: float) -> float:
     return min(WALL, WALL_SHARE * (high - low)) if isfinite(high - low) else 0.0
 
 
-def _home(found: dict[str, Any]) -> float:
+def _home(limits: JointInfo, kind: str) -> float:
     """Zero, or as near to it as leaves a tenth of the travel, and room to give way before the soft
     wall, to either end; the middle of a travel that is too short for that.
     """
-    low, high = _number(found["position_min"], -inf), _number(found["position_max"], inf)
+    low, high = limits.low, limits.high
     if not isfinite(high - low):
         return 0.0
-    room = ROOM_m if found["type"] == "prismatic" else ROOM_rad
+    room = ROOM_m if kind == "prismatic" else ROOM_rad
     margin = min(max(0.1 * (high - low), wall(low, high) + room), 0.5 * (high - low))
     return round(float(np.clip(0.0, low + margin, high - margin)), 3)

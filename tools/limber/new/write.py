@@ -8,8 +8,8 @@ from pathlib import Path
 from rich.console import Console
 
 from limber.errors import OK, InputError
+from limber.model.checker import run_checker
 from limber.model.protocols import Protocol, protocol, protocols
-from limber.model.validation import run_checker
 from limber.new import facts, robot_text, scenario_text
 from limber.new.guesses import Guesses, guess
 from limber.output import write_new

@@ -12,7 +12,7 @@ from limber.log.events import Names
 from limber.log.reader import Log, time_s
 from limber.log.rows import active
 from limber.model.gains_table import acts_at_joints, law_names
-from limber.model.robot import Robot, load_robot
+from limber.model.robot import Robot, robot_beside
 from limber.plot import charts
 from limber.plot.chart import Chart, went_back
 from limber.plot.marks import Mark, Span, marks, spans
@@ -136,9 +136,7 @@ def _subject(log: Log) -> list[str]:
 
 def _robot(folder: Path) -> Robot | None:
     """The copy that a run leaves beside its log; none beside other logs."""
-    if not (folder / "robot.yaml").is_file():
-        return None
-    return load_robot(str(folder.resolve()))
+    return robot_beside(folder)
 
 
 def _results(folder: Path) -> list[dict[str, Any]]:

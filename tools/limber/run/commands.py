@@ -10,9 +10,8 @@ from limber.live import network
 from limber.log.reader import Log, log_file
 from limber.measure.results import Summary, load_header
 from limber.measure.summarize import measure
-from limber.model.scenario import Scenario, load_scenario
-from limber.model.validation import load_checked
-from limber.paths import existing_file, run_folder
+from limber.model.scenario import Scenario, load_scenario, scenario_beside
+from limber.paths import run_folder
 from limber.run import buses, runner
 from limber.run.drive_words import with_words
 from limber.run.options import FinishedRun, RunOptions
@@ -26,7 +25,7 @@ def next_folder(name: str) -> Path:
 
 
 def _load(path: Path, console: Console) -> Scenario:
-    scenario = load_checked(path)
+    scenario = load_scenario(path)
     for line in scenario.warnings:
         console.print(
             f"warning: {line}", style="yellow", markup=False, highlight=False, soft_wrap=True
@@ -64,7 +63,9 @@ def measure_again(folder: Path, run: int | None, console: Console) -> int:
     one is named.
     """
     header = load_header(folder)
-    scenario = load_scenario(existing_file(folder / "scenario.yaml", "scenario"), robot=folder)
+    scenario = scenario_beside(folder)
+    if scenario is None:
+        raise InputError(f"no scenario.yaml lies beside the log in {folder}")
     finished = FinishedRun(
         folder, header.get("mode", "unknown"), header.get("stopped_early", False)
     )

@@ -13,8 +13,7 @@ from limber.live import network
 from limber.log.reader import Log
 from limber.measure.pushes import MeasuredPush
 from limber.measure.results import Result, Summary, text
-from limber.model.scenario import Scenario
-from limber.model.validation import load_checked
+from limber.model.scenario import Scenario, load_scenario
 from limber.paths import SCENARIOS, run_folder
 from limber.run import commands, runner
 from limber.run.options import FinishedRun, RunOptions
@@ -45,7 +44,7 @@ OBSERVED = (
 
 def demo(seconds: float | None, sensors: bool, options: RunOptions, console: Console) -> int:
     """`sensors`: with an arm that measures its joint torques."""
-    scenario = load_checked(WITH_SENSORS if sensors else SCENARIO)
+    scenario = load_scenario(WITH_SENSORS if sensors else SCENARIO)
     if seconds is not None:
         scenario.duration_s = seconds
     if options.page:

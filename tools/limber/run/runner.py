@@ -13,9 +13,7 @@ from rich.console import Console
 
 from limber.errors import RunError
 from limber.live.receiver import driver_is_running
-from limber.model.robot import copy_description
-from limber.model.scenario import Scenario
-from limber.output import copy_new
+from limber.model.scenario import Scenario, keep_scenario
 from limber.paths import program
 from limber.run.display import display
 from limber.run.options import CAN_LOG_NAME, LOG_NAME, FinishedRun, RunOptions
@@ -43,7 +41,7 @@ def run(scenario: Scenario, folder: Path, options: RunOptions, console: Console)
     pace = choose(scenario, options)
     recorded = scenario.record if options.record is None else options.record
     commands = _commands(scenario, folder, options, pace, recorded)
-    copy_inputs(scenario, folder)
+    keep_scenario(scenario, folder)
     result = FinishedRun(folder, str(pace), recorded=recorded, log_name=options.log_name)
     with process_group(folder) as group, sigterm_as_interrupt():
         for name, command in commands.items():
@@ -66,7 +64,7 @@ def lab(
     log_name: str = LOG_NAME,
 ) -> FinishedRun:
     """The whole stack in one process, in lock step, as fast as the processor allows."""
-    copy_inputs(scenario, folder)
+    keep_scenario(scenario, folder)
     result = FinishedRun(folder, "lab", log_name=log_name)
     path = str(scenario.path)
     command = [str(program("limber-lab")), path, "--log", str(result.log), "--progress"]
@@ -81,12 +79,6 @@ def lab(
         _tell(group, console)
     console.print(_last_line(child))
     return result
-
-
-def copy_inputs(scenario: Scenario, folder: Path) -> None:
-    """The scenario and the robot as they were: a log without them cannot be understood later."""
-    copy_new(scenario.path, folder / "scenario.yaml")
-    copy_description(scenario.robot, folder)
 
 
 def _last_line(child: Child) -> str:

@@ -11,7 +11,6 @@ from rich.console import Console
 
 from limber.errors import OK, InputError
 from limber.model.robot import load_robot
-from limber.model.validation import load_checked_robot
 from limber.output import write_again
 from limber.paths import output_folder, program, robot_folder
 from limber.run.buses import addresses, real
@@ -129,7 +128,7 @@ def files(robot: str, overrides: tuple[str, ...] = ()) -> dict[str, str]:
 
 def write(robot: str, overrides: tuple[str, ...], out: Path, console: Console) -> int:
     """The units, and what to do with them."""
-    checked = load_checked_robot(robot)
+    checked = load_robot(robot)
     contents = files(robot, overrides)
     folder = output_folder(out)
     for name, text in contents.items():

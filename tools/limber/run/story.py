@@ -6,7 +6,6 @@ from itertools import pairwise
 import numpy as np
 
 from limber.measure import statics
-from limber.model.robot import read_yaml
 from limber.model.scenario import Push, Scenario
 
 AXES = ("x", "y", "z")
@@ -35,10 +34,10 @@ def story(scenario: Scenario) -> list[Line]:
         for before, now in pairwise(scenario.gains)
         if now.dithered != before.dithered
     ]
-    for entry in read_yaml(scenario.path).get("timeline") or []:
+    for entry in scenario.timeline:
         text = _entry(scenario, entry)
         if text is not None:
-            lines.append(Line(float(entry["at_s"]), text))
+            lines.append(Line(entry["at_s"], text))
     return sorted(lines, key=lambda line: line.time_s)
 
 
@@ -54,13 +53,14 @@ def _entry(scenario: Scenario, entry: dict) -> str | None:
             "active": "The law takes over: from now on the arm is soft.",
             "stop": "The arm is stopped.",
         }.get(entry["mode"])
-    if isinstance(entry.get("gains"), dict) and "K_x_translation_N_per_m" in entry["gains"]:
-        asked = entry["gains"]["K_x_translation_N_per_m"]
-        return f"Asked for: a spring of {asked} N/m between the hand and its goal."
-    if isinstance(entry.get("wall"), dict):
+    if "K_x_translation_N_per_m" in entry.get("gains", ()):
+        asked = np.diag(scenario.gains_at(entry["at_s"]).K_x)[:3]
+        words = ", ".join(f"{K:g}" for K in (asked[:1] if np.ptp(asked) == 0 else asked))
+        return f"Asked for: a spring of {words} N/m between the hand and its goal."
+    if entry.get("wall"):
         return "A wall is put up in front of the hand."
-    if isinstance(entry.get("goal"), dict) and "offset_m" in entry["goal"]:
-        offset = np.asarray(entry["goal"]["offset_m"], float)
+    offset = np.array(entry.get("goal", {}).get("offset_m_rad", np.zeros(6)), float)[:3]
+    if offset.any():
         ahead = bool(scenario.walls) and offset @ scenario.walls[0].normal < 0
         wall = " The wall is in its way: the spring presses the hand on it." if ahead else ""
         way, distance = _along(offset)

@@ -1,12 +1,11 @@
-"""Robots, URDFs and scenarios, checked by limber-check: the code that all programs share."""
+"""limber-check: the one reader of robots, URDFs and scenarios, and what it resolves them to."""
 
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 from limber.errors import InputError
-from limber.model.robot import Robot, load_robot
-from limber.model.scenario import Scenario, load_scenario
 from limber.paths import captured, existing_file, program, robot_folder, scenario_file
 
 
@@ -31,24 +30,31 @@ def run_checker(arguments: list[str]) -> subprocess.CompletedProcess[str]:
     return captured(command)
 
 
-def load_checked_robot(name_or_folder: str) -> Robot:
-    """Raises InputError with limber-check's complaints if the robot is wrong."""
-    done = run_checker(["robot", str(robot_folder(name_or_folder))])
+def resolved(arguments: list[str]) -> dict[str, Any]:
+    """What limber-check prints as JSON. Raises InputError with its complaints."""
+    done = run_checker(arguments)
     if done.returncode != 0:
-        raise InputError(done.stderr.strip())
-    return load_robot(name_or_folder)
+        told = done.stderr.strip() or f"limber-check failed (exit code {done.returncode})"
+        raise InputError(told.removeprefix("limber-check: "))
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
 
 
-def load_checked(path: Path) -> Scenario:
-    """Raises InputError with limber-check's message if the scenario or its robot is wrong."""
-    path = scenario_file(path)
-    done = run_checker(["scenario", str(path), "--json"])
-    if done.returncode != 0:
-        lines = [line for line in done.stderr.splitlines() if line.strip()]
-        message = lines[-1] if lines else f"limber-check failed (exit code {done.returncode})"
-        raise InputError(message.removeprefix("limber-check: "))
-    scenario = load_scenario(path)
-    found = json.loads(done.stdout)
-    scenario.warnings = [*found["warnings"], *found["refused"]]
-    scenario.notes = found["notes"]
-    return scenario
+def kept(file: Path, form: str) -> dict[str, Any] | None:
+    """What was resolved when a log was recorded; None if there is no such file. Raises
+    InputError.
+    """
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file} cannot be read: {error}") from error
+    word = found.get("format") if isinstance(found, dict) else None
+    if word != form:
+        raise InputError(
+            f"{file}: format: '{word}'; expected {form}; without this file, the YAML beside it is "
+            "read again"
+        )
+    content: dict[str, Any] = found
+    return content
