@@ -17,8 +17,8 @@ struct XmlElement {
 
   /// The value; nullptr if there is none of that name.
   const char* attribute(std::string_view key) const {
-    for (const auto& [name, value] : attributes) {
-      if (name == key) return value.c_str();
+    for (const auto& [given, value] : attributes) {
+      if (given == key) return value.c_str();
     }
     return nullptr;
   }

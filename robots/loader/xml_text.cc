@@ -86,7 +86,8 @@ XmlElement parse_xml(const std::string& text, const std::string& path) {
   // The encoding given here overrides the declared one; ASCII is the same in both.
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(
       XML_ParserCreate("UTF-8"), &XML_ParserFree);
-  Document document{.parser = parser.get()};
+  Document document;
+  document.parser = parser.get();
   XML_SetUserData(parser.get(), &document);
   XML_SetXmlDeclHandler(parser.get(), declare);
   XML_SetElementHandler(parser.get(), begin_element, end_element);
