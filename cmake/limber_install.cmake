@@ -33,9 +33,9 @@ function(limber_installed name)
   target_precompile_headers(limber_main_${name} REUSE_FROM limber_headers)
   target_sources(liblimber PRIVATE $<TARGET_OBJECTS:limber_main_${name}>)
   target_link_libraries(liblimber PRIVATE ${arg_LINK})
-  set(launcher ${CMAKE_BINARY_DIR}/generated/launchers/${name}.c)
+  set(launcher ${CMAKE_BINARY_DIR}/generated/launchers/${name}.cc)
   file(CONFIGURE OUTPUT ${launcher} CONTENT
-    "int limber_${name}_main(int, char**);\nint main(int argc, char** argv) { return limber_${name}_main(argc, argv); }\n")
+    "extern \"C\" int limber_${name}_main(int, char**);\nint main(int argc, char** argv) { return limber_${name}_main(argc, argv); }\n")
   add_executable(installed-${name} EXCLUDE_FROM_ALL ${launcher})
   target_link_libraries(installed-${name} PRIVATE liblimber)
   set_target_properties(installed-${name} PROPERTIES

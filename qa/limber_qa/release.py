@@ -46,7 +46,7 @@ def build_wheel(out: Path, build: Path | None = None) -> Path:
         plat = f"{POLICY}_{platform.machine()}"
         repair = ["repair", "--plat", plat, "--only-plat", "-w", str(out), str(made)]
         _run(sys.executable, "-m", "auditwheel", *repair)
-    (wheel,) = out.glob("*.whl")
+    (wheel,) = out.glob("limber_arm-*.whl")
     return wheel
 
 

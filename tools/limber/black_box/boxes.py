@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-import lcm
-
 from limber.errors import InputError
+from limber.lcm_package import lcm_package
 from limber.log.event_file import HEADER, SYNC
 
 FORMAT = "limber-black-box/1"
@@ -138,7 +137,7 @@ def write_log(boxes: list[Box], path: Path) -> int:
     """
     seen = set()
     count = 0
-    log = lcm.EventLog(str(path), "w", overwrite=True)
+    log = lcm_package().EventLog(str(path), "w", overwrite=True)
     epoch_us, _ = _opened(boxes[0].path)
     records = [record for box in boxes for record in read(box.path, epoch_us)]
     for record in sorted(records, key=lambda record: record.time_us):

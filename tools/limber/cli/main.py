@@ -81,8 +81,6 @@ def fail(message: str, code: int) -> NoReturn:
 def complaint(error: ImportError) -> str:
     """Of a package that is not there, or cannot be loaded: the command that installs it."""
     name = (error.name or "").partition(".")[0]
-    if name == "lcm":  # its wheel links the system's GLib
-        return f"LCM cannot be loaded ({error}): sudo apt-get install libglib2.0-0"
     if name in EXTRAS:
         return f"this needs the package {error.name}: {command_for_extra(EXTRAS[name])}"
     return f"{error} (LIMBER_DEBUG=1 shows where)"

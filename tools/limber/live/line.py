@@ -1,11 +1,11 @@
 """One LCM plane for one process: heard by limber's own receiver, sent to by LCM's library."""
 
 from collections.abc import Callable
+from typing import Any
 from urllib.parse import urlsplit
 
-import lcm
-
 from limber.errors import RunError
+from limber.lcm_package import lcm_package
 from limber.live.network import CURE
 from limber.live.plane_receiver import PlaneReceiver
 
@@ -17,16 +17,14 @@ Handler = Callable[[str, bytes], None]
 class Line:
     """`url`: udpm://[GROUP[:PORT]]?ttl=0. For one thread, publish() apart, which any may call.
 
-    Hears nothing before the first subscribe(). RunError without a multicast route, or at another
-    address.
+    Hears nothing before the first subscribe(), and loads LCM at the first publish(): who only
+    listens needs none. RunError at another address.
     """
 
     def __init__(self, url: str) -> None:
         self._group, self._port = _place(url)
-        try:
-            self._sender = lcm.LCM(url)  # without a subscription it opens no socket to receive
-        except RuntimeError as error:
-            raise RunError(f"LCM finds no multicast route: {CURE}") from error
+        self._url = url
+        self._sender: Any = None
         self._receiver: PlaneReceiver | None = None
         self._handlers: dict[str, list[Handler]] = {}
 
@@ -61,6 +59,13 @@ class Line:
         return 0 if self._receiver is None else self._receiver.malformed()
 
     def publish(self, channel: str, data: bytes) -> None:
+        """Raises RunError without a multicast route, or without LCM."""
+        if self._sender is None:
+            try:
+                # Without a subscription it opens no socket to receive.
+                self._sender = lcm_package().LCM(self._url)
+            except RuntimeError as error:
+                raise RunError(f"LCM finds no multicast route: {CURE}") from error
         self._sender.publish(channel, data)
 
     def close(self) -> None:

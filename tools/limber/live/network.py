@@ -8,10 +8,10 @@ import sys
 from typing import NoReturn
 
 from limber.errors import InputError, RunError
+from limber.live import private_network
 
 GROUP = "239.255.76.67"  # LCM's; with another port, which disturbs no messages
 CURE = "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"
-_SET_UP = "ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo"
 _INSIDE = "LIMBER_PRIVATE_NETWORK"
 
 
@@ -39,10 +39,10 @@ def is_private() -> bool:
 
 def private_command() -> list[str] | None:
     """Prefix that runs a command in a network of its own; None if that is not permitted here."""
-    if shutil.which("unshare") is None or shutil.which("ip") is None:
+    if shutil.which("unshare") is None:
         return None
     flags = "-n" if os.geteuid() == 0 else "-rn"
-    prefix = ["unshare", flags, "sh", "-c", f'set -e; {_SET_UP}; exec "$@"', "sh"]
+    prefix = ["unshare", flags, sys.executable, "-I", private_network.__file__]
     probe = subprocess.run([*prefix, "true"], capture_output=True, check=False)
     return prefix if probe.returncode == 0 else None
 

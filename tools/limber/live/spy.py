@@ -7,10 +7,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import NoReturn
 
-import lcm
-
 from limber import messages
 from limber.errors import RunError
+from limber.lcm_package import lcm_package
 from limber.live.network import require_multicast
 from limber.paths import MESSAGE_FILES, REPAIR, cache_folder, captured
 
@@ -57,7 +56,7 @@ def types_jar() -> Path:
 
 def lcm_jar() -> Path:
     """LCM's classes, which its Python package carries."""
-    jar = Path(lcm.__file__).parents[1] / "share" / "java" / "lcm.jar"
+    jar = Path(lcm_package().__file__).parents[1] / "share" / "java" / "lcm.jar"
     if not jar.is_file():
         raise RunError(
             f"{jar} is missing: this LCM was built without Java; the package `lcm` of PyPI has it"
