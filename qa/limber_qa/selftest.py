@@ -24,10 +24,11 @@ CTEST = ["ctest", "--test-dir", str(ROOT / "build" / "dev"), "--output-on-failur
 
 
 def parts(name: str | None = None) -> list[str]:
-    """All parts, or the one with this name."""
+    """All parts but those that are run by name alone, or the one with this name."""
     if name is not None and name not in PARTS:
         raise InputError(f"no part '{name}'; there are {', '.join(PARTS)}")
-    return list(PARTS) if name is None else [name]
+    usual = [name for name, part in PARTS.items() if not part.by_name]
+    return usual if name is None else [name]
 
 
 def _private() -> list[str]:
@@ -75,6 +76,7 @@ AT_ONCE = (Lane.REAL_TIME, Lane.LAST)  # their output comes as they run
 class Part:
     command: Callable[[], list[str]]
     lane: Lane
+    by_name: bool = False  # takes minutes of downloads
 
 
 PARTS: dict[str, Part] = {
@@ -126,6 +128,8 @@ PARTS: dict[str, Part] = {
     ),
     "tutorial": Part(lambda: [*PYTEST, "tests/tutorial"], Lane.SIMULATED),
     "browser": Part(lambda: _system("browser"), Lane.LAST),
+    # The wheel in bare Debian 12 and 13; as root
+    "bare": Part(lambda: [*PYTEST, "tests/bare"], Lane.LAST, by_name=True),
 }
 
 

@@ -18,6 +18,11 @@ from limber.live import network
 WANTED_BUFFER_BYTES = 2 << 20
 RECORDER_BUFFER_BYTES = 64 << 20
 WANTED_PRIORITY = 80
+LIMITS = (
+    r"printf '@limber - rtprio 80\n@limber - memlock unlimited\n' | "
+    "sudo tee /etc/security/limits.d/limber.conf; sudo groupadd -f limber; "
+    "sudo usermod -aG limber $USER, and log in again"
+)
 ARPHRD_CAN = "280"  # linux/if_arp.h
 SMALL_DISK_BYTES = 1 << 30
 PROGRAMS = tuple(
@@ -86,19 +91,28 @@ def _driver() -> Path | None:
     return path if path.exists() else None
 
 
+def _permission() -> str:
+    """How SCHED_FIFO and locked memory become permitted. A program with capabilities does not find
+    libraries relative to itself, as those of an installed package are.
+    """
+    if paths.IN_A_CLONE:
+        driver = paths.programs_folder() / "limber-driver"
+        return f"sudo setcap cap_sys_nice,cap_ipc_lock+ep {driver}, or {LIMITS}"
+    return LIMITS
+
+
 def _real_time() -> Iterator[Finding]:
-    setcap = f"sudo setcap cap_sys_nice,cap_ipc_lock+ep {paths.programs_folder()}/limber-driver"
     if _has_capabilities() or _limit(resource.RLIMIT_RTPRIO) >= WANTED_PRIORITY:
         yield Finding("ok", "real time", "SCHED_FIFO may be used")
     else:
         text = "SCHED_FIFO is not permitted: cycles will start late under load"
-        yield Finding("warn", "real time", text, f"{setcap}, or rtprio 80 in limits.d")
+        yield Finding("warn", "real time", text, _permission())
     locked = _limit(resource.RLIMIT_MEMLOCK)
     if _has_capabilities() or locked > 256 << 20:
         yield Finding("ok", "locked memory", "memory may be locked")
     else:
         text = f"only {locked / 1024:.0f} KiB may be locked: a page fault can make a cycle late"
-        yield Finding("warn", "locked memory", text, f"{setcap}, or memlock unlimited in limits.d")
+        yield Finding("warn", "locked memory", text, _permission())
     flavour = Path("/sys/kernel/realtime")
     kernel = (
         "PREEMPT_RT" if flavour.exists() else "not PREEMPT_RT (good enough for a simulated arm)"
