@@ -80,5 +80,13 @@ function(limber_install_files)
   install(DIRECTORY robots scenarios DESTINATION ${LIMBER_SHARE} COMPONENT runtime
     FILES_MATCHING REGEX "/[^/]*\\.(yaml|urdf|md|stl|dae|obj)$" PATTERN loader EXCLUDE)
   install(DIRECTORY lcmtypes DESTINATION ${LIMBER_SHARE} COMPONENT runtime FILES_MATCHING PATTERN *.lcm)
+  if(SKBUILD)  # a wheel carries these libraries: their licences, and where their sources are
+    foreach(library ccd fmt ode orocos-kdl spdlog yaml-cpp zstd)
+      file(GLOB texts /usr/share/doc/lib${library}[0-9]*/copyright)
+      foreach(text IN LISTS texts)
+        install(FILES ${text} DESTINATION ${LIMBER_SHARE}/licences RENAME ${library}.txt COMPONENT runtime)
+      endforeach()
+    endforeach()
+  endif()
   install(FILES ${LIMBER_PYTHON_MESSAGES} DESTINATION lcmtypes COMPONENT python)
 endfunction()

@@ -9,6 +9,7 @@ import pytest
 
 from limber import __version__
 from limber.paths import ROOT
+from limber_qa import release
 
 NAMES = ("driver", "controller", "sim", "lab", "check", "record", "send", "can")
 PROGRAMS = {f"limber-{name}" for name in NAMES}
@@ -21,6 +22,11 @@ def test_one_small_wheel_for_every_python(wheel):
         rf"limber_arm-{re.escape(__version__)}-py3-none-manylinux_2_35_\w+\.whl", wheel.name
     )
     assert wheel.stat().st_size < LARGEST_WHEEL
+
+
+def test_it_is_the_same_each_time(wheel, tmp_path):
+    again = release.build_wheel(tmp_path, ROOT / "build" / "dev")
+    assert filecmp.cmp(wheel, again, shallow=False)
 
 
 def test_it_holds_all_and_nothing_of_the_tree(wheel):
@@ -38,6 +44,11 @@ def test_it_holds_all_and_nothing_of_the_tree(wheel):
             "limber/lib/cmake/limber/limberConfig.cmake",
         ):
             assert needed in names, needed
+        carried = {
+            re.match(r"lib([a-z-]+[a-z])", n.split("/")[1])[1] for n in names if ".libs/lib" in n
+        }
+        licences = {name.split("/")[-1][:-4] for name in names if "/licences/" in name}
+        assert carried == licences and "orocos-kdl" in licences
         assert not [name for name in names if "limber_qa" in name or "limber_lecture" in name]
         tree = str(ROOT).encode()
         assert not [name for name in names if tree in archive.read(name)]
