@@ -17,6 +17,7 @@ from limber import __version__
 from limber.errors import RunError
 from limber.output import write_again
 from limber.paths import ROOT, output_folder
+from limber_qa import site
 
 POLICY = "manylinux_2_35"  # glibc of Ubuntu 22.04 and Debian 12
 
@@ -58,13 +59,24 @@ def build_sources(out: Path) -> Path:
     return archive
 
 
+def build_pages(out: Path) -> Path:
+    """The site, packed."""
+    archive = out / f"limber_arm-{__version__}-pages.tar.gz"
+    with tempfile.TemporaryDirectory() as folder:
+        site.build(Path(folder) / "limber-pages")
+        same = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0"]
+        packed = ["--use-compress-program=gzip -n", "-cf", str(archive)]
+        _run("tar", *same, *packed, "-C", folder, ".")
+    return archive
+
+
 def release(out: Path, console: Console) -> None:
     """Into a folder that must be empty."""
     folder = output_folder(out)
     if any(folder.iterdir()):
         raise RunError(f"{folder} is not empty: a release has a folder of its own")
     console.print("compiling and packing the wheel: some minutes")
-    files = [build_wheel(folder), build_sources(folder)]
+    files = [build_wheel(folder), build_sources(folder), build_pages(folder)]
     sums = [f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}" for file in files]
     write_again(folder / "SHA256SUMS", "".join(f"{line}\n" for line in sorted(sums)))
     for file in [*files, folder / "SHA256SUMS"]:

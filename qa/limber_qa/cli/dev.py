@@ -159,7 +159,17 @@ def bench(
 def release(
     out: Annotated[Path, typer.Option("--out", help="An empty folder.")],
 ) -> None:
-    """Make what is handed out: the wheel, the sources, checksums."""
+    """Make what is handed out: the wheel, the sources, the pages, checksums."""
     from limber_qa import release as module
 
     module.release(out, console)
+
+
+@app.command(epilog="Example: limber dev site --out out/site")
+def site(
+    out: Annotated[Path, typer.Option("--out", help="Folder of the pages.")],
+) -> None:
+    """Write the pages as a site that works without a network."""
+    from limber_qa import site as module
+
+    console.print(f"{module.build(out) / 'index.html'}", soft_wrap=True)
