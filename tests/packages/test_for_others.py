@@ -5,10 +5,10 @@ import subprocess
 import sys
 
 import pytest
+from local_drive import multicast_group
 
 from limber.live import network
 from limber.paths import ROOT
-from local_drive import multicast_group
 
 CLIENT = """
 #include <cstdio>

@@ -10,8 +10,8 @@ import pytest
 import yaml
 from canopen.objectdictionary import datatypes
 from canopen.profiles.p402 import BaseNode402
-
 from local_drive import bus, multicast_group
+
 from stack import ROOT
 
 NODE = 1

@@ -8,10 +8,10 @@ import time
 
 import pytest
 import yaml
+from local_drive import COUNTS, ENABLED, GEAR, LocalDrive, bus, multicast_group
 
 from limber.lcmtypes.controller_status_t import controller_status_t
 from limber.lcmtypes.joint_state_t import joint_state_t
-from local_drive import COUNTS, ENABLED, GEAR, LocalDrive, bus, multicast_group
 from stack import ROOT
 
 PORT = 43113

@@ -7,7 +7,6 @@ import time
 import can
 import pytest
 from damiao_motor import DaMiaoController
-
 from local_drive import multicast_group
 
 SHOULDER, REPLIES = 1, 0x11  # of desktop2r

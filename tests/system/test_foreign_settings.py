@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import can
 import pytest
+from local_drive import multicast_group
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
-from local_drive import multicast_group
 
 JOINT = 1  # its drive has number 2 on each of these arms
 

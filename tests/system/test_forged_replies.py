@@ -5,10 +5,10 @@ import time
 
 import can
 import pytest
+from local_drive import multicast_group
 
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
-from local_drive import multicast_group
 
 JOINT, REPLY_ID = 2, 19  # joint3 of openarm
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import moteus
 import pytest
-
 from local_drive import multicast_group
+
 from stack import ROOT
 
 SHOULDER, ELBOW = 1, 2  # of planar2r
