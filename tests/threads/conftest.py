@@ -18,9 +18,12 @@ def build() -> None:
 
 @pytest.fixture(scope="session")
 def programs(tmp_path_factory) -> Path:
-    """A folder with all of them."""
+    """A folder with all of them, beside the library for Python."""
     build()
-    folder = tmp_path_factory.mktemp("bin")
+    prefix = tmp_path_factory.mktemp("prefix")
+    os.symlink(ROOT / "build" / "dev" / "lib", prefix / "lib")
+    folder = prefix / "bin"
+    folder.mkdir()
     for plain in (ROOT / "build" / "dev" / "bin").iterdir():
         watched = ROOT / "build" / "tsan" / "bin" / plain.name
         os.symlink(watched if plain.name in WATCHED else plain, folder / plain.name)
