@@ -21,6 +21,9 @@ endif()
 find_program(LIMBER_PYTHON python HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)
 find_program(LIMBER_LCM_GEN lcm-gen HINTS ${LIMBER_VENV}/bin NO_DEFAULT_PATH REQUIRED)
 file(GLOB LIMBER_LCM_PREFIX ${LIMBER_VENV}/lib/python3*/site-packages)
+if(NOT LIMBER_LCM_PREFIX)  # lcm-gen was found in there
+  set(LIMBER_LCM_PREFIX ${LIMBER_VENV})
+endif()
 find_path(LIMBER_LCM_INCLUDE lcm/lcm-cpp.hpp HINTS ${LIMBER_LCM_PREFIX}/include NO_DEFAULT_PATH REQUIRED)
 find_library(LIMBER_LCM_LIBRARY liblcm.so.1 NAMES lcm HINTS ${LIMBER_LCM_PREFIX}/lib NO_DEFAULT_PATH REQUIRED)
 # The headers are for what lcm-gen writes; LCM's library is what tests compare limber's own wire format and logs with.
