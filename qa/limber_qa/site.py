@@ -6,15 +6,13 @@ by themselves; files that pages link to lie beside them.
 
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import yaml
 
-from limber.errors import RunError
-from limber.paths import ROOT, output_folder
+from limber.paths import ROOT, completed, output_folder
 
 NAV: dict[str, list[str]] = {
     "Start": [
@@ -67,9 +65,7 @@ def build(out: Path) -> Path:
         text = yaml.safe_dump(config, sort_keys=False).replace("'!slug'", SLUGS)
         (stage / "mkdocs.yml").write_text(text, encoding="utf-8")
         command = [str(Path(sys.executable).with_name("zensical")), "build", "--strict"]
-        done = subprocess.run(command, cwd=stage, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            raise RunError(f"the site has faults:\n{done.stdout}{done.stderr}".rstrip())
+        completed(command, cwd=stage)
         shutil.copytree(stage / "site", folder, dirs_exist_ok=True)
     return folder
 

@@ -109,6 +109,12 @@ std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& 
   return timeline;
 }
 
+/// Relative to the scenario.
+std::vector<std::string> read_laws(const YamlMap& yaml, const std::string& path) {
+  if (!yaml.has("law_file")) return {};
+  return {(std::filesystem::path(path).parent_path() / yaml.text("law_file")).string()};
+}
+
 }  // namespace
 
 std::string scenario_robot(const std::string& path, std::string* note) {
@@ -133,10 +139,7 @@ std::string scenario_robot(const std::string& path, std::string* note) {
 }
 
 std::vector<std::string> scenario_laws(const std::string& path) {
-  if (path.empty()) return {};
-  const YamlMap yaml = YamlMap::from_file(path);
-  if (!yaml.has("law_file")) return {};
-  return {(std::filesystem::path(path).parent_path() / yaml.text("law_file")).string()};
+  return path.empty() ? std::vector<std::string>() : read_laws(YamlMap::from_file(path), path);
 }
 
 Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
@@ -164,8 +167,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   scenario.start_q = read_start(yaml, robot.robot);
   scenario.measure = read_measure(yaml);
   scenario.record = yaml.boolean_or("record", true);
-  yaml.has("law_file");
-  scenario.law_files = scenario_laws(path);
+  scenario.law_files = read_laws(yaml, path);
   yaml.has("timeline");
   yaml.finish();
   scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);

@@ -3,6 +3,7 @@ README's, and a log has the bytes of the tree's.
 """
 
 import filecmp
+import os
 import re
 import shutil
 import subprocess
@@ -15,7 +16,7 @@ from limber.paths import ROOT
 from limber_qa import release
 
 SUITES = {"bookworm": "3.11", "trixie": "3.13"}  # their Python
-MIRROR = "http://deb.debian.org/debian"
+MIRROR = os.environ.get("LIMBER_DEBIAN_MIRROR")  # as for tests/vcan/get-uml; else mmdebstrap's
 PLATFORMS = (
     "manylinux_2_35",
     "manylinux_2_28",
@@ -47,7 +48,14 @@ def test_the_demo_runs(suite, wheel, tmp_path):
     if shutil.which("mmdebstrap") is None:
         pytest.skip("no mmdebstrap: sudo apt-get install mmdebstrap")
     system = tmp_path / suite
-    call("mmdebstrap", "--variant=minbase", "--include=python3-venv", suite, system, MIRROR)
+    call(
+        "mmdebstrap",
+        "--variant=minbase",
+        "--include=python3-venv",
+        suite,
+        system,
+        *filter(None, [MIRROR]),
+    )
     wheels = system / "wheels"
     platforms = [f"--platform={name}_x86_64" for name in PLATFORMS]
     pip = [sys.executable, "-m", "pip", "download", "--quiet", "--only-binary=:all:", *platforms]

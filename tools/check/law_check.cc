@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <numbers>
 
-#include "common/config_error.h"
 #include "controller/laws/registry.h"
 #include "tools/allocations/allocations.h"
 #include "tools/check/random_arm.h"

@@ -3,10 +3,8 @@
 `from limber import Arm` is loaded when it is used, and so are its Pose, State and errors.
 """
 
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import Any
-
-__version__ = metadata.version("limber-arm")  # of pyproject.toml
 
 _FROM = {
     "Arm": "limber.live.arm",
@@ -26,6 +24,10 @@ __all__ = ["__version__", *_FROM]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib import metadata  # takes longer to load than all else here
+
+        return metadata.version("limber-arm")  # of pyproject.toml
     if name not in _FROM:
         raise AttributeError(f"module 'limber' has no attribute {name!r}")
     return getattr(import_module(_FROM[name]), name)

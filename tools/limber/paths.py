@@ -46,6 +46,14 @@ def captured(command: list[str], **more: Any) -> subprocess.CompletedProcess[str
     )
 
 
+def completed(command: list[str], **more: Any) -> str:
+    """What the program printed. Raises RunError with all of it if the program failed."""
+    done = captured(command, **more)
+    if done.returncode != 0:
+        raise RunError(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}".rstrip())
+    return done.stdout
+
+
 def robots_root() -> Path:
     return Path(os.environ.get("LIMBER_ROBOTS") or SHARE / "robots")
 

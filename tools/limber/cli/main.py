@@ -11,7 +11,6 @@ from typing import Annotated, NoReturn
 import typer
 from typer.exceptions import TyperException
 
-from limber import __version__
 from limber.cli import (
     black_box,
     can,
@@ -69,6 +68,8 @@ def _options(
         print(CMAKE)
         raise typer.Exit
     if version:
+        from limber import __version__
+
         console.print(f"limber {__version__}")
         raise typer.Exit
 

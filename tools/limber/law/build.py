@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 from limber.errors import InputError, RunError
-from limber.paths import CMAKE, captured
+from limber.paths import CMAKE, completed
 
 PACKAGES = "cmake g++ libeigen3-dev"
 
@@ -20,16 +20,10 @@ def law_file(path: Path) -> Path:
     if shutil.which("cmake") is None:
         raise RunError(f"a law is compiled with CMake: sudo apt-get install {PACKAGES}")
     build = path / "build"
-    _run(["cmake", "-S", str(path), "-B", str(build), f"-Dlimber_DIR={CMAKE}"])
-    _run(["cmake", "--build", str(build)])
+    completed(["cmake", "-S", str(path), "-B", str(build), f"-Dlimber_DIR={CMAKE}"])
+    completed(["cmake", "--build", str(build)])
     made = sorted(build.glob("*.so"))
     if len(made) != 1:
         found = ", ".join(file.name for file in made) or "none"
         raise InputError(f"{build}: expected one shared library, found {found}")
     return made[0]
-
-
-def _run(command: list[str]) -> None:
-    done = captured(command)
-    if done.returncode != 0:
-        raise RunError(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}".rstrip())
