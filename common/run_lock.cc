@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "common/config_error.h"
@@ -19,13 +20,17 @@ struct Address {
 };
 
 /// Abstract: begins with a zero byte and lies in no file system.
-Address address_of(const std::string& what) {
-  const std::string name = "limber " + what;
+Address address_of(std::string_view what) {
+  constexpr std::string_view kPrefix = "limber ";
   Address address;
-  if (name.size() + 1 > sizeof address.name.sun_path) throw ConfigError(what + ": name too long");
+  const std::size_t length = kPrefix.size() + what.size();
+  if (length + 1 > sizeof address.name.sun_path)
+    throw ConfigError(std::string(what) + ": name too long");
   address.name.sun_family = AF_UNIX;
-  std::memcpy(address.name.sun_path + 1, name.data(), name.size());
-  address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  char* name = address.name.sun_path + 1;
+  std::memcpy(name, kPrefix.data(), kPrefix.size());
+  std::memcpy(name + kPrefix.size(), what.data(), what.size());
+  address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
   return address;
 }
 
@@ -60,6 +65,17 @@ RunLock::RunLock(const std::string& what) : socket_(new_socket()) {
   if (error != EADDRINUSE) throw ConfigError(what + ": " + std::strerror(error));
   throw ConfigError("there is already a " + what + " on this machine" + holder_of(address) +
                     "; stop it first, or give this one addresses of its own");
+}
+
+bool run_lock_free(const char* what) noexcept {
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (descriptor < 0) return false;
+  const Address address = address_of(what);
+  const bool refused =
+      connect(descriptor, reinterpret_cast<const sockaddr*>(&address.name), address.size) != 0 &&
+      errno == ECONNREFUSED;
+  close(descriptor);
+  return refused;
 }
 
 RunLock::RunLock(RunLock&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}

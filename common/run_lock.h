@@ -23,4 +23,7 @@ class RunLock {
   int socket_;
 };
 
+/// Nobody holds it. False, too, if that cannot be found out. May be called at any time.
+bool run_lock_free(const char* what) noexcept;
+
 }  // namespace limber

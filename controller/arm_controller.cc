@@ -168,6 +168,9 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
             [&](const mode_request_t& m) { outcomes_.push_back(outcome_of(m, on_mode(m))); },
             [&](const compliance_goal_t& m) { outcomes_.push_back(outcome_of(m, on_goal(m))); },
             [&](const compliance_gains_t& m) { outcomes_.push_back(outcome_of(m, on_gains(m))); },
+            [&](const target_stream_t& m) {
+              if (const Refusal refusal = on_stream(m)) outcomes_.push_back(outcome_of(m, refusal));
+            },
             [](const auto&) {},  // the simulator's
         },
         *timeline_->due(time_ns));
@@ -225,9 +228,25 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.states_lost = supervisor_.states().lost();
   status_.unexplained_energy_J = energy_watch_.unexplained_J();
   controller::write_status(cycle_.trace(), &status_);
+  write_stream();
   if (!options_.measure_time) return;
   status_.cycle_ns = monotonic_ns() - started_ns;
   status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
+}
+
+void ArmController::write_stream() noexcept {
+  const TargetStream& stream = cycle_.stream();
+  const StreamCounts& counts = stream.counts();
+  status_.stream = stream.state();
+  status_.stream_delay_s = static_cast<float>(stream.delay_s());
+  status_.stream_margin_s = static_cast<float>(stream.margin_s());
+  status_.stream_taken = counts.taken;
+  status_.stream_late = counts.late;
+  status_.stream_stale = counts.stale;
+  status_.stream_refused = counts.refused;
+  status_.stream_starved = counts.starved;
+  status_.overlays_taken = cycle_.overlay().taken();
+  status_.overlays_expired = cycle_.overlay().expired();
 }
 
 Refusal ArmController::counted(Refusal refusal) noexcept {
@@ -239,10 +258,15 @@ Refusal ArmController::on_mode(const mode_request_t& request) noexcept {
   return counted(supervisor_.on_mode(request));
 }
 
-Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
-  if (const Refusal refusal = supervisor_.check_client(goal.client)) return counted(refusal);
+Refusal ArmController::check_active(std::int64_t client) const noexcept {
+  if (const Refusal refusal = supervisor_.check_client(client)) return refusal;
   if (supervisor_.mode() != Mode::kActive)
-    return counted({request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"});
+    return {request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"};
+  return {};
+}
+
+Refusal ArmController::on_goal(const compliance_goal_t& goal) noexcept {
+  if (const Refusal refusal = check_active(goal.client)) return counted(refusal);
   const Refusal refusal = cycle_.set_goal(goal, activity_of(supervisor_));
   if (refusal) return counted(refusal);
   supervisor_.take_lease(goal.client);
@@ -256,6 +280,29 @@ Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
   if (refusal) return counted(refusal);
   supervisor_.take_lease(gains.client);
   return refusal;  // perhaps with a warning
+}
+
+Refusal ArmController::on_stream(const target_stream_t& stream) noexcept {
+  const std::int64_t now_ns = cycle_.time_ns();
+  Refusal refusal = check_active(stream.client);
+  if (!refusal) refusal = cycle_.set_stream(stream, activity_of(supervisor_));
+  if (refusal) {
+    cycle_.stream().count_refused();
+    return counted(refusal);
+  }
+  supervisor_.take_lease(stream.client);
+  if (TargetStream::stale(stream, now_ns)) return refusal;
+  const double left_s = 1e-9 * static_cast<double>(TargetStream::end_ns(stream, now_ns) - now_ns);
+  const double valid_s = stream.valid_for_s;
+  supervisor_.take_goal(valid_s > 0.0 ? valid_s + std::max(left_s, 0.0) : 0.0);
+  return refusal;  // perhaps with a warning
+}
+
+Refusal ArmController::on_overlay(const torque_overlay_t& overlay) noexcept {
+  if (const Refusal refusal = check_active(overlay.client)) return counted(refusal);
+  if (const Refusal refusal = cycle_.set_overlay(overlay)) return counted(refusal);
+  supervisor_.take_lease(overlay.client);
+  return {};
 }
 
 void ArmController::on_silence() noexcept {

@@ -10,6 +10,8 @@
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <limber/robot_info_t.hpp>
+#include <limber/target_stream_t.hpp>
+#include <limber/torque_overlay_t.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,6 +67,10 @@ class ArmController {
   Refusal on_mode(const mode_request_t& request) noexcept;
   Refusal on_goal(const compliance_goal_t& goal) noexcept;
   Refusal on_gains(const compliance_gains_t& gains) noexcept;
+  Refusal on_stream(const target_stream_t& stream) noexcept;
+  Refusal on_overlay(const torque_overlay_t& overlay) noexcept;
+  /// A message of a stream came again, or after a newer one.
+  void count_stale_stream() noexcept { cycle_.stream().count_stale(); }
 
   /// A request was refused before it came here.
   void count_refusal() noexcept { ++status_.requests_refused; }
@@ -72,6 +78,11 @@ class ArmController {
   void count_undecodable(std::int64_t count) noexcept {
     status_.messages_undecodable = count + supervisor_.states().doubted();
   }
+
+  /// Who holds the lease; 0: nobody.
+  std::int64_t lease() const noexcept { return supervisor_.lease(); }
+  /// Its holder is gone.
+  void free_lease() noexcept { supervisor_.take_lease(0); }
 
   /// Realtime only: no new JOINT_STATE for this long. The supervisor enters FAULT; the next answer
   /// carries it.
@@ -88,6 +99,8 @@ class ArmController {
   void write_answer(const joint_state_t& state) noexcept;
   void write_gravity() noexcept;
   void write_status(std::int64_t started_ns) noexcept;
+  void write_stream() noexcept;
+  Refusal check_active(std::int64_t client) const noexcept;
   Refusal counted(Refusal refusal) noexcept;
 
   ArmControllerOptions options_;

@@ -13,6 +13,7 @@ CycleParts::CycleParts(const LoadedRobot& robot, const std::string& law, bool si
       gains(robot.robot, arm.springs(), law_catalog().parameters),
       observers(robot),
       output(robot.robot),
+      overlay(robot.robot),
       posture(TaskRows(gains.target().K_x), output.torque_limit()),
       gravity(VectorJ::Zero(robot.robot.size())),
       trace{.point = arm.point(),

@@ -13,6 +13,7 @@
 #include "controller/laws/law_bank.h"
 #include "controller/observers/observers.h"
 #include "controller/output/passivity_guard.h"
+#include "controller/output/torque_overlay.h"
 #include "controller/output/torque_output.h"
 
 namespace limber::controller {
@@ -43,6 +44,7 @@ struct CycleParts {
   Observers observers;
   PassivityGuard guard;
   TorqueOutput output;
+  TorqueOverlay overlay;
   Posture posture;
   VectorJ gravity;  ///< n, N m, within the joints' limits; the last finite one
   CycleTrace trace;

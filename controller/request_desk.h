@@ -11,7 +11,7 @@ namespace limber {
 
 class RequestDesk {
  public:
-  /// Subscribes to MODE_REQUEST, COMPLIANCE_GOAL and COMPLIANCE_GAINS: they are taken while `user`
+  /// Subscribes to all requests of channels.yaml to the controller: they are taken while `user`
   /// handles what waits. Both outlive this, at its place. Throws ConfigError.
   RequestDesk(ArmController* controller, LcmPort* user);
   RequestDesk(const RequestDesk&) = delete;
@@ -27,10 +27,14 @@ class RequestDesk {
   template <typename Request>
   Refusal judge(const Request& request) noexcept;
 
+  /// A refusal, of which few a second are answered.
+  bool worth_an_answer(const RequestOutcome& outcome) noexcept;
+
   ArmController* controller_;
   LcmPort* user_;
   RequestGuard guard_;
   std::int64_t logged_ns_ = 0;
+  std::int64_t refused_ns_ = 0;
 };
 
 }  // namespace limber

@@ -4,6 +4,8 @@
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
 #include <limber/mode_request_t.hpp>
+#include <limber/target_stream_t.hpp>
+#include <limber/torque_overlay_t.hpp>
 
 #include "controller/kinds/refusal.h"
 
@@ -23,6 +25,12 @@ inline RequestOutcome outcome_of(const mode_request_t& mode, Refusal refusal) no
 }
 inline RequestOutcome outcome_of(const compliance_goal_t& goal, Refusal refusal) noexcept {
   return {request_answer_t::KIND_GOAL, goal.kind, goal.client, goal.seq, refusal};
+}
+inline RequestOutcome outcome_of(const target_stream_t& stream, Refusal refusal) noexcept {
+  return {request_answer_t::KIND_STREAM, stream.kind, stream.client, stream.seq, refusal};
+}
+inline RequestOutcome outcome_of(const torque_overlay_t& overlay, Refusal refusal) noexcept {
+  return {request_answer_t::KIND_OVERLAY, 0, overlay.client, overlay.seq, refusal};
 }
 inline RequestOutcome outcome_of(const compliance_gains_t& gains, Refusal refusal) noexcept {
   return {request_answer_t::KIND_GAINS, 0, gains.client, gains.seq, refusal};

@@ -48,7 +48,7 @@ bool TorqueCycle::step(Activity activity, double dt_s) noexcept {
 
   const LawEntry& law = p.laws.running();
   const double period_s = p.state.period_s;
-  const Goal& goal = p.goals.advance(dt_s, period_s, law.goal_type, p.rows());
+  const Goal& goal = p.goals.advance(dt_s, p.state.time_ns, period_s, law.goal_type, p.rows());
   p.gains.advance(dt_s);
   p.gains.update(goal, law, p.laws.holding(), p.arm, period_s);
   evaluate_static_point();
@@ -79,6 +79,8 @@ void TorqueCycle::add_model_torque() noexcept {
       settings.friction_compensation == FrictionCompensation::kNone
           ? none
           : p.observers.friction(p.goals.goal(), law.goal_type, p.arm.point().v, p.arm.terms());
+  if (switch_.activity() == Activity::kLaw)
+    p.trace.law.tau_feedforward += p.overlay.torque(p.state.time_ns);
 }
 
 bool TorqueCycle::send(double dt_s) noexcept {
@@ -91,6 +93,7 @@ bool TorqueCycle::send(double dt_s) noexcept {
                       trace.tau_friction;
   const bool finite = p.output.shape(tau, p.laws.instance().preload(), p.state, p.arm.terms(),
                                      p.arm.deflection(), dt_s, &trace.limits);
+  if (p.goals.stream().bounded()) trace.limits |= controller_status_t::LIMIT_STREAM;
   if (p.gains.moving()) trace.limits |= controller_status_t::LIMIT_RAMP;
   if (p.gains.reduced()) trace.limits |= controller_status_t::LIMIT_STIFFNESS;
   if (!p.arm.solved()) trace.limits |= controller_status_t::LIMIT_STATIC_UNSOLVED;
@@ -127,6 +130,16 @@ Refusal TorqueCycle::set_goal(const compliance_goal_t& message, Activity activit
   switch_.enter(activity);
   const GoalTracker::Set set = parts_.goals.set(message, parts_.laws.running().goal_type);
   if (set.switched) parts_.output.blend_next();
+  return set.refusal;
+}
+
+Refusal TorqueCycle::set_stream(const target_stream_t& message, Activity activity) noexcept {
+  switch_.enter(activity);
+  const GoalTracker::Set set =
+      parts_.goals.set_stream(message, parts_.laws.running().goal_type, parts_.state.time_ns);
+  if (set.switched) parts_.output.blend_next();
+  if (!set.refusal && message.stiffness_scale != 0.0F)
+    parts_.gains.scale_stiffness(static_cast<double>(message.stiffness_scale));
   return set.refusal;
 }
 

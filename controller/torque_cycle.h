@@ -15,6 +15,8 @@
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
 #include <limber/joint_state_t.hpp>
+#include <limber/target_stream_t.hpp>
+#include <limber/torque_overlay_t.hpp>
 
 #include "controller/cycle_parts.h"
 #include "controller/gains_request.h"
@@ -38,6 +40,15 @@ class TorqueCycle {
   /// Nothing: accepted, perhaps with a warning; else why not; then nothing has changed.
   Refusal set_goal(const compliance_goal_t& message, Activity activity) noexcept;
   Refusal set_gains(const compliance_gains_t& message, Activity activity) noexcept;
+
+  Refusal set_stream(const target_stream_t& message, Activity activity) noexcept;
+  Refusal set_overlay(const torque_overlay_t& message) noexcept {
+    return parts_.overlay.set(message, parts_.state.time_ns);
+  }
+  /// Of the last state, arm time.
+  std::int64_t time_ns() const noexcept { return parts_.state.time_ns; }
+  const TorqueOverlay& overlay() const noexcept { return parts_.overlay; }
+  TargetStream& stream() noexcept { return parts_.goals.stream(); }
 
   /// One cycle of a law, `dt_s` after the last. Where an activity or a law begins, its first torque
   /// is the one present, and fades over. False if the result is not finite: the last torque stays.

@@ -1,11 +1,10 @@
-"""Feed the arm from a policy: 50 goals a second, each from what the arm measures."""
+"""Feed the arm from a policy: 30 targets a second, each from what the arm measures."""
 
 import numpy as np
 
 from limber import Arm
 
-RATE_HZ = 50
-SILENCE_S = 0.5  # the arm is held if this program sends nothing for so long
+RATE_HZ = 30
 CENTRE_STEP_M = np.array([-0.04, 0.0, 0.0])
 
 
@@ -19,6 +18,7 @@ with Arm() as arm:
     arm.activate()
     arm.gains(law="cartesian_impedance", K_x_translation_N_per_m=800)
     start = arm.goal
+    stream = arm.stream(RATE_HZ)
     first = arm.state
     worst_mm = 0.0
     for state in arm.states(hz=RATE_HZ):
@@ -26,9 +26,8 @@ with Arm() as arm:
         if t > 2 * np.pi:
             break
         observation = {"q": state.q, "v": state.v, "start": start.p, "time_s": t}
-        goal = policy(observation)
-        arm.track(position_m=goal, quaternion_wxyz=start.quat, valid_for_s=SILENCE_S)
+        stream.send(position_m=policy(observation), quaternion_wxyz=start.quat)
         worst_mm = max(worst_mm, 1e3 * float(np.linalg.norm(state.error[:3])))
     print(f"a circle in {t:.1f} s; the arm was at most {worst_mm:.1f} mm from its goal")
-    arm.track(position_m=goal, quaternion_wxyz=start.quat)  # this one lasts
+    print(f"of its targets {arm.state.stream}")
     arm.wait(at_rest=True)

@@ -58,6 +58,7 @@ bool GainScheduler::start(const Gains& requested, double ramp_s) noexcept {
                         requested.parameters.jumps_from(now.parameters);
   ramp_.start(requested, ramp_s);
   changed_ = true;
+  scale_end_ = 1.0;
   return switched;
 }
 
@@ -65,6 +66,10 @@ const Gains& GainScheduler::update(const Goal& goal, const LawEntry& law, bool h
                                    const ArmView& arm, double period_s) noexcept {
   take_ramped();
   if (holding) effective_.settings = default_settings();
+  if (!holding) {
+    effective_.K_x *= scale_;
+    effective_.K_q *= scale_;
+  }
   turn_to_base(goal.X_BD.Q.toRotationMatrix(), &effective_);
   reduce_to_springs(law, holding, arm);
   if (effective_.settings.tank_J > 0.0) draw_from_tank(goal, arm, period_s);

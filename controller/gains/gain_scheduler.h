@@ -1,6 +1,8 @@
 // The gains of each cycle, from those that were requested.
 #pragma once
 
+#include <algorithm>
+
 #include "controller/elastic/arm_view.h"
 #include "controller/gains/energy_tank.h"
 #include "controller/gains/gain_ramp.h"
@@ -20,9 +22,13 @@ class GainScheduler {
   /// The gains the arm is on the way to; their settings are already chosen.
   const Gains& target() const noexcept { return ramp_.now(); }
   const LawSettings& settings() const noexcept { return ramp_.now().settings; }
-  bool moving() const noexcept { return ramp_.moving(); }
+  bool moving() const noexcept { return ramp_.moving() || scale_ != scale_end_; }
   /// Takes checked gains. True if something changes at once, so that the torque has to be blended.
   bool start(const Gains& requested, double ramp_s) noexcept;
+
+  /// Multiplies the stiffness of laws, not that of HOLD, 0..1: at most 2 a second away from what it
+  /// is, until another or start().
+  void scale_stiffness(double scale) noexcept { scale_end_ = scale; }
 
   /// The position at which this law receives the arm, `holding` by the default settings.
   PositionFeedback position(const LawEntry& law, bool holding, const ArmView& arm) const noexcept;
@@ -35,6 +41,8 @@ class GainScheduler {
   void advance(double dt_s) noexcept {
     changed_ = changed_ || ramp_.moving();
     ramp_.advance(dt_s);
+    const double most = kScaleRate_per_s * dt_s;
+    scale_ += std::clamp(scale_end_ - scale_, -most, most);
   }
   /// Makes the effective gains for this goal and law, `holding` with the default settings.
   const Gains& update(const Goal& goal, const LawEntry& law, bool holding, const ArmView& arm,
@@ -53,6 +61,8 @@ class GainScheduler {
                             const ArmView& arm) noexcept;
 
  private:
+  static constexpr double kScaleRate_per_s = 2.0;
+
   void take_ramped() noexcept;
   void reduce_to_springs(const LawEntry& law, bool holding, const ArmView& arm) noexcept;
   void draw_from_tank(const Goal& goal, const ArmView& arm, double period_s) noexcept;
@@ -64,6 +74,8 @@ class GainScheduler {
   EnergyTank tank_;
   double last_dissipated_W_ = 0.0;
   bool reduced_ = false;
+  double scale_ = 1.0;
+  double scale_end_ = 1.0;
 };
 
 }  // namespace limber::controller

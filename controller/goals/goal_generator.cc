@@ -26,6 +26,7 @@ GoalGenerator::GoalGenerator(const Robot& robot)
       smooth_(joints_.x),
       posture_(VectorJ::Zero(robot.size())),
       wrench_(Vector6::Zero()),
+      stream_(robot),
       goal_(robot.size()) {}
 
 void GoalGenerator::reset(const Pose& X_BT, const VectorJ& q) noexcept {
@@ -34,11 +35,13 @@ void GoalGenerator::reset(const Pose& X_BT, const VectorJ& q) noexcept {
   smooth_ = SmoothMotion<VectorJ>(q);
   posture_.reset(q);
   wrench_.reset(Vector6::Zero());
+  stream_.end();
   copy();
 }
 
 Refusal GoalGenerator::set(const compliance_goal_t& message, GoalType type) noexcept {
   if (const Refusal refusal = check(message, type)) return refusal;
+  stream_.end();
   const bool limited = message.duration_s > 0.0;
   const double T = std::max(message.duration_s, GoalLimits::kShortestMotion_s);
   switch (message.kind) {
@@ -52,6 +55,20 @@ Refusal GoalGenerator::set(const compliance_goal_t& message, GoalType type) noex
       start_tip(message, T, limited);
   }
   return {};
+}
+
+Refusal GoalGenerator::set_stream(const target_stream_t& message, const Pose* poses, bool at_tip,
+                                  std::int64_t now_ns) noexcept {
+  const QuinticMotion<VectorJ>& joints = at_tip ? posture_ : joints_;
+  const Refusal refusal =
+      stream_.take(message, poses, {pose_.X_BD, pose_.V_BD, pose_.A_BD},
+                   {joints.x, joints.v, joints.a}, now_ns);
+  if (refusal) return refusal;
+  at_tip_ = at_tip;
+  smooth_.end();
+  const Vector6 F = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(message.F_ff).cast<double>();
+  if (F != wrench_.end()) wrench_.start(F, GoalLimits::kShortestMotion_s);
+  return refusal;
 }
 
 // A motion under way goes on along the quintic, which takes it as it is.
@@ -104,17 +121,20 @@ Pose GoalGenerator::end_of(const compliance_goal_t& message) const noexcept {
 }
 
 void GoalGenerator::follow_tip(const Pose& X_BD) noexcept {
+  stream_.end();
   pose_.reset(X_BD);
   copy();
 }
 
 void GoalGenerator::follow_joints(const VectorJ& q_d) noexcept {
+  stream_.end();
   joints_.reset(q_d);
   smooth_ = SmoothMotion<VectorJ>(q_d);
   copy();
 }
 
 void GoalGenerator::stop(double duration_s) noexcept {
+  stream_.end();
   pose_.stop(duration_s);
   smooth_.end();
   joints_.stop(duration_s);
@@ -122,18 +142,25 @@ void GoalGenerator::stop(double duration_s) noexcept {
   wrench_.stop(duration_s);
 }
 
-void GoalGenerator::advance(double dt_s) noexcept {
+void GoalGenerator::advance(double dt_s, std::int64_t now_ns) noexcept {
   pose_.advance(dt_s);
   joints_.advance(dt_s);
   if (smooth_.moving()) {
     smooth_.advance(dt_s);
-    joints_.reset(smooth_.x);
-    joints_.v = smooth_.v;
-    joints_.a = smooth_.a;
+    joints_.follow(smooth_.x, smooth_.v, smooth_.a);
   }
   posture_.advance(dt_s);
   wrench_.advance(dt_s);
+  stream_.advance(now_ns, dt_s);
+  follow_stream();
   copy();
+}
+
+void GoalGenerator::follow_stream() noexcept {
+  if (stream_.leads_tip()) pose_.follow(stream_.tip().x, stream_.tip().v, stream_.tip().a);
+  if (!stream_.leads_joints()) return;
+  QuinticMotion<VectorJ>& led = at_tip_ ? posture_ : joints_;
+  led.follow(stream_.joints().x, stream_.joints().v, stream_.joints().a);
 }
 
 void GoalGenerator::copy() noexcept {

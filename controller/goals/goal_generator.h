@@ -5,6 +5,7 @@
 
 #include "controller/goals/goal_limits.h"
 #include "controller/goals/interpolation.h"
+#include "controller/goals/stream/target_stream.h"
 #include "controller/kinds/goal.h"
 #include "controller/kinds/smooth_motion.h"
 
@@ -25,11 +26,18 @@ class GoalGenerator {
 
   /// Nothing if a law of this kind may follow the goal, else why not.
   Refusal check(const compliance_goal_t& message, GoalType type) const noexcept {
-    return limits_.check(message, type, pose_.end(), pose_.moving());
+    return limits_.check(message, type, pose_.end(), pose_.moving() || stream_.leads_tip());
   }
   /// Nothing: accepted, else why not. GOAL_OFFSET counts from the end of the motion under way; a
   /// feed-forward wrench stays until the next goal, which replaces it.
   Refusal set(const compliance_goal_t& message, GoalType type) noexcept;
+
+  /// A checked message of a target stream, which leads the goal from now on, until another goal or
+  /// stop(); as TargetStream::take().
+  Refusal set_stream(const target_stream_t& message, const Pose* poses, bool at_tip,
+                     std::int64_t now_ns) noexcept;
+  TargetStream& stream() noexcept { return stream_; }
+  const TargetStream& stream() const noexcept { return stream_; }
 
   /// Where a goal at the tip leads; of a circle and of a wrench alone: where the present one does.
   Pose end_of(const compliance_goal_t& message) const noexcept;
@@ -43,7 +51,8 @@ class GoalGenerator {
 
   /// Brings the goal to rest in `duration_s`, wherever it then is.
   void stop(double duration_s) noexcept;
-  void advance(double dt_s) noexcept;
+  /// `now_ns`: arm time of this cycle, `dt_s` after the last.
+  void advance(double dt_s, std::int64_t now_ns) noexcept;
 
   const Goal& goal() const noexcept { return goal_; }
 
@@ -51,6 +60,7 @@ class GoalGenerator {
   void start_joints(const compliance_goal_t& message, bool smooth, double T, bool limited) noexcept;
   void start_circle(const compliance_goal_t& message) noexcept;
   void start_tip(const compliance_goal_t& message, double T, bool limited) noexcept;
+  void follow_stream() noexcept;
   void copy() noexcept;
 
   GoalLimits limits_;
@@ -59,6 +69,7 @@ class GoalGenerator {
   SmoothMotion<VectorJ> smooth_;  // leads joints_ while it moves
   QuinticMotion<VectorJ> posture_;
   QuinticMotion<Vector6> wrench_;
+  TargetStream stream_;  // leads the others while it is active
   bool at_tip_ = true;
   Goal goal_;
 };

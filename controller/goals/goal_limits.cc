@@ -17,23 +17,19 @@ bool finite(const double* values, int count) noexcept {
 
 Vector6 six_of(const double (&values)[6]) noexcept { return Eigen::Map<const Vector6>(values); }
 
-constexpr Refusal too_much(const char* reason) noexcept {
-  return {request_answer_t::REFUSED_GOAL_LIMIT, reason};
-}
-
 Refusal within_reach(const Eigen::Vector3d& p) noexcept {
   if (!(p.norm() <= GoalLimits::kFarthest_m))
-    return too_much("the goal is more than 10 m from the base");
+    return beyond_goal_limit("the goal is more than 10 m from the base");
   return {};
 }
 
 Refusal check_pose(const compliance_goal_t& message) noexcept {
   if (!finite(message.p_BD, 3) || !finite(message.quat_BD, 4)) {
-    return {request_answer_t::REFUSED_MALFORMED, "the pose is not finite"};
+    return malformed("the pose is not finite");
   }
   const double norm = Eigen::Map<const Eigen::Vector4d>(message.quat_BD).norm();
   if (!(std::abs(norm - 1.0) <= 0.01)) {
-    return {request_answer_t::REFUSED_MALFORMED, "quat_BD is not a unit quaternion"};
+    return malformed("quat_BD is not a unit quaternion");
   }
   return {};
 }
@@ -53,23 +49,12 @@ GoalLimits::GoalLimits(const Robot& robot)
 Refusal GoalLimits::check(const compliance_goal_t& message, GoalType type, const Pose& end,
                           bool moving) const noexcept {
   if (message.num_joints != position_min_.size())
-    return {request_answer_t::REFUSED_MALFORMED, "num_joints is not this arm's"};
+    return malformed("num_joints is not this arm's");
   if (!(message.duration_s >= 0.0 && message.duration_s <= kLongestMotion_s)) {
-    return too_much("duration_s must be within 0..600 s");
+    return beyond_goal_limit("duration_s must be within 0..600 s");
   }
-  const double valid_s = message.valid_for_s;
-  if (valid_s != 0.0 && !(valid_s >= kShortestValidity_s && valid_s <= kLongestMotion_s))
-    return too_much("valid_for_s must be 0, or within 0.01..600 s");
-  if (type == GoalType::kNone)
-    return {request_answer_t::REFUSED_GOAL_KIND, "the law follows no goal"};
-  const Vector6 F = six_of(message.F_ff);
-  if (!(F.head<3>().norm() <= kMaxForce_N && F.tail<3>().norm() <= kMaxMoment_Nm)) {
-    return too_much("F_ff must be within 200 N and 50 N m");
-  }
-  const bool no_wrench = type == GoalType::kJoints || type == GoalType::kSmoothJoints;
-  if (no_wrench && !F.isZero(0.0)) {
-    return {request_answer_t::REFUSED_GOAL_KIND, "the law exerts no feed-forward wrench"};
-  }
+  if (const Refusal refusal = check_common(message.valid_for_s, six_of(message.F_ff), type))
+    return refusal;
   if (message.kind == compliance_goal_t::GOAL_JOINT) {
     if (type == GoalType::kPose)
       return {request_answer_t::REFUSED_GOAL_KIND, "the law follows pose goals, not joint goals"};
@@ -81,6 +66,21 @@ Refusal GoalLimits::check(const compliance_goal_t& message, GoalType type, const
   return check_tip(message, end, moving);
 }
 
+Refusal GoalLimits::check_common(double valid_s, const Vector6& F, GoalType type) noexcept {
+  if (valid_s != 0.0 && !(valid_s >= kShortestValidity_s && valid_s <= kLongestMotion_s))
+    return beyond_goal_limit("valid_for_s must be 0, or within 0.01..600 s");
+  if (type == GoalType::kNone)
+    return {request_answer_t::REFUSED_GOAL_KIND, "the law follows no goal"};
+  if (!(F.head<3>().norm() <= kMaxForce_N && F.tail<3>().norm() <= kMaxMoment_Nm)) {
+    return beyond_goal_limit("F_ff must be within 200 N and 50 N m");
+  }
+  const bool no_wrench = type == GoalType::kJoints || type == GoalType::kSmoothJoints;
+  if (no_wrench && !F.isZero(0.0)) {
+    return {request_answer_t::REFUSED_GOAL_KIND, "the law exerts no feed-forward wrench"};
+  }
+  return {};
+}
+
 Refusal GoalLimits::check_tip(const compliance_goal_t& message, const Pose& end,
                               bool moving) const noexcept {
   const Vector6 offset = six_of(message.offset);
@@ -90,32 +90,31 @@ Refusal GoalLimits::check_tip(const compliance_goal_t& message, const Pose& end,
       return within_reach(Eigen::Map<const Eigen::Vector3d>(message.p_BD));
     case compliance_goal_t::GOAL_OFFSET:
       if (!(offset.tail<3>().norm() <= EIGEN_PI))
-        return too_much("the offset turns by more than pi");
+        return beyond_goal_limit("the offset turns by more than pi");
       return within_reach(end.p + offset.head<3>());
     case compliance_goal_t::GOAL_CIRCLE: {
       if (moving)
         return {request_answer_t::REFUSED_GOAL_MOVING, "a circle starts from a goal at rest"};
       if (!(message.duration_s >= kShortestPeriod_s))
-        return too_much("the period must be at least 0.2 s");
+        return beyond_goal_limit("the period must be at least 0.2 s");
       const double radius = offset.head<3>().norm();
       if (!(radius > 0.0 && offset.tail<3>().norm() > 1e-6))
-        return {request_answer_t::REFUSED_MALFORMED, "the circle has no centre or axis"};
+        return malformed("the circle has no centre or axis");
       if (!(2.0 * EIGEN_PI * radius <= kFastestSpeed_m_per_s * message.duration_s))
-        return too_much("the circle is faster than 1 m/s");
+        return beyond_goal_limit("the circle is faster than 1 m/s");
       return {};
     }
     case compliance_goal_t::GOAL_WRENCH:
       return {};
     default:
-      return {request_answer_t::REFUSED_MALFORMED,
-              "kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH, GOAL_CIRCLE"};
+      return malformed("kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH, GOAL_CIRCLE");
   }
 }
 
 Refusal GoalLimits::check_joints(const double* q) const noexcept {
   for (Eigen::Index i = 0; i < position_min_.size(); ++i) {
     if (!(std::isfinite(q[i]) && q[i] >= position_min_[i] && q[i] <= position_max_[i])) {
-      return too_much("q is outside the joint limits");
+      return beyond_goal_limit("q is outside the joint limits");
     }
   }
   return {};

@@ -37,6 +37,9 @@ class GoalLimits {
   Refusal check(const compliance_goal_t& message, GoalType type, const Pose& end,
                 bool moving) const noexcept;
 
+  /// What goals and streams share: valid_for_s, and the feed-forward wrench, N and N m.
+  static Refusal check_common(double valid_for_s, const Vector6& F, GoalType type) noexcept;
+
   /// Least time between two poses, or two joint positions, s; `limited`: with a duration given.
   double pose_time(const Pose& from, const Pose& to, bool limited) const noexcept;
   double joint_time(const VectorJ& from, const VectorJ& to, bool limited) const noexcept;

@@ -1,5 +1,7 @@
 #include "controller/goals/goal_tracker.h"
 
+#include <array>
+
 #include "robots/loader/load_robot.h"
 
 namespace limber::controller {
@@ -12,9 +14,9 @@ GoalTracker::GoalTracker(const LoadedRobot& robot, ArmModel* model, bool simulat
       simulated_(simulated),
       goal_(robot.robot.size()) {}
 
-const Goal& GoalTracker::advance(double dt_s, double period_s, GoalType type,
+const Goal& GoalTracker::advance(double dt_s, std::int64_t now_ns, double period_s, GoalType type,
                                  const TaskRows& rows) noexcept {
-  generator_.advance(dt_s);
+  generator_.advance(dt_s, now_ns);
   match(period_s, type, rows);
   return goal_;
 }
@@ -58,17 +60,57 @@ GoalTracker::Set GoalTracker::set(const compliance_goal_t& message, GoalType typ
   const bool wrench_alone = message.kind == compliance_goal_t::GOAL_WRENCH;
   const bool to_tip =
       wrench_alone ? generator_.at_tip() : message.kind != compliance_goal_t::GOAL_JOINT;
-  const bool switched = follows_joints(type) && to_tip != generator_.at_tip();
-  if (switched && to_tip) {
-    // The other kind of goal starts from where this one is.
-    generator_.follow_tip(goal_.X_BD);
-    inverse_kinematics_.reset(goal_.q_d);
-  } else if (switched) {
-    generator_.follow_joints(goal_.q_d);
-  }
+  const bool switched = change_kind(to_tip, type);
   Refusal taken = generator_.set(message, type);
   taken.warning = far.reason;
   return {taken, switched};
+}
+
+// The other kind of goal starts from where this one is.
+bool GoalTracker::change_kind(bool to_tip, GoalType type) noexcept {
+  if (!follows_joints(type) || to_tip == generator_.at_tip()) return false;
+  if (to_tip) {
+    generator_.follow_tip(goal_.X_BD);
+    inverse_kinematics_.reset(goal_.q_d);
+  } else {
+    generator_.follow_joints(goal_.q_d);
+  }
+  return true;
+}
+
+GoalTracker::Set GoalTracker::set_stream(const target_stream_t& message, GoalType type,
+                                         std::int64_t now_ns) noexcept {
+  if (const Refusal refusal = generator_.stream().check(message, type, now_ns)) return {refusal};
+  if (TargetStream::stale(message, now_ns)) {
+    generator_.stream().count_stale();
+    return {};
+  }
+  const Refusal far = check_reach(message);
+  if (far && !simulated_) return {far};
+  const bool of_joints = message.kind == target_stream_t::KIND_JOINTS;
+  const bool to_tip = !of_joints || !follows_joints(type);
+  std::array<Pose, 16> poses;
+  if (of_joints && to_tip) {
+    for (int i = 0; i < message.num_knots; ++i) {
+      poses[static_cast<std::size_t>(i)] =
+          model_->tip(generator_.stream().joints_of(message, i)).X_BT;
+    }
+  }
+  const bool switched = change_kind(to_tip, type);
+  Refusal taken = generator_.set_stream(message, of_joints && to_tip ? poses.data() : nullptr,
+                                        to_tip, now_ns);
+  taken.warning = far.reason;
+  return {taken, switched};
+}
+
+Refusal GoalTracker::check_reach(const target_stream_t& message) noexcept {
+  if (message.kind != target_stream_t::KIND_POSE) return {};
+  for (int i = 0; i < message.num_knots; ++i) {
+    const float* p = message.value[i];
+    if (const Refusal far = reach_.check(Eigen::Vector3f(p[0], p[1], p[2]).cast<double>()))
+      return far;
+  }
+  return {};
 }
 
 Refusal GoalTracker::check_reach(const compliance_goal_t& message) noexcept {

@@ -18,7 +18,9 @@ class GoalTracker {
 
   /// The goal of this cycle: tip and joints matched.
   const Goal& goal() const noexcept { return goal_; }
-  const Goal& advance(double dt_s, double period_s, GoalType type, const TaskRows& rows) noexcept;
+  /// `now_ns`: arm time, `dt_s` after that of the last cycle.
+  const Goal& advance(double dt_s, std::int64_t now_ns, double period_s, GoalType type,
+                      const TaskRows& rows) noexcept;
   /// The goal where it is, matched for a law that follows another type.
   void match(double period_s, GoalType type, const TaskRows& rows) noexcept;
 
@@ -34,9 +36,15 @@ class GoalTracker {
     bool switched = false;  ///< from the tip to the joints or back: the torque has to be blended
   };
   Set set(const compliance_goal_t& message, GoalType type) noexcept;
+  /// A law for the tip follows joints with the tip's pose there, and takes them as its posture.
+  Set set_stream(const target_stream_t& message, GoalType type, std::int64_t now_ns) noexcept;
+  TargetStream& stream() noexcept { return generator_.stream(); }
 
  private:
   Refusal check_reach(const compliance_goal_t& message) noexcept;
+  Refusal check_reach(const target_stream_t& message) noexcept;
+  /// True if a law for the joints followed the other kind of goal before.
+  bool change_kind(bool to_tip, GoalType type) noexcept;
 
   ArmModel* model_;
   GoalGenerator generator_;

@@ -73,6 +73,15 @@ void PoseMotion::stop(double T) noexcept {
   rotation_.stop(T);
 }
 
+// About the present orientation J_l is the identity, and its rate along omega turns nothing.
+void PoseMotion::follow(const Pose& X, const Vector6& V, const Vector6& A) noexcept {
+  reset(X);
+  position_.follow(X.p, V.head<3>(), A.head<3>());
+  rotation_.follow(Eigen::Vector3d::Zero(), V.tail<3>(), A.tail<3>());
+  V_BD = V;
+  A_BD = A;
+}
+
 void PoseMotion::advance(double dt) noexcept {
   if (!moving()) return;
   if (circling_) {

@@ -33,6 +33,12 @@ class QuinticMotion {
 
   /// At rest at x at once.
   void reset(const Vector& rest) noexcept { *this = QuinticMotion(rest); }
+  /// In this motion now, at the end of it: as another's that leads it.
+  void follow(const Vector& now, const Vector& rate, const Vector& rate_rate) noexcept {
+    reset(now);
+    v = rate;
+    a = rate_rate;
+  }
 
   void advance(double dt) noexcept {
     if (!moving()) return;
@@ -55,6 +61,7 @@ class QuinticMotion {
 
   bool moving() const noexcept { return elapsed_ < T_; }
   const Vector& end() const noexcept { return end_; }
+  double left_s() const noexcept { return T_ - elapsed_; }
 
   Vector x;  ///< present value
   Vector v;  ///< its rate
@@ -99,6 +106,8 @@ class PoseMotion {
   /// Round and round, without turning, until start() or stop().
   void circle(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double period_s) noexcept;
   void stop(double T) noexcept;
+  /// In this motion now, at the end of it: as another's that leads it.
+  void follow(const Pose& X, const Vector6& V, const Vector6& A) noexcept;
   void advance(double dt) noexcept;
   bool moving() const noexcept { return circling_ || position_.moving(); }
 

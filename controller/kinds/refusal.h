@@ -16,4 +16,13 @@ struct Refusal {
   constexpr operator const char*() const noexcept { return reason; }
 };
 
+/// The message itself is wrong: a number that is not finite, of another arm, of no kind.
+constexpr Refusal malformed(const char* reason) noexcept {
+  return {request_answer_t::REFUSED_MALFORMED, reason};
+}
+/// A number of a goal is outside what a goal may be.
+constexpr Refusal beyond_goal_limit(const char* reason) noexcept {
+  return {request_answer_t::REFUSED_GOAL_LIMIT, reason};
+}
+
 }  // namespace limber

@@ -43,6 +43,7 @@ class Supervisor {
     lease_ = client;
     lease_renewed_ns_ = time_ns_;
   }
+  std::int64_t lease() const noexcept { return lease_; }
   /// A goal was accepted. If it is valid for a time, s, and no other is accepted within it, the arm
   /// comes to rest; 0: it lasts.
   void take_goal(double valid_for_s) noexcept {

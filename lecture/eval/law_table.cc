@@ -35,6 +35,7 @@
   LAW(deflection_pd)          \
   LAW(vsa)                    \
   LAW(interpolation)          \
+  LAW(target_stream_seq)      \
   LAW(contact)                \
   LAW(admittance_seq)         \
   LAW(velocity_seq)           \

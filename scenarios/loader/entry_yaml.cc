@@ -8,13 +8,14 @@
 #include "lcmtypes/mode_words.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/goal_yaml.h"
+#include "scenarios/loader/stream_yaml.h"
 #include "scenarios/loader/values_yaml.h"
 #include "scenarios/loader/world_yaml.h"
 
 namespace limber {
 namespace {
 
-const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "push",
+const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "stream", "push",
                                          "wall", "payload", "fault"};
 const std::vector<std::string> kModes(kModeRequestWords.begin(), kModeRequestWords.end());
 
@@ -27,6 +28,7 @@ ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
     gains.client = kScenarioClient;
     return gains;
   }
+  if (kind == "stream") return read_stream(yaml.map("stream"), context.robot.robot);
   if (kind == "goal") return read_goal(yaml.map("goal"), context.robot.robot);
   if (kind == "push") return read_push(yaml.map("push"), context.robot);
   if (kind == "wall") return read_wall(yaml);

@@ -9,6 +9,7 @@
 #include <limber/mode_request_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
+#include <limber/target_stream_t.hpp>
 #include <optional>
 #include <string>
 #include <variant>
@@ -20,7 +21,8 @@
 namespace limber {
 
 using ScenarioMessage =
-    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, push_t, scenario_event_t>;
+    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, target_stream_t, push_t,
+                 scenario_event_t>;
 
 struct TimedMessage {
   std::int64_t time_ns =

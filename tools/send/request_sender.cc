@@ -75,7 +75,10 @@ void RequestSender::send_entry(const std::string& entry) {
                              !std::holds_alternative<scenario_event_t>(timed.message);
   send(timed.message, to_controller ? running_controller() : 0);
   if (!to_controller) return;
-  if (!wait_for([this] { return answer_.has_value(); })) throw ConfigError("no controller answers");
+  const bool answered = wait_for([this] { return answer_.has_value(); });
+  // A stream's messages are answered where they are refused.
+  if (!answered && std::holds_alternative<target_stream_t>(timed.message)) return;
+  if (!answered) throw ConfigError("no controller answers");
   if (answer_->accepted == 0) throw ConfigError("refused by the controller: " + refusal());
   if (!answer_->reason.empty()) spdlog::warn("warning: {}", answer_->reason);
 }
@@ -103,6 +106,7 @@ void RequestSender::send(const ScenarioMessage& message, std::int64_t controller
                  [&](const mode_request_t& m) { publish(channels::kModeRequest, m); },
                  [&](const compliance_goal_t& m) { publish(channels::kComplianceGoal, m); },
                  [&](const compliance_gains_t& m) { publish(channels::kComplianceGains, m); },
+                 [&](const target_stream_t& m) { publish(channels::kTargetStream, m); },
                  [&](const push_t& m) { publish(channels::kPush, m); },
                  [&](const scenario_event_t& m) { publish(channels::kScenarioEvent, m); },
              },

@@ -106,7 +106,7 @@ class CircleGoal : public ::testing::Test {
 
 TEST_F(CircleGoal, GoesRoundUntilTheNextGoal) {
   ASSERT_EQ(goals.set(message, GoalType::kPose), nullptr);
-  for (int i = 0; i < 5500; ++i) goals.advance(1e-3);
+  for (int i = 0; i < 5500; ++i) goals.advance(1e-3, 0);
   // Half a turn in the first period, one in each that follows.
   EXPECT_LT((goals.goal().X_BD.p).norm(), 1e-9);
   EXPECT_NEAR(goals.goal().V_BD.norm(), 0.1 * 2.0 * std::numbers::pi, 1e-9);
@@ -130,7 +130,7 @@ TEST_F(CircleGoal, WrongOnesAreRefused) {
     EXPECT_STREQ(goals.set(goal, GoalType::kPose), c.reason);
   }
   ASSERT_EQ(goals.set(message, GoalType::kPose), nullptr);
-  goals.advance(0.1);
+  goals.advance(0.1, 0);
   EXPECT_STREQ(goals.set(message, GoalType::kPose), "a circle starts from a goal at rest");
 }
 

@@ -139,7 +139,7 @@ class Goals : public ::testing::Test {
   Peak run_to_rest() {
     Peak peak;
     for (int i = 0; i < 20000; ++i) {
-      goals.advance(kStep);
+      goals.advance(kStep, 0);
       const Goal& now = goals.goal();
       if (now.V_BD.norm() + now.v_d.norm() == 0.0) break;
       peak.seconds += kStep;
@@ -187,7 +187,7 @@ TEST_F(Goals, OffsetsAddUpFromTheEndOfTheMotion) {
   message.offset[0] = 0.1;
   message.offset[5] = 0.2;
   goals.set(message, GoalType::kPose);
-  goals.advance(0.05);
+  goals.advance(0.05, 0);
   goals.set(message, GoalType::kPose);
   run_to_rest();
   EXPECT_NEAR(goals.goal().X_BD.p.x(), 0.2, 1e-12);
@@ -197,16 +197,16 @@ TEST_F(Goals, OffsetsAddUpFromTheEndOfTheMotion) {
 TEST_F(Goals, WrenchComesAndGoesSmoothlyAndLeavesTheMotionAlone) {
   message.offset[0] = 0.1;
   goals.set(message, GoalType::kPose);
-  goals.advance(0.3);
+  goals.advance(0.3, 0);
   const Vector6 V = goals.goal().V_BD;
   message.kind = compliance_goal_t::GOAL_WRENCH;
   message.F_ff[2] = 10.0;
   ASSERT_EQ(goals.set(message, GoalType::kPose), nullptr);
-  goals.advance(1e-6);
+  goals.advance(1e-6, 0);
   EXPECT_LT((goals.goal().V_BD - V).norm(), 1e-4);
   double before = goals.goal().F_ff[2];
   for (int i = 0; i < 200; ++i) {
-    goals.advance(kStep);
+    goals.advance(kStep, 0);
     EXPECT_LT(goals.goal().F_ff[2] - before, 0.2);
     before = goals.goal().F_ff[2];
   }
@@ -219,7 +219,7 @@ TEST_F(Goals, PostureMovesAlong) {
   message.use_posture = 1;
   message.q[3] = 0.5;
   ASSERT_EQ(goals.set(message, GoalType::kPose), nullptr);
-  for (int i = 0; i < 2000; ++i) goals.advance(kStep);
+  for (int i = 0; i < 2000; ++i) goals.advance(kStep, 0);
   EXPECT_EQ(goals.goal().q_null[3], 0.5);
   EXPECT_EQ(goals.goal().q_d[3], 0.0) << "the joint goal is another thing";
 }
@@ -242,9 +242,9 @@ TEST_F(Goals, NothingAllocates) {
   message.use_posture = 1;
   const auto before = limber::allocations();
   goals.set(message, GoalType::kPose);
-  goals.advance(0.01);
+  goals.advance(0.01, 0);
   goals.stop(0.3);
-  goals.advance(0.01);
+  goals.advance(0.01, 0);
   EXPECT_EQ(limber::allocations(), before);
 }
 

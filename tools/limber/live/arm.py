@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 from limber.live.arm_errors import FaultError, RefusedError, StackLostError, WaitTimeoutError
 from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
+from limber.live.arm_streams import Streams
 from limber.live.arm_world import World
 from limber.live.gains_message import gains as gains_message
 
 
-class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
+class Arm(Modes, Motions, Streams, World, AbstractContextManager["Arm", None]):
     """The arm of the stack that runs on this machine.
 
         from limber import Arm
@@ -25,14 +26,17 @@ class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
 
     It finds the stack and its robot; `robot` refuses any other. The first request takes the lease,
     close() or the end of the block gives it back and leaves the arm held. Quantities are the
-    newest, some milliseconds old. `client`: number of the lease, by default one of this process.
+    newest, some milliseconds old. `client`: number of the lease, by default one of this process;
+    that one is free when the process has ended. `url`: LCM address of another stack.
 
     Raises NoStackError if no stack runs. Later everything may raise StackLostError, and every
     request RefusedError.
     """
 
-    def __init__(self, robot: str | None = None, client: int | None = None) -> None:
-        super().__init__(robot, client)
+    def __init__(
+        self, robot: str | None = None, client: int | None = None, url: str | None = None
+    ) -> None:
+        super().__init__(robot, client, url)
         atexit.register(self.close)
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:

@@ -23,8 +23,8 @@ MOTION_S = 60.0
 class ArmBase(Quantities):
     """The arm as it is: found, read, waited for, recorded."""
 
-    def __init__(self, robot: str | None, client: int | None) -> None:
-        self._link = StackLink(robot)
+    def __init__(self, robot: str | None, client: int | None, url: str | None) -> None:
+        self._link = StackLink(robot, url)
         self._port = RequestPort(self._link, client)
         self._requested = False  # this script may hold the lease
         self._followers: list[Callable[[], None]] = []

@@ -32,6 +32,28 @@ class Pose:
         return float(np.linalg.norm(self.p - other.p)), float(angle)
 
 
+STREAM_COUNTS = ("taken", "late", "stale", "refused", "starved")
+
+
+@dataclass(frozen=True)
+class StreamState:
+    """`state`: none, running, or waiting (at rest, or coming to it, until more targets come);
+    `delay_s` of its newest message, `margin_s` from now to its last target, negative if that has
+    passed. Messages since the controller's start: taken, of these those whose targets had all
+    passed (late), dropped as too old or out of order (stale), refused; how often targets ran out
+    (starved).
+    """
+
+    state: str
+    delay_s: float
+    margin_s: float
+    taken: int
+    late: int
+    stale: int
+    refused: int
+    starved: int
+
+
 class Quantities:
     """The quantities of an arm at one time.
 
@@ -149,6 +171,15 @@ class Quantities:
     def limits(self) -> list[str]:
         """Codes of the limits that act in this cycle, such as TORQUE; empty if none does."""
         return bit_names("controller_status_t", "LIMIT_", int(self._records()[1]["limits"]))
+
+    @property
+    def stream(self) -> StreamState:
+        """Of the targets with times that have come, see StreamState."""
+        status = self._records()[1]
+        state = constants("controller_status_t", "STREAM_")[int(status["stream"])].lower()
+        times = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
+        counts = (int(status[f"stream_{name}"]) for name in STREAM_COUNTS)
+        return StreamState(state, *times, *counts)
 
     @property
     def faults(self) -> list[str]:

@@ -1,6 +1,5 @@
 """Requests to the controller, each answered by REQUEST_ANSWER."""
 
-import os
 import threading
 import time
 import warnings
@@ -8,6 +7,7 @@ from typing import Any
 
 from limber import messages
 from limber.live.arm_errors import RefusedError, StackLostError
+from limber.live.script_client import script_client
 from limber.live.stack_link import StackLink
 from limber.live.way import in_words_of
 from limber.problems import problem
@@ -17,19 +17,18 @@ CHANNELS = {
     "mode_request_t": "MODE_REQUEST",
     "compliance_goal_t": "COMPLIANCE_GOAL",
     "compliance_gains_t": "COMPLIANCE_GAINS",
+    "target_stream_t": "TARGET_STREAM",
+    "torque_overlay_t": "TORQUE_OVERLAY",
     "push_t": "PUSH",
     "scenario_event_t": "SCENARIO_EVENT",
 }
-# A controller knows 64 clients in a run. Scripts share these numbers, so that any number of them
-# can come and go; two at the same time have different ones, but for processes 32 apart.
-FIRST_CLIENT, NUM_CLIENTS = messages.SCRIPT_CLIENT, messages.NUM_SCRIPT_CLIENTS
 
 
 class RequestPort:
     """One client of the controller. `client`: number of its lease. From any thread."""
 
     def __init__(self, link: StackLink, client: int | None = None) -> None:
-        self.client = FIRST_CLIENT + os.getpid() % NUM_CLIENTS if client is None else client
+        self.client = script_client() if client is None else client
         self._link = link
         self._answers = link.receiver.stream("REQUEST_ANSWER")
         self._turn = threading.Lock()
@@ -50,6 +49,16 @@ class RequestPort:
             f"the controller has not answered a request within {timeout_s:g} s: see whether "
             "limber-controller and limber-driver still run"
         )
+
+    def stream(self, message: Any) -> None:
+        """Sends what is answered only where it is refused: RefusedError, by the next call."""
+        with self._turn:
+            waiting = self._answers.raw()
+            self._publish(message)
+        for data in waiting:
+            answer = _answer(data)
+            if answer and answer.client == self.client and not answer.accepted:
+                _accepted(answer, self._link)
 
     def post(self, message: Any) -> None:
         """Sends to the simulator, which answers nothing."""

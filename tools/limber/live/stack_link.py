@@ -32,8 +32,9 @@ class StackLink:
     all of its buses are simulated. Raises NoStackError.
     """
 
-    def __init__(self, robot: str | None = None) -> None:
-        self.receiver = Receiver(*CHANNELS, interval_s=INTERVAL_S)
+    def __init__(self, robot: str | None = None, url: str | None = None) -> None:
+        self._url = url or messages.user_plane_url()
+        self.receiver = Receiver(*CHANNELS, interval_s=INTERVAL_S, url=self._url)
         self._closed = False
         try:
             self._find(robot)
@@ -48,7 +49,7 @@ class StackLink:
         if not self.receiver.wait_for(lambda: all(state.count for state in heard), patience_s):
             silent = next(who for name, who in SENDERS.items() if not self._count(name))
             raise NoStackError(
-                f"{silent} is not heard at {messages.user_plane_url().split('?')[0]}: start a "
+                f"{silent} is not heard at {self._url.split('?')[0]}: start a "
                 "stack, such as `limber run scenarios/ready.yaml`, on this machine and in this "
                 "network namespace"
             )

@@ -158,6 +158,16 @@ class View:
             table.add_row("law", self.laws[law] if 0 <= law < len(self.laws) else f"number {law}")
             if reason is not None and mode in CAUSED:
                 table.add_row("because", Text(reason.code.removeprefix("controller."), style=BAD))
+            if status["stream"]:
+                stream = messages.constants("controller_status_t", "STREAM_")
+                margin = f"{1e3 * float(status['stream_margin_s']):+.0f} ms"
+                counts = ", ".join(
+                    f"{count} {name}"
+                    for name in ("late", "stale", "refused", "starved")
+                    if (count := int(status[f"stream_{name}"]))
+                )
+                table.add_row("stream", f"{stream[int(status['stream'])].lower()}, {margin}")
+                table.add_row("", Text(counts or "none lost", style=WARN if counts else ""))
             table.add_row("limits", Text(", ".join(limits) or "none", style=WARN if limits else ""))
             for name, setting in _settings(status).items():
                 table.add_row(name, setting)

@@ -14,7 +14,8 @@ from limber.problems import Problem, groups, problem
 # What of the messages tells of events: a long log fits into memory
 STATE_FIELDS: tuple[str, ...] = ("num_joints", "joint_flags", "sensor_state", "emergency_stop")
 STATE_FIELDS += ("drive_state", "fault", "fault_joint")
-STATUS_FIELDS = ("mode", "reason", "reason_joint", "law", "limits")
+STREAM_FIELDS = ("stream", "stream_late", "stream_stale", "stream_refused")
+STATUS_FIELDS = ("mode", "reason", "reason_joint", "law", "limits", *STREAM_FIELDS)
 TRUTH_FIELDS = ("F_push", "contact", "F_contact")
 PAUSE_S = 0.1  # what acts again within this time has acted all the time
 
@@ -58,6 +59,7 @@ def events(log: Log, names: Names) -> list[Event]:
         *_limits(status),
         *_pushes(truth),
         *_contacts(truth),
+        *_streams(status),
     ]
     return sorted(found, key=lambda event: event.time_s)
 
@@ -79,7 +81,10 @@ def _stretches(t: np.ndarray, acts: np.ndarray) -> Iterator[tuple[slice, float]]
         yield rows, float(t[rows.stop - 1] - t[rows.start])
 
 
-WHAT = {"MODE": ("mode_request_t", "REQUEST_"), "GOAL": ("compliance_goal_t", "GOAL_")}
+WHAT = {
+    "MODE": ("mode_request_t", "REQUEST_"), "GOAL": ("compliance_goal_t", "GOAL_"),
+    "STREAM": ("target_stream_t", "KIND_"),
+}
 
 
 def _requests(log: Log) -> Iterator[Event]:
@@ -200,6 +205,27 @@ def _limits(status: np.ndarray) -> Iterator[Event]:
         for rows, length_s in _stretches(t, status["limits"] & bit != 0):
             text = f"{cause.code} for {length_s:.3g} s: {cause.what}"
             yield Event(float(t[rows.start]), "controller", text)
+
+
+def _streams(status: np.ndarray) -> Iterator[Event]:
+    """Targets that come, run out, and are not used as they were meant."""
+    words = {
+        "NONE": "stream ends",
+        "RUNNING": "stream of targets",
+        "WAITING": "stream: the targets ran out, the goal comes to rest",
+    }
+    known = constants("controller_status_t", "STREAM_")
+    t = time_s(status)
+    for row in list(_changes(status, "stream"))[1:]:
+        text = words[known.get(int(status["stream"][row]), "NONE")]
+        yield Event(float(t[row]), "controller", text)
+    for what in ("late", "stale", "refused"):
+        count = status[f"stream_{what}"].astype(int)
+        rises = np.diff(count, prepend=count[:1]) > 0
+        for rows, length_s in _stretches(t, rises):
+            many = count[rows.stop - 1] - count[max(rows.start - 1, 0)]
+            text = f"stream: {many} messages {what} in {length_s:.3g} s"
+            yield Event(float(t[rows.start]), "controller", text, bad=what == "refused")
 
 
 def _pushes(truth: np.ndarray) -> Iterator[Event]:

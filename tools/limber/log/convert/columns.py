@@ -55,6 +55,7 @@ INDEXED = {
 }
 NOT_JOINTS = ("commands_refused",)
 NUM_JOINTS = 16  # room in messages
+KNOTS = ("dt_s", "value", "hand_width_m")  # of target_stream_t
 # Numbers that stand for words: (message, field) -> type and prefix of the constants
 WORDS = {
     ("joint_state_t", "drive_state"): ("joint_state_t", "DRIVE_"),
@@ -70,6 +71,8 @@ WORDS = {
     ("controller_status_t", "contact"): ("compliance_gains_t", "CONTACT_"),
     ("mode_request_t", "request"): ("mode_request_t", "REQUEST_"),
     ("compliance_goal_t", "kind"): ("compliance_goal_t", "GOAL_"),
+    ("controller_status_t", "stream"): ("controller_status_t", "STREAM_"),
+    ("target_stream_t", "kind"): ("target_stream_t", "KIND_"),
     ("scenario_event_t", "kind"): ("scenario_event_t", "EVENT_"),
     ("scenario_event_t", "fault"): ("scenario_event_t", "FAULT_"),
 }
@@ -124,6 +127,9 @@ def _places(
     """Path and index of every number in a field."""
     if not shape:
         yield (field,), ()
+    elif field in KNOTS:
+        for index in product(*map(range, shape)):
+            yield ("knots", *(str(i + 1) for i in index), field), index
     elif shape == (NUM_JOINTS,) and field not in NOT_JOINTS:
         unit = "Nm" if field.startswith("tau") else JOINT_UNITS.get(field, "")
         name = f"{field}_{unit}" if unit else field
