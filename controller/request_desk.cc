@@ -81,7 +81,8 @@ Refusal RequestDesk::judge(const Request& request) noexcept {
       return refusal;
     }
   }
-  if (const std::int64_t lease = controller_->lease(); request.client != lease && client_gone(lease))
+  if (const std::int64_t lease = controller_->lease();
+      request.client != lease && client_gone(lease))
     controller_->free_lease();
   return decide(controller_, request);
 }

@@ -75,8 +75,7 @@ target_stream_t read_stream(const YamlMap& yaml, const Robot& robot) {
   stream.hand_force_N = static_cast<float>(yaml.number_or("hand_force_N", {0.0, 1e3}, 0.0));
   stream.delay_s = static_cast<float>(yaml.number_or("delay_s", {0.0, 2.0}, 0.0));
   stream.valid_for_s = static_cast<float>(yaml.number_or("valid_for_s", {0.0, 600.0}, 0.0));
-  stream.stiffness_scale =
-      static_cast<float>(yaml.number_or("stiffness_scale", {0.05, 1.0}, 0.0));
+  stream.stiffness_scale = static_cast<float>(yaml.number_or("stiffness_scale", {0.05, 1.0}, 0.0));
   read_six(yaml, &stream);
   yaml.finish();
   return stream;

@@ -14,13 +14,14 @@ constexpr double kFadeAcceleration = 2.0;           // m/s^2, rad/s^2
 constexpr double kFastestAcceleration = 10.0;       // of the tip, m/s^2
 constexpr double kFastestJointAcceleration = 25.0;  // rad/s^2; the tip's turn, too
 constexpr std::size_t kMostKnots = 16;
-constexpr double kClipped = 1e-6;  // rad or m: more than float32 rounds
+constexpr float kFarthestJoint = 1e3F;
+constexpr double kRounded = 1.0 + 1e-6;  // a number that was rounded to 32 bits
+constexpr double kClipped = 1e-6;        // rad or m: more than float32 rounds
 
 StreamBounds<VectorJ> joint_bounds(const Robot& robot) {
   const int n = robot.size();
   StreamBounds<VectorJ> bounds{VectorJ::Zero(n), VectorJ::Constant(n, kFadeAcceleration),
-                               VectorJ::Zero(n),
-                               VectorJ::Constant(n, kFastestJointAcceleration)};
+                               VectorJ::Zero(n), VectorJ::Constant(n, kFastestJointAcceleration)};
   for (int i = 0; i < n; ++i) {
     const double most = robot.joints[static_cast<std::size_t>(i)].velocity_limit;
     bounds.v_fade[i] = GoalLimits::kDefaultJointShare * most;
@@ -43,7 +44,9 @@ StreamBounds<Vector6> tip_bounds() {
 }
 
 // As it was meant before it was rounded to 32 bits.
-double seconds_of(float given) noexcept { return 1e-6 * std::round(1e6 * static_cast<double>(given)); }
+double seconds_of(float given) noexcept {
+  return 1e-6 * std::round(1e6 * static_cast<double>(given));
+}
 
 int columns(const target_stream_t& message) noexcept {
   switch (message.kind) {
@@ -109,6 +112,25 @@ Refusal check_poses(const target_stream_t& message) noexcept {
   return {};
 }
 
+Refusal check_twists(const target_stream_t& message) noexcept {
+  for (int i = 0; i < message.num_knots; ++i) {
+    const Vector6 V = row(message, i).head<6>().cast<double>();
+    if (!(V.head<3>().norm() <= kRounded * GoalLimits::kFastestSpeed_m_per_s &&
+          V.tail<3>().norm() <= kRounded * GoalLimits::kFastestTurn_rad_per_s))
+      return beyond_goal_limit("a twist is more than 1 m/s or 4 rad/s");
+  }
+  return {};
+}
+
+// Of joints without ends: those with are stopped there.
+Refusal check_joints(const target_stream_t& message) noexcept {
+  for (int i = 0; i < message.num_knots; ++i) {
+    if (!(row(message, i).head(message.num_joints).cwiseAbs().maxCoeff() <= kFarthestJoint))
+      return beyond_goal_limit("a joint is more than 1000 rad from zero: is it another unit?");
+  }
+  return {};
+}
+
 // From which a joint comes to rest within so far.
 VectorJ braking_speed(const VectorJ& way) noexcept {
   return (2.0 * kFastestJointAcceleration * way.cwiseMax(0.0)).cwiseSqrt();
@@ -147,8 +169,16 @@ Refusal TargetStream::check(const target_stream_t& message, GoalType type,
       scale != 0.0F && !(scale >= static_cast<float>(kSoftest) && scale <= 1.0F))
     return beyond_goal_limit("stiffness_scale must be 0, or within 0.05..1");
   const Vector6 F = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(message.F_ff).cast<double>();
-  if (const Refusal refusal = limits_.check_common(seconds_of(message.valid_for_s), F, type)) return refusal;
-  return message.kind == target_stream_t::KIND_POSE ? check_poses(message) : Refusal{};
+  if (const Refusal refusal = limits_.check_common(seconds_of(message.valid_for_s), F, type))
+    return refusal;
+  switch (message.kind) {
+    case target_stream_t::KIND_POSE:
+      return check_poses(message);
+    case target_stream_t::KIND_TWIST:
+      return check_twists(message);
+    default:
+      return check_joints(message);
+  }
 }
 
 std::int64_t TargetStream::end_ns(const target_stream_t& message, std::int64_t now_ns) noexcept {
@@ -214,8 +244,8 @@ bool TargetStream::take_twist(const target_stream_t& message, std::int64_t now_n
     knots[static_cast<std::size_t>(i)] = knot;
     const bool last = i + 1 == n;
     const Vector6 next = row(message, last ? i : i + 1).head<6>().cast<double>();
-    const std::int64_t then_ns = last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s)
-                                      : knot_ns(message, i + 1, now_ns);
+    const std::int64_t then_ns =
+        last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s) : knot_ns(message, i + 1, now_ns);
     const double dt_s = 1e-9 * static_cast<double>(then_ns - knot.time_ns);
     const Rates<Vector6> way{0.5 * dt_s * (V + next), Vector6::Zero(), Vector6::Zero()};
     knot = {then_ns, TipSpace::compose(way, TipSpace::at_rest(knot.x)).x};
