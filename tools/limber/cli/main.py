@@ -9,7 +9,10 @@ from importlib.util import find_spec
 from typing import Annotated, NoReturn
 
 import typer
-from typer.exceptions import TyperException
+try:
+    from typer.exceptions import TyperException
+except ImportError:  # of a typer that uses click itself, as Debian 13 has it
+    from click import ClickException as TyperException
 
 from limber.cli import (
     black_box,
@@ -28,7 +31,7 @@ from limber.cli import (
 from limber.cli.options import console
 from limber.cli.panels import Commands, put_in_panels
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
-from limber.paths import CMAKE, EXTRAS, command_for_extra
+from limber.paths import CMAKE, command_for
 
 INTERRUPTED = 130
 
@@ -82,8 +85,8 @@ def fail(message: str, code: int) -> NoReturn:
 def complaint(error: ImportError) -> str:
     """Of a package that is not there, or cannot be loaded: the command that installs it."""
     name = (error.name or "").partition(".")[0]
-    if name in EXTRAS:
-        return f"this needs the package {error.name}: {command_for_extra(EXTRAS[name])}"
+    if command := command_for(name):
+        return f"this needs the package {error.name}: {command}"
     return f"{error} (LIMBER_DEBUG=1 shows where)"
 
 
