@@ -5,7 +5,6 @@ one build does not serve both. What is installed for a build comes from the suit
 has no network, and LCM's generator, which Debian lacks, from a file.
 """
 
-import json
 import shutil
 import subprocess
 import sys
@@ -87,7 +86,7 @@ def build(suite: str, out: Path, mirror: str | None = None) -> list[Path]:
                 *("mmdebstrap", "--variant=buildd", "--include=debhelper"),
                 f"--customize-hook=copy-in {folder} /",
                 '--customize-hook=chroot "$1" sh /build/run',
-                f"--customize-hook=cp \"$1\"/build/*.deb {made}",
+                f'--customize-hook=cp "$1"/build/*.deb {made}',
                 *(suite, "/dev/null"),
                 *([mirror] if mirror else []),
             ]

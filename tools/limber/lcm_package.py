@@ -1,4 +1,4 @@
-"""LCM's Python package, for lcm-spy. Its wheel links the system's GLib, which small systems lack."""
+"""LCM's Python package, for lcm-spy. Its wheel links GLib, which small systems lack."""
 
 from typing import Any
 
@@ -13,6 +13,6 @@ def lcm_package() -> Any:
     except ImportError as error:
         cause = error.__context__ or error
         missing = getattr(cause, "name", None) == "lcm"
-        cure = missing and command_for("lcm") or "sudo apt-get install libglib2.0-0"
+        cure = (missing and command_for("lcm")) or "sudo apt-get install libglib2.0-0"
         raise RunError(f"LCM cannot be loaded ({cause}): {cure}") from error
     return lcm

@@ -46,9 +46,9 @@ def escaped(interface: str) -> str:
 
 
 def shared_files() -> dict[str, str]:
-    """File name -> contents, the same for all robots. The limits of a user are none of a service's."""
-    files = sorted((ASSETS / "service").iterdir())
-    return {path.name: path.read_text(encoding="utf-8") for path in files if "limits" not in path.name}
+    """File name -> contents, the same for all robots. Limits of users are none of a service's."""
+    files = sorted(path for path in (ASSETS / "service").iterdir() if "limits" not in path.name)
+    return {path.name: path.read_text(encoding="utf-8") for path in files}
 
 
 def drop_ins(robot: str, overrides: tuple[str, ...] = ()) -> dict[str, str]:
