@@ -21,7 +21,13 @@ def test_where_things_are(tmp_path):
     modules = tmp_path / "usr" / "lib" / "python3" / "dist-packages"
     shutil.copytree(paths.PACKAGE, modules / "limber", ignore=shutil.ignore_patterns("__pycache__"))
     done = captured(
-        [sys.executable, "-I", "-c", f"import sys; sys.path[0] = {str(modules)!r}\n{SHOW}"]
+        [
+            sys.executable,
+            "-I",
+            "-S",
+            "-c",
+            f"import sys; sys.path.insert(0, {str(modules)!r}); {SHOW}",
+        ]
     )
     assert done.returncode == 0, done.stderr
     usr = tmp_path / "usr"

@@ -31,6 +31,7 @@ COPY_SHARED = """\
   cp {out}/*.service {out}/*.target /etc/systemd/system/
   cp {out}/limber.sysusers.conf /etc/sysusers.d/limber.conf && systemd-sysusers
   cp {out}/limber.tmpfiles.conf /etc/tmpfiles.d/limber.conf && systemd-tmpfiles --create
+  cp {out}/limber.sysctl.conf /etc/sysctl.d/60-limber.conf && sysctl --system
 """
 STEPS = """
 [bold]Look at the files, then as root:[/]
