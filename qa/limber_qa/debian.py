@@ -1,10 +1,11 @@
-"""`limber dev debs`: Debian packages, each suite's in a root file system of its own.
+"""Debian packages, each suite's in a root file system of its own.
 
 Libraries that limber is linked with have other versions in each suite (fmt, spdlog, yaml-cpp), so
 one build does not serve both. What is installed for a build comes from the suite; the build itself
 has no network, and LCM's generator, which Debian lacks, from a file.
 """
 
+import os
 import shutil
 import subprocess
 import sys
@@ -21,16 +22,25 @@ from limber.paths import ROOT, captured, completed
 SUITES = {"bookworm": "12", "trixie": "13"}
 PYTHON = {"bookworm": "3.11", "trixie": "3.13"}
 PACKAGING = "packaging/debian"
-FOR_THE_BUILD = ("lcm", "pyyaml")  # by pip, as cmake/limber_dependencies.cmake has it
-# Debian 12's typer is too old; that of Debian 13 is pure Python and fits both.
-TYPER = "python3-typer"
+FOR_THE_BUILD = ("lcm", "pyyaml")  # by pip, as in cmake/limber_dependencies.cmake
 BUILD = """
 set -e
 cd /build/limber-*
-apt-get update -qq && apt-get build-dep -y -qq ./ >/dev/null
+apt-get build-dep -y -qq ./ >/dev/null
 export PIP_NO_INDEX=1 PIP_FIND_LINKS=/build/wheels DEB_BUILD_OPTIONS=parallel=2
-unshare -n dpkg-buildpackage -b -us -uc
+unshare -n dpkg-buildpackage -b -us -uc >/dev/null
+mkdir /made && mv /build/*.deb /made
+cd /made
 """
+# Beside the packages: Debian 12's typer is too old, and that of Debian 13, pure Python, fits both.
+# The wheel carries Debian 12's KDL, whose licence wants its sources to come with it.
+BESIDE = {
+    "bookworm": """
+sed 's/^deb /deb-src /' /etc/apt/sources.list >/etc/apt/sources.list.d/sources.list
+apt-get update -qq && apt-get source -qq --download-only orocos-kdl
+""",
+    "trixie": "apt-get download -qq python3-typer",
+}
 
 
 def last_commit_s() -> int:
@@ -70,28 +80,33 @@ def _wheels(folder: Path, suite: str) -> None:
     completed([*pip, f"--python-version={PYTHON[suite]}", "-d", str(folder), *needed])
 
 
-def build(suite: str, out: Path, mirror: str | None = None) -> list[Path]:
-    """The packages, those of debug files among them; all as Debian's tools make them. As root."""
-    if shutil.which("mmdebstrap") is None:
-        raise RunError("Debian packages are built with mmdebstrap: sudo apt-get install mmdebstrap")
+def build(suite: str, out: Path) -> list[Path]:
+    """All that Debian's tools make of it, debug files among it, and what lies BESIDE. As root."""
+    if shutil.which("mmdebstrap") is None or os.geteuid() != 0:
+        raise RunError(
+            "Debian packages are built by root with mmdebstrap (sudo apt-get install mmdebstrap)"
+        )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / "build"
         write_sources(folder, suite)
         _wheels(folder / "wheels", suite)
-        (folder / "run").write_text(BUILD, encoding="utf-8")
+        (folder / "run").write_text(BUILD + BESIDE[suite], encoding="utf-8")
         made = Path(name) / "made"
         made.mkdir()
+        hooks = (
+            f"copy-in {folder} /",
+            'chroot "$1" sh /build/run',
+            f'cp "$1"/made/* {made}',
+        )
         completed(
             [
-                *("mmdebstrap", "--variant=buildd", "--include=debhelper"),
-                f"--customize-hook=copy-in {folder} /",
-                '--customize-hook=chroot "$1" sh /build/run',
-                f'--customize-hook=cp "$1"/build/*.deb {made}',
+                *("mmdebstrap", "--variant=buildd", "--include=debhelper,apt-utils"),
+                *(f"--customize-hook={hook}" for hook in hooks),
                 *(suite, "/dev/null"),
-                *([mirror] if mirror else []),
+                *filter(None, [os.environ.get("LIMBER_DEBIAN_MIRROR")]),
             ]
         )
-        files = [out / path.name for path in sorted(made.glob("*.deb"))]
-        for path in files:
-            shutil.copyfile(made / path.name, path)
-    return files
+        found = sorted(made.iterdir())
+        for path in found:
+            shutil.copyfile(path, out / path.name)
+    return [out / path.name for path in found]
