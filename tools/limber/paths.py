@@ -123,7 +123,8 @@ def command_for(module: str) -> str | None:
         return f"{sys.executable} -m pip install '{LACKING[module]}'"
     if FROM_DEBIAN and module in LACKING:
         return (
-            "python3 -m venv --system-site-packages ~/limber-python && ~/limber-python/bin/pip "
+            "sudo apt-get install python3-venv && python3 -m venv --system-site-packages "
+            "~/limber-python && ~/limber-python/bin/pip "
             f"install '{LACKING[module]}'; then ~/limber-python/bin/python -m limber ..."
         )
     if FROM_DEBIAN or module not in EXTRAS:
