@@ -3,7 +3,6 @@
 import os
 import platform
 from hashlib import sha256
-from importlib import metadata
 from pathlib import Path
 
 from limber import __version__
@@ -50,7 +49,6 @@ def _header(log: Log, scenario: Scenario, mode: str) -> dict:
         "friction": scenario.friction,
         "versions": {
             "limber": __version__,
-            "lcm": metadata.version("lcm"),
             "python": platform.python_version(),
             "machine": platform.machine(),
         },
