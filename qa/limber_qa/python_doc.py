@@ -10,6 +10,7 @@ from limber.live.arm_base import ArmBase
 from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
 from limber.live.arm_state import Pose, Quantities, State
+from limber.live.arm_streams import Stream, Streams
 from limber.live.arm_world import World
 from limber.live.recording import Recording
 from limber.paths import ROOT
@@ -19,10 +20,11 @@ CALLS = {
     "Read": ArmBase,
     "Modes": Modes,
     "Motions": Motions,
+    "Targets with times": Streams,
     "Compliance, lease": Arm,
     "Simulated world": World,
 }
-OTHERS = (Pose, State, Recording)
+OTHERS = (Pose, State, Stream, Recording)
 
 
 def _doc(thing: object) -> str:

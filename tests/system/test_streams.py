@@ -30,15 +30,16 @@ def test_a_stream_is_followed_and_rests_when_it_ends(standing):
             t = state.time_s - first_s
             if t > 2.0:
                 break
-            stream.send(position_m=start.p + [0.0, 0.0, 0.04 * (1 - np.cos(2 * t))])
-        arm.wait(until=lambda now: now.stream.state == "waiting", timeout_s=5)
+            up = np.array([0.0, 0.0, 0.04 * (1 - np.cos(2 * t))])
+            stream.send(position_m=start.p + up)
+        arm.wait(until=lambda now: now.targets.state == "waiting", timeout_s=5)
         state = arm.state
         assert state.mode == "active"
-        assert state.stream.taken >= 55 and state.stream.refused == state.stream.stale == 0
-        assert state.stream.starved == 1
+        assert state.targets.taken >= 55 and state.targets.refused == state.targets.stale == 0
+        assert state.targets.starved == 1
         assert 0.03 < arm.goal.p[2] - start.p[2] < 0.09
         arm.chunk(0.05, joints_rad=np.tile(arm.q, (20, 1)))  # a law for the tip follows joints
-        arm.wait(until=lambda now: now.stream.state == "running", timeout_s=5)
+        arm.wait(until=lambda now: now.targets.state == "running", timeout_s=5)
         assert "RATE" not in arm.limits
 
 
@@ -75,7 +76,7 @@ def test_a_killed_policy_is_followed_by_the_next_at_once(standing):
     with Arm() as arm:  # no stop, no wait, no request but its own
         arm.activate()
         arm.stream().send(joints_rad=arm.q)
-        arm.wait(until=lambda now: now.stream.taken > stopped.stream_taken, timeout_s=5)
+        arm.wait(until=lambda now: now.targets.taken > stopped.stream_taken, timeout_s=5)
         assert arm.mode == "active"
 
 

@@ -34,7 +34,10 @@ IN_CACHE = 200  # messages whose bytes are turned at a time, field by field
 SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
 SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
 CLIENT_WITH_LOCK = 1 << 62  # bit of a client that holds a lock while it lives (client_life.h)
-SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = CLIENT_WITH_LOCK + 0x50590000, 32  # the first of Python's Arm, and how many
+SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = (
+    CLIENT_WITH_LOCK + 0x50590000,
+    32,
+)  # the first of Python's Arm, and how many
 MONITOR_CLIENT = 0x4D4F0000  # of `limber monitor`; its port is added
 SEND_CLIENT = 0x48414E44  # of `limber send`
 CLIENTS = {

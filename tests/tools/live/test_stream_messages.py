@@ -7,7 +7,7 @@ from limber.errors import InputError
 from limber.live import stream_messages
 from limber.live.script_client import script_client
 from limber.messages import CLIENT_WITH_LOCK
-from limber.model.rotations import turned_about, quaternion_of
+from limber.model.rotations import quaternion_of, turned_about
 
 
 def made(times, **given):

@@ -70,7 +70,9 @@ def convert(
     path: LogPath,
     to: Annotated[
         str | None,
-        typer.Option(help="csv, parquet, mcap, rerun, npz, lerobot or lcm; default: by the end of --out."),
+        typer.Option(
+            help="csv, parquet, mcap, rerun, npz, lerobot or lcm; default: by the end of --out."
+        ),
     ] = None,
     out: Annotated[
         Path | None,

@@ -32,11 +32,11 @@ class Pose:
         return float(np.linalg.norm(self.p - other.p)), float(angle)
 
 
-STREAM_COUNTS = ("taken", "late", "stale", "refused", "starved")
+TARGET_COUNTS = ("taken", "late", "stale", "refused", "starved")
 
 
 @dataclass(frozen=True)
-class StreamState:
+class Targets:
     """`state`: none, running, or waiting (at rest, or coming to it, until more targets come);
     `delay_s` of its newest message, `margin_s` from now to its last target, negative if that has
     passed. Messages since the controller's start: taken, of these those whose targets had all
@@ -173,13 +173,13 @@ class Quantities:
         return bit_names("controller_status_t", "LIMIT_", int(self._records()[1]["limits"]))
 
     @property
-    def stream(self) -> StreamState:
-        """Of the targets with times that have come, see StreamState."""
+    def targets(self) -> Targets:
+        """Of the targets with times that have come, see Targets."""
         status = self._records()[1]
         state = constants("controller_status_t", "STREAM_")[int(status["stream"])].lower()
-        times = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
-        counts = (int(status[f"stream_{name}"]) for name in STREAM_COUNTS)
-        return StreamState(state, *times, *counts)
+        delay_s, margin_s = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
+        counts = {name: int(status[f"stream_{name}"]) for name in TARGET_COUNTS}
+        return Targets(state, delay_s, margin_s, **counts)
 
     @property
     def faults(self) -> list[str]:

@@ -82,7 +82,8 @@ def _stretches(t: np.ndarray, acts: np.ndarray) -> Iterator[tuple[slice, float]]
 
 
 WHAT = {
-    "MODE": ("mode_request_t", "REQUEST_"), "GOAL": ("compliance_goal_t", "GOAL_"),
+    "MODE": ("mode_request_t", "REQUEST_"),
+    "GOAL": ("compliance_goal_t", "GOAL_"),
     "STREAM": ("target_stream_t", "KIND_"),
 }
 

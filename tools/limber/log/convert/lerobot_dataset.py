@@ -174,8 +174,9 @@ class LeRobotDataset:
         self._parquet(f"meta/episodes/{CHUNK}", pyarrow.table(episodes))
         # The task is pandas' index: without this note it would be read as a number.
         tasks = pyarrow.table({"task_index": np.zeros(1, np.int64), "task": [TASK]})
-        note = {"index_columns": ["task"], "columns": [], "pandas_version": "2.0.0"}
-        self._parquet("meta/tasks.parquet", tasks.replace_schema_metadata({"pandas": json.dumps(note)}))
+        note = {"index_columns": ["task"], "column_indexes": [], "columns": _pandas_columns()}
+        noted = tasks.replace_schema_metadata({"pandas": json.dumps(note)})
+        self._parquet("meta/tasks.parquet", noted)
         total = int(lengths.sum())
         info = {
             "codebase_version": "v3.0",
@@ -205,6 +206,20 @@ class LeRobotDataset:
     def _json(self, name: str, content: dict[str, Any]) -> None:
         text = json.dumps(content, indent=4) + "\n"
         (self._folder / name).write_text(text, encoding="utf-8")
+
+
+def _pandas_columns() -> list[dict[str, Any]]:
+    kinds = {"task_index": ("int64", "int64"), "task": ("unicode", "object")}
+    return [
+        {
+            "name": name,
+            "field_name": name,
+            "pandas_type": kind,
+            "numpy_type": numpy,
+            "metadata": None,
+        }
+        for name, (kind, numpy) in kinds.items()
+    ]
 
 
 def _lists(rows: Floats) -> pyarrow.Array:
