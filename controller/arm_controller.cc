@@ -84,6 +84,7 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       energy_watch_(robot.robot),
       gravity_limiter_(gravity_limiter(robot.robot)),
       info_(info_of(robot.robot, options.controller, is_simulated(robot.robot, options))) {
+  if (robot.robot.hand) hand_.emplace(robot.robot, options.controller);
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -99,6 +100,7 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   if (judgement.usable) {
     period_s_ = static_cast<double>(state.period_ns) * 1e-9;
     cycle_.measure(state);
+    if (hand_) hand_->measure(state);
     apply_timeline(state.time_ns);
   }
 
@@ -111,6 +113,7 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   if (activity != Activity::kStandby && !cycle_.step(activity, dt_s))
     supervisor_.raise(Event::kTorqueInvalid);
   if (activity_of(supervisor_) == Activity::kStandby) cycle_.stand_by(standby());
+  if (hand_) move_hand(activity_of(supervisor_), dt_s);
 
   write_answer(state);
   write_status(started_ns);
@@ -168,6 +171,7 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
             [&](const mode_request_t& m) { outcomes_.push_back(outcome_of(m, on_mode(m))); },
             [&](const compliance_goal_t& m) { outcomes_.push_back(outcome_of(m, on_goal(m))); },
             [&](const compliance_gains_t& m) { outcomes_.push_back(outcome_of(m, on_gains(m))); },
+            [&](const hand_goal_t& m) { outcomes_.push_back(outcome_of(m, on_hand(m))); },
             [](const auto&) {},  // the simulator's
         },
         *timeline_->due(time_ns));
@@ -199,6 +203,19 @@ void ArmController::write_gravity() noexcept {
   Eigen::Map<VectorJ>(answer_.tau_gravity, answer_.num_joints) = tau;
 }
 
+void ArmController::move_hand(Activity activity, double dt_s) noexcept {
+  if (activity != Activity::kStandby) return hand_->step(dt_s);
+  using Rest = HandControl::Rest;
+  switch (standby().torque) {
+    case Standby::Torque::kZero:
+      return hand_->stand_by(Rest::kNone, dt_s);
+    case Standby::Torque::kAsSent:
+      return hand_->stand_by(Rest::kApplied, dt_s);
+    case Standby::Torque::kGravity:
+      return hand_->stand_by(Rest::kKept, dt_s);
+  }
+}
+
 void ArmController::write_answer(const joint_state_t& state) noexcept {
   write_gravity();
   answer_.state_seq = state.seq;
@@ -209,6 +226,7 @@ void ArmController::write_answer(const joint_state_t& state) noexcept {
   const int n = answer_.num_joints;
   Eigen::Map<VectorJ>(answer_.tau, n) = cycle_.torque();
   Eigen::Map<VectorJ>(answer_.tau_preload, n) = cycle_.preload_torque();
+  if (hand_) hand_->write(&answer_);
 }
 
 void ArmController::write_status(std::int64_t started_ns) noexcept {
@@ -225,6 +243,7 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.states_lost = supervisor_.states().lost();
   status_.unexplained_energy_J = energy_watch_.unexplained_J();
   controller::write_status(cycle_.trace(), &status_);
+  if (hand_ && published) hand_->write_state(status_.seq, status_.time_ns);
   if (!options_.measure_time) return;
   status_.cycle_ns = monotonic_ns() - started_ns;
   status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
@@ -256,6 +275,17 @@ Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
   if (refusal) return counted(refusal);
   supervisor_.take_lease(gains.client);
   return refusal;  // perhaps with a warning
+}
+
+Refusal ArmController::on_hand(const hand_goal_t& goal) noexcept {
+  if (!hand_) return counted({request_answer_t::REFUSED_NO_HAND, "robot.yaml has no `hand:`"});
+  if (const Refusal refusal = supervisor_.check_client(goal.client)) return counted(refusal);
+  if (supervisor_.mode() != Mode::kActive)
+    return counted({request_answer_t::REFUSED_MODE, "goals are accepted in ACTIVE only"});
+  if (const Refusal refusal = hand_->check(goal)) return counted(refusal);
+  hand_->set_goal(goal);
+  supervisor_.take_lease(goal.client);
+  return {};
 }
 
 void ArmController::on_silence() noexcept {

@@ -6,6 +6,8 @@
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
 #include <limber/controller_status_t.hpp>
+#include <limber/hand_goal_t.hpp>
+#include <limber/hand_state_t.hpp>
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
@@ -15,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/hand/hand_control.h"
 #include "controller/modes/supervisor.h"
 #include "controller/output/torque_limiter.h"
 #include "controller/request_outcome.h"
@@ -65,6 +68,7 @@ class ArmController {
   Refusal on_mode(const mode_request_t& request) noexcept;
   Refusal on_goal(const compliance_goal_t& goal) noexcept;
   Refusal on_gains(const compliance_gains_t& gains) noexcept;
+  Refusal on_hand(const hand_goal_t& goal) noexcept;
 
   /// A request was refused before it came here.
   void count_refusal() noexcept { ++status_.requests_refused; }
@@ -78,6 +82,8 @@ class ArmController {
   void on_silence() noexcept;
 
   const controller_status_t& status() const noexcept { return status_; }
+  /// nullptr for an arm without a hand.
+  const hand_state_t* hand_state() const noexcept { return hand_ ? &hand_->state() : nullptr; }
   /// Which arm this is, for tools.
   const robot_info_t& robot_info() const noexcept { return info_; }
 
@@ -85,6 +91,7 @@ class ArmController {
   void apply_timeline(std::int64_t time_ns) noexcept;
   void watch_motion(const joint_state_t& state, double dt_s) noexcept;
   controller::Standby standby() const noexcept;
+  void move_hand(controller::Activity activity, double dt_s) noexcept;
   void write_answer(const joint_state_t& state) noexcept;
   void write_gravity() noexcept;
   void write_status(std::int64_t started_ns) noexcept;
@@ -98,6 +105,7 @@ class ArmController {
   controller::EncoderWatch encoder_watch_;
   controller::EnergyWatch energy_watch_;
   controller::TorqueLimiter gravity_limiter_;
+  std::optional<controller::HandControl> hand_;
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline

@@ -13,7 +13,7 @@
 namespace limber {
 namespace {
 
-constexpr std::array kKindNames = {"mode", "goal", "gains"};
+constexpr std::array kKindNames = {"mode", "goal", "gains", "hand"};
 
 template <typename Names>
 const char* name_in(const Names& names, int index) {

@@ -21,6 +21,9 @@ Refusal decide(ArmController* controller, const compliance_goal_t& goal) noexcep
 Refusal decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
   return controller->on_gains(gains);
 }
+Refusal decide(ArmController* controller, const hand_goal_t& goal) noexcept {
+  return controller->on_hand(goal);
+}
 
 bool is_stop(const mode_request_t& request) noexcept {
   return request.request == mode_request_t::REQUEST_STOP;
@@ -37,6 +40,7 @@ RequestDesk::RequestDesk(ArmController* controller, LcmPort* user)
   subscribe<mode_request_t>(channels::kModeRequest);
   subscribe<compliance_goal_t>(channels::kComplianceGoal);
   subscribe<compliance_gains_t>(channels::kComplianceGains);
+  subscribe<hand_goal_t>(channels::kHandGoal);
 }
 
 template <typename Request>

@@ -11,8 +11,8 @@ namespace limber {
 
 class RequestDesk {
  public:
-  /// Subscribes to MODE_REQUEST, COMPLIANCE_GOAL and COMPLIANCE_GAINS: they are taken while `user`
-  /// handles what waits. Both outlive this, at its place. Throws ConfigError.
+  /// Subscribes to MODE_REQUEST, COMPLIANCE_GOAL, COMPLIANCE_GAINS and HAND_GOAL: they are taken
+  /// while `user` handles what waits. Both outlive this, at its place. Throws ConfigError.
   RequestDesk(ArmController* controller, LcmPort* user);
   RequestDesk(const RequestDesk&) = delete;
   RequestDesk& operator=(const RequestDesk&) = delete;

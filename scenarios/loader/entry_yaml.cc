@@ -8,14 +8,15 @@
 #include "lcmtypes/mode_words.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/goal_yaml.h"
+#include "scenarios/loader/hand_yaml.h"
 #include "scenarios/loader/values_yaml.h"
 #include "scenarios/loader/world_yaml.h"
 
 namespace limber {
 namespace {
 
-const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "push",
-                                         "wall", "payload", "fault"};
+const std::vector<std::string> kKinds = {"mode", "gains", "goal",    "hand",
+                                         "push", "wall",  "payload", "fault"};
 const std::vector<std::string> kModes(kModeRequestWords.begin(), kModeRequestWords.end());
 
 ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
@@ -28,6 +29,7 @@ ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
     return gains;
   }
   if (kind == "goal") return read_goal(yaml.map("goal"), context.robot.robot);
+  if (kind == "hand") return read_hand_goal(yaml.map("hand"), context.robot.robot);
   if (kind == "push") return read_push(yaml.map("push"), context.robot);
   if (kind == "wall") return read_wall(yaml);
   if (kind == "payload") return read_payload(yaml);

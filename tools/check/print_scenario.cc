@@ -34,6 +34,10 @@ std::string describe(const compliance_goal_t& goal) {
   return fmt::format("goal: {} within {:g} s", names[goal.kind], goal.duration_s);
 }
 
+std::string describe(const hand_goal_t& goal) {
+  return fmt::format("hand to {:g} m", goal.width_m);
+}
+
 std::string describe(const push_t& push) {
   return fmt::format("push {} at {}: {} N {} N m for {:g} s", push.id,
                      push.link.empty() ? "the tip" : push.link, three(push.wrench),
