@@ -14,11 +14,6 @@ void HandPlant::step(const DriveLaw& law, const LinkDynamics& arm, double h) noe
   objects_.step(arm, fingers_.width(), fingers_.force(), h);
 }
 
-HeldMass HandPlant::held() const noexcept {
-  if (objects_.held() == Objects::kNone) return {};
-  return {objects_.config(static_cast<std::size_t>(objects_.held())).mass_kg, objects_.held_at()};
-}
-
 void HandPlant::fill(hand_truth_t* truth) const noexcept {
   const MotorPoint at = fingers_.point();
   truth->width_m = fingers_.width();

@@ -28,7 +28,8 @@ class HandPlant {
 
   const Fingers& fingers() const noexcept { return fingers_; }
   const Objects& objects() const noexcept { return objects_; }
-  HeldMass held() const noexcept;
+  /// What the arm carries of it.
+  HeldMass held() const noexcept { return {objects_.held_mass_kg(), objects_.held_at()}; }
   /// All but seq and time.
   void fill(hand_truth_t* truth) const noexcept;
 

@@ -39,6 +39,16 @@ double Objects::depth(std::size_t i) const noexcept {
   return down_.dot(states_[i].p - Eigen::Map<const Eigen::Vector3d>(configs_[i].p_B));
 }
 
+double Objects::carried_share(std::size_t i) const noexcept {
+  return std::clamp(-depth(i) / kLift_m, 0.0, 1.0);
+}
+
+double Objects::held_mass_kg() const noexcept {
+  if (!held_) return 0.0;
+  const auto i = static_cast<std::size_t>(between_);
+  return carried_share(i) * configs_[i].mass_kg;
+}
+
 void Objects::step(const LinkDynamics& arm, double width, double force, double h) noexcept {
   const Eigen::Vector3d tip = arm.link_position(arm.tip()) + arm.link_rotation(arm.tip()) * p_TG_;
   find_between(tip, width);
@@ -81,7 +91,7 @@ void Objects::carry(const LinkDynamics& arm, double force, double h) noexcept {
   const auto i = static_cast<std::size_t>(between_);
   State& object = states_[i];
   const double grip = 2.0 * configs_[i].friction * force / configs_[i].mass_kg;  // m/s^2
-  const bool enough = grip >= (a_tip_ - gravity_).norm();
+  const bool enough = grip >= carried_share(i) * (a_tip_ - gravity_).norm();
   if (held_) {
     object.p = arm.link_position(arm.tip()) + arm.link_rotation(arm.tip()) * p_TO_;
     object.v = v_tip_;

@@ -4,13 +4,14 @@
 // open wider than it, until that is further away and does not hold it. There both fingers press it
 // with F and can carry 2 mu F:
 //
-//   held      2 mu F >= m |a - g|    it moves with the tip, and its mass is the arm's
+//   held      2 mu F >= c m |a - g|  it moves with the tip, and c times its mass is the arm's
 //   slipping  else                   m v' = m g + 2 mu F (towards the tip's velocity)
 //   free      F = 0                  m v' = m g, down to the height at which it lay; there it rests
 //
 // a is the tip's acceleration at the object, over 5 ms. All of m (a - g) counts, as if it were
 // tangential to the fingers whatever their direction: the worst case. The height is along gravity.
-// A held object has no contact with what it lay on.
+// c goes from 0 to 1 over the first kLift_m above the height at which it lay: what it lies on gives
+// way like a spring, but carries no more than its weight.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,6 +28,7 @@ namespace limber::sim {
 class Objects {
  public:
   static constexpr double kReach_m = 0.03;
+  static constexpr double kLift_m = 2e-3;
 
   /// At most kMostObjects; grasp point in tip axes, m; gravity in base axes, m/s^2.
   Objects(const std::vector<ObjectConfig>& objects, const double p_TG[3], const double gravity[3]);
@@ -40,6 +42,8 @@ class Objects {
   static constexpr int kNone = -1;
   int between() const noexcept { return between_; }
   int held() const noexcept { return held_ ? between_ : kNone; }
+  /// Of the object held, what the arm carries: kg; 0 if there is none.
+  double held_mass_kg() const noexcept;
   /// Of the object held, in tip axes.
   const Eigen::Vector3d& held_at() const noexcept { return p_TO_; }
   std::size_t count() const noexcept { return count_; }
@@ -60,6 +64,7 @@ class Objects {
   void hold(const LinkDynamics& arm) noexcept;
   void fall(std::size_t i, double h) noexcept;
   double depth(std::size_t i) const noexcept;
+  double carried_share(std::size_t i) const noexcept;
 
   std::array<ObjectConfig, kMostObjects> configs_;
   std::array<State, kMostObjects> states_;

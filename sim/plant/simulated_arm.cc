@@ -28,9 +28,9 @@ void SimulatedArm::step(double h, std::int64_t now_ns, std::int64_t next_ns, boo
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant_->step(&forces_, h, now_ns + (next_ns - now_ns) / 2);
   if (!hand_) return;
-  const int taken = hand_->objects().held();
+  const double carried_kg = hand_->held().mass_kg;
   hand_->step(hand_law, plant_->arm(), h);
-  load_changed_ = hand_->objects().held() != taken;
+  load_changed_ = hand_->held().mass_kg != carried_kg;
   if (load_changed_) load_tip();
 }
 

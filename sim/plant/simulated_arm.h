@@ -35,7 +35,7 @@ class SimulatedArm {
   }
   /// Payload and held object as one point mass, at their centre.
   HeldMass tip_load() const noexcept;
-  /// The hand took or lost an object in the last step().
+  /// The arm carries more or less of what the hand holds than before the last step().
   bool load_changed() const noexcept { return load_changed_; }
 
   DriveLaw hand_law;
