@@ -19,6 +19,7 @@ HandControl::HandControl(const Robot& robot, std::int64_t controller)
       law_(hand_),
       gravity_rate_(kGravitySteps * hand_.drive.torque_rate_limit_Nm_per_s) {
   state_.controller = controller;
+  state_.max_width_m = hand_.travel.open_m();
 }
 
 Refusal HandControl::check(const hand_goal_t& goal) const noexcept {

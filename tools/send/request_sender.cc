@@ -103,6 +103,7 @@ void RequestSender::send(const ScenarioMessage& message, std::int64_t controller
                  [&](const mode_request_t& m) { publish(channels::kModeRequest, m); },
                  [&](const compliance_goal_t& m) { publish(channels::kComplianceGoal, m); },
                  [&](const compliance_gains_t& m) { publish(channels::kComplianceGains, m); },
+                 [&](const hand_goal_t& m) { publish(channels::kHandGoal, m); },
                  [&](const push_t& m) { publish(channels::kPush, m); },
                  [&](const scenario_event_t& m) { publish(channels::kScenarioEvent, m); },
              },

@@ -11,6 +11,7 @@ from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
 from limber.live.arm_world import World
 from limber.live.gains_message import gains as gains_message
+from limber.live.hand import Hand
 
 
 class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
@@ -33,6 +34,8 @@ class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
 
     def __init__(self, robot: str | None = None, client: int | None = None) -> None:
         super().__init__(robot, client)
+        #: Requests to the hand, if there is one, and its state.
+        self.hand = Hand(self._link, self._send)
         atexit.register(self.close)
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:

@@ -17,6 +17,7 @@ CHANNELS = {
     "mode_request_t": "MODE_REQUEST",
     "compliance_goal_t": "COMPLIANCE_GOAL",
     "compliance_gains_t": "COMPLIANCE_GAINS",
+    "hand_goal_t": "HAND_GOAL",
     "push_t": "PUSH",
     "scenario_event_t": "SCENARIO_EVENT",
 }

@@ -8,7 +8,7 @@ import numpy as np
 from limber.arrays import Floats
 from limber.log.reader import Log, time_s
 from limber.log.rows import stretches
-from limber.messages import CLIENTS, constants, message_class
+from limber.messages import CLIENTS, constants, driven_joints, joint_name, message_class
 from limber.problems import Problem, groups, problem
 
 # What of the messages tells of events: a long log fits into memory
@@ -35,7 +35,7 @@ class Names:
     laws: list[str]
 
     def joint(self, index: int) -> str:
-        return self.joints[index] if 0 <= index < len(self.joints) else f"joint {index + 1}"
+        return joint_name(self.joints, index)
 
     def law(self, index: int) -> str:
         return self.laws[index] if 0 <= index < len(self.laws) else f"law number {index}"
@@ -134,7 +134,7 @@ def _flags(state: np.ndarray, names: Names) -> Iterator[Event]:
     t, group = time_s(state), groups()["joint"]
     bits = {name: bit for bit, name in constants(group.message, group.prefix).items()}
     for name, cause in group.problems.items():
-        for joint in range(int(state["num_joints"][0])):
+        for joint in range(driven_joints(state[0])):
             for rows, length_s in _stretches(t, state["joint_flags"][:, joint] & bits[name] != 0):
                 text = f"{cause.code} ({names.joint(joint)}) for {length_s:.3g} s: {cause.what}"
                 yield Event(float(t[rows.start]), "driver", text, bad=True)
