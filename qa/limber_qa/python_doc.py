@@ -11,6 +11,7 @@ from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
 from limber.live.arm_state import Pose, Quantities, State
 from limber.live.arm_world import World
+from limber.live.hand import Hand, HandState
 from limber.live.recording import Recording
 from limber.paths import ROOT
 from limber_qa.written_table import WrittenTable
@@ -20,9 +21,10 @@ CALLS = {
     "Modes": Modes,
     "Motions": Motions,
     "Compliance, lease": Arm,
+    "Hand: `arm.hand`": Hand,
     "Simulated world": World,
 }
-OTHERS = (Pose, State, Recording)
+OTHERS = (Pose, State, HandState, Recording)
 
 
 def _doc(thing: object) -> str:

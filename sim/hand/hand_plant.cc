@@ -19,8 +19,8 @@ void HandPlant::fill(hand_truth_t* truth) const noexcept {
   truth->width_m = fingers_.width();
   truth->speed_m_per_s = fingers_.speed();
   truth->force_N = fingers_.force();
-  truth->tau_motor = fingers_.motor().torque(at);
-  truth->tau_friction = fingers_.motor().friction_torque();
+  truth->motor_Nm = fingers_.motor().torque(at);
+  truth->friction_Nm = fingers_.motor().friction_torque();
   truth->winding_degC = fingers_.motor().winding_degC();
   truth->between = static_cast<std::int8_t>(objects_.between());
   truth->held = static_cast<std::int8_t>(objects_.held());

@@ -34,9 +34,13 @@ class Arm(Modes, Motions, World, AbstractContextManager["Arm", None]):
 
     def __init__(self, robot: str | None = None, client: int | None = None) -> None:
         super().__init__(robot, client)
-        #: Requests to the hand, if there is one, and its state.
-        self.hand = Hand(self._link, self._send)
+        self._hand = Hand(self._link, self._send)
         atexit.register(self.close)
+
+    @property
+    def hand(self) -> Hand:
+        """Requests to the hand, if there is one, and its state."""
+        return self._hand
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:
         """Changes law, numbers, choices and settings that are named; all else stays.

@@ -42,19 +42,15 @@ class HandState:
 
 
 class Hand:
-    """Requests to the hand; the arm is to be active. `send`: of the arm it belongs to.
-
-    Called with a width, it sets a goal and returns at once; open(), close() and grasp() wait until
-    the fingers stand still. Raises InputError if robot.yaml has no hand, RefusedError.
-    """
+    """Requests to the hand; the arm is to be active. InputError if it has none."""
 
     def __init__(self, link: StackLink, send: Any) -> None:
         self._link = link
         self._send = send
 
     def __call__(self, width_m: float, force_N: float = 0.0, speed_m_per_s: float = 0.0) -> Any:
-        """Sets the width to go to, m, and the most force, N, and speed, m/s, on the way; 0: as much
-        as robot.yaml allows. Returns the REQUEST_ANSWER.
+        """Sets a width, with the most force and speed (0: robot.yaml's); does not wait. Returns the
+        REQUEST_ANSWER.
         """
         self._newest()
         message = message_class("hand_goal_t")()
@@ -64,19 +60,19 @@ class Hand:
         return self._send(message)
 
     def open(self, speed_m_per_s: float = 0.0, timeout_s: float = MOVE_S) -> HandState:
-        """Opens the hand, whatever it holds, and returns when the fingers stand still."""
+        """Opens, and returns when the fingers stand still."""
         return self._move(float(self._newest()["max_width_m"]), 0.0, speed_m_per_s, timeout_s)
 
     def close(
         self, force_N: float = 0.0, speed_m_per_s: float = 0.0, timeout_s: float = MOVE_S
     ) -> HandState:
-        """Closes it, onto whatever is between the fingers, with at most that force."""
+        """Closes, with at most that force, likewise."""
         return self._move(-PRESS_M, force_N, speed_m_per_s, timeout_s)
 
     def grasp(
         self, force_N: float = 0.0, speed_m_per_s: float = 0.0, timeout_s: float = MOVE_S
     ) -> bool:
-        """Closes with a force; True if something, of any width, is held then."""
+        """The same; True if something, of any width, is held then."""
         return self.close(force_N, speed_m_per_s, timeout_s).grasped
 
     @property
