@@ -204,7 +204,7 @@ void ArmController::write_gravity() noexcept {
 }
 
 void ArmController::move_hand(Activity activity, double dt_s) noexcept {
-  if (activity != Activity::kStandby) return hand_->step(dt_s);
+  if (activity != Activity::kStandby) return hand_->step(activity == Activity::kLaw, dt_s);
   using Rest = HandControl::Rest;
   switch (standby().torque) {
     case Standby::Torque::kZero:

@@ -53,8 +53,9 @@ void HandControl::measure(const joint_state_t& state) noexcept {
   state_.temperature_degC = state.temperature_degC[index_];
 }
 
-void HandControl::step(double dt_s) noexcept {
+void HandControl::step(bool follow, double dt_s) noexcept {
   if (!engaged_) law_.begin(at_, applied_Nm_);
+  if (!follow) law_.stay();
   engaged_ = true;
   torque_ = law_.step(at_, dt_s);
   keep(torque_, dt_s);

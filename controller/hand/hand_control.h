@@ -1,8 +1,8 @@
 // The hand in the controller's cycle: from JOINT_STATE and HAND_GOAL to its torque and HAND_STATE.
 //
-// Whatever the arm's mode, the law goes on with its goal while the torques reach the motors: in
-// HOLD and SOFT_STOP the hand keeps what it holds. Where the driver holds by itself it is left to
-// make what the hand made last, at most the rated torque (tau_gravity).
+// Its law runs while the torques reach the motors. In HOLD and SOFT_STOP it keeps what it holds,
+// and stops where it moves. Where the driver holds by itself it is left to make what the hand made
+// last, at most the rated torque (tau_gravity).
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ class HandControl {
 
   /// A state that has been judged usable.
   void measure(const joint_state_t& state) noexcept;
-  /// One cycle of the law, `dt_s` after the last.
-  void step(double dt_s) noexcept;
+  /// One cycle of the law, `dt_s` after the last; with `follow` false it stays where it is.
+  void step(bool follow, double dt_s) noexcept;
   /// One cycle without: the torque that the drive applied, what it keeps, or none.
   enum class Rest : std::uint8_t { kNone, kApplied, kKept };
   void stand_by(Rest rest, double dt_s) noexcept;

@@ -41,6 +41,8 @@ class HandLaw {
   void begin(const HandReading& at, double torque) noexcept;
   /// Acts from the next step on; may be called in every cycle.
   void set_goal(const HandGoal& goal) noexcept { goal_ = goal; }
+  /// The goal is where the target is now: what is held is held on, what moves comes to rest.
+  void stay() noexcept { goal_.width_m = target_m_; }
   /// N m at the motor, `dt_s` after the last.
   double step(const HandReading& at, double dt_s) noexcept;
   /// No law ran for dt_s; the drive made `torque`.

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kName = "hand";
 constexpr double kMostWidth_m = 1.0;
+constexpr double kYields = 0.1;  // of the travel, each way
 
 HandTravel read_travel(const YamlMap& yaml) {
   const auto widths = yaml.numbers("width_m", -1, {0.0, kMostWidth_m});
@@ -73,15 +74,17 @@ void read_limits(const YamlMap& yaml, HandConfig* hand) {
                             hand->speed_limit_m_per_s, fastest));
   hand->rated_torque_Nm = yaml.number("continuous_torque_Nm", {1e-3, 5e4});
   if (!(hand->rated_torque_Nm <= drive.drive.peak_torque_Nm))
-    yaml.refuse("continuous_torque_Nm", fmt::format("{} is more than the motor's peak, {}",
-                                               hand->rated_torque_Nm, drive.drive.peak_torque_Nm));
+    yaml.refuse("continuous_torque_Nm",
+                fmt::format("{} is more than the motor's peak, {}", hand->rated_torque_Nm,
+                            drive.drive.peak_torque_Nm));
   const double rated_N = hand->rated_torque_Nm / hand->travel.steepest();
   hand->hold_force_N = yaml.number_or("hold_force_N", {0.1, hand->force_limit_N},
                                       std::min(rated_N, hand->force_limit_N));
   if (!(hand->hold_force_N <= rated_N * (1.0 + 1e-9)))
-    yaml.refuse("hold_force_N", fmt::format("{} is more than the {:.4g} N that continuous_torque_Nm "
-                                            "holds for ever",
-                                            hand->hold_force_N, rated_N));
+    yaml.refuse("hold_force_N",
+                fmt::format("{} is more than the {:.4g} N that continuous_torque_Nm "
+                            "holds for ever",
+                            hand->hold_force_N, rated_N));
   hand->heat_time_constant_s = yaml.number("heat_time_constant_s", {0.1, 1e4});
 }
 
@@ -92,8 +95,10 @@ void read_drive(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
   const auto [low, high] = std::minmax(hand->travel.points[0].angle_rad,
                                        hand->travel.points[hand->travel.count - 1].angle_rad);
   drive.name = kName;
-  drive.position_min = low;
-  drive.position_max = high;
+  // Fingers and linkage yield at their ends; further away the reading is wrong.
+  const double margin = kYields * (high - low);
+  drive.position_min = low - margin;
+  drive.position_max = high + margin;
   read_hand_drive(yaml, motors, robot, &drive);
 }
 

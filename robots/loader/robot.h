@@ -124,7 +124,8 @@ struct JointConfig {
 
 /// A hand behind the tip, closed and opened by one motor.
 struct HandConfig {
-  /// Its motor, as a joint of the driver that is none of the chain: named "hand", rad, N m.
+  /// Its motor, as a joint of the driver that is none of the chain: named "hand", rad, N m. Its
+  /// limits are a tenth of the travel beyond the table's ends.
   JointConfig drive;
   HandTravel travel;
   double stiffness_N_per_m = 0.0;    ///< of the width

@@ -1,11 +1,21 @@
 #include "sim/hand/fingers.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace limber::sim {
 namespace {
 
 constexpr int kMostGuesses = 4;
+
+/// The fingers' ends are those of the table.
+EndStop ends_of(const HandConfig& hand) {
+  JointConfig joint = hand.drive;
+  const double ends[] = {hand.travel.angle(hand.travel.closed_m()),
+                         hand.travel.angle(hand.travel.open_m())};
+  joint.position_min = std::min(ends[0], ends[1]);
+  joint.position_max = std::max(ends[0], ends[1]);
+  return EndStop(joint);
+}
 
 }  // namespace
 
@@ -14,7 +24,7 @@ Fingers::Fingers(const HandConfig& hand, double believed_torque_constant, bool f
       rotor_inertia_(hand.drive.drive.rotor_inertia_kgm2),
       finger_mass_(hand.finger_mass_kg),
       motor_(hand.drive, 0, believed_torque_constant, friction),
-      stop_(hand.drive),
+      stop_(ends_of(hand)),
       theta_(hand.drive.home) {}
 
 void Fingers::step(const DriveLaw& law, const Squeezed& object, double h) noexcept {

@@ -46,8 +46,8 @@ TEST(HandYaml, Complete) {
   EXPECT_EQ(hand.drive.drive.sign, -1.0);
   EXPECT_EQ(hand.drive.drive.watchdog_s, 0.02);
   EXPECT_EQ(hand.drive.drive.watchdog_reaction, NodeWatchdogReaction::kOff);
-  EXPECT_EQ(hand.drive.position_min, 0.2);
-  EXPECT_EQ(hand.drive.position_max, 1.2);
+  EXPECT_DOUBLE_EQ(hand.drive.position_min, 0.1) << "a tenth of the travel beyond its end";
+  EXPECT_DOUBLE_EQ(hand.drive.position_max, 1.3);
   EXPECT_EQ(hand.drive.home, 1.2) << "open";
   EXPECT_DOUBLE_EQ(hand.travel.steepest(), 0.1);
   EXPECT_DOUBLE_EQ(hand.travel.flattest(), 0.06);

@@ -100,7 +100,10 @@ def _hand(content: dict[str, Any], buses: dict[str, Any]) -> Motor:
         abs((widths[i + 1] - widths[i]) / (angles[i + 1] - angles[i]))
         for i in range(len(widths) - 1)
     )
-    way = Limits(min(angles), max(angles), math.inf, hand["force_limit_N"] * steepest)
+    margin = 0.1 * (max(angles) - min(angles))
+    way = Limits(
+        min(angles) - margin, max(angles) + margin, math.inf, hand["force_limit_N"] * steepest
+    )
     return _motor("hand", hand, hand, way, content, buses)
 
 

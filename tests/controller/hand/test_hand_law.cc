@@ -167,6 +167,26 @@ TEST(HandLaw, FingersThatComeFreeCloseWithTheGoalsSpeed) {
   EXPECT_NEAR(after, 0.05, 0.005);
 }
 
+TEST(HandLaw, StaysWhereItIsOrWithWhatItHolds) {
+  const HandConfig config = hand();
+  HandLaw law(config);
+  const HandReading at = at_width(config, 0.03);
+  law.begin(at, 0.0);
+  law.set_goal({0.06, 50.0, 0.1});
+  for (int i = 0; i < 20; ++i) law.step(at, kPeriod_s);
+  law.stay();
+  for (int i = 0; i < 200; ++i) law.step(at, kPeriod_s);
+  EXPECT_NEAR(law.target_m(), 0.03 + 0.02 * 0.1, 1e-9);
+  law.set_goal({0.0, 50.0, 0.2});
+  double torque = 0.0;
+  for (int i = 0; i < 500; ++i) torque = law.step(at, kPeriod_s);
+  ASSERT_TRUE(law.grasped());
+  for (int i = 0; i < 500; ++i) {
+    law.stay();
+    EXPECT_EQ(law.step(at, kPeriod_s), torque);
+  }
+}
+
 TEST(HandLaw, TakesOverTheTorquePresent) {
   const HandConfig config = hand();
   const HandReading at = at_width(config, 0.03);

@@ -58,8 +58,16 @@ def events(log: Log, names: Names) -> list[Event]:
         *_limits(status),
         *_pushes(truth),
         *_contacts(truth),
+        *_grasps(log.fields("HAND_STATE", "time_ns", "grasped", "width_m")),
     ]
     return sorted(found, key=lambda event: event.time_s)
+
+
+def _grasps(hand: np.ndarray) -> Iterator[Event]:
+    for rows, length_s in _stretches(time_s(hand), hand["grasped"] != 0):
+        width_mm = float(hand["width_m"][rows.stop - 1]) * 1e3
+        text = f"hand: grasped for {length_s:.3g} s, {width_mm:.1f} mm wide"
+        yield Event(float(time_s(hand)[rows.start]), "controller", text)
 
 
 def _changes(records: np.ndarray, *fields: str) -> Iterator[int]:
