@@ -12,6 +12,7 @@ from limber.live.arm_motions import Motions
 from limber.live.arm_state import Pose, Quantities, State
 from limber.live.arm_streams import Stream, Streams
 from limber.live.arm_world import World
+from limber.live.hand import Hand, HandState
 from limber.live.recording import Recording
 from limber.paths import ROOT
 from limber_qa.written_table import WrittenTable
@@ -22,9 +23,10 @@ CALLS = {
     "Motions": Motions,
     "Targets with times": Streams,
     "Compliance, lease": Arm,
+    "Hand: `arm.hand`": Hand,
     "Simulated world": World,
 }
-OTHERS = (Pose, State, Stream, Recording)
+OTHERS = (Pose, State, Stream, HandState, Recording)
 
 
 def _doc(thing: object) -> str:

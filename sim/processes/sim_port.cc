@@ -57,7 +57,11 @@ void SimPort::handle_messages() noexcept {
   });
 }
 
-void SimPort::publish_truth() noexcept { user_.publish(channels::kSimTruth, simulator_.truth()); }
+void SimPort::publish_truth() noexcept {
+  user_.publish(channels::kSimTruth, simulator_.truth());
+  if (const hand_truth_t* hand = simulator_.hand_truth())
+    user_.publish(channels::kHandTruth, *hand);
+}
 
 void SimPort::set_black_box(BlackBox* box) {
   black_box_ = box;

@@ -40,6 +40,10 @@ std::string describe(const target_stream_t& stream) {
                      names[stream.kind], stream.dt_s[stream.num_knots - 1], stream.delay_s);
 }
 
+std::string describe(const hand_goal_t& goal) {
+  return fmt::format("hand to {:g} m", goal.width_m);
+}
+
 std::string describe(const push_t& push) {
   return fmt::format("push {} at {}: {} N {} N m for {:g} s", push.id,
                      push.link.empty() ? "the tip" : push.link, three(push.wrench),

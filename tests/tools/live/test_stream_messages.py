@@ -44,7 +44,7 @@ def test_kinds_and_defaults():
         ({"position_m": [[0, 0, 0]]}, "belong together"),
         ({"twist": [[0] * 6], "quaternion_wxyz": [[1, 0, 0, 0]]}, "goes with position_m"),
         ({"position_m": [[0] * 3], "quaternion_wxyz": [[1, 1, 0, 0]]}, "unit quaternions"),
-        ({"twist": [[0] * 6], "hand_width_m": -0.01}, "less than 0"),
+        ({"twist": [[0] * 6], "hand_width_m": np.nan}, "not finite"),
         ({"twist": [[0] * 6], "stiffness_scale": 2}, "0.05 to 1"),
         ({"twist": [[0] * 6], "stifness": 1}, "'stifness' is no key"),
     ],

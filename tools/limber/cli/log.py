@@ -156,7 +156,7 @@ def plot(
     what: Annotated[
         list[str] | None,
         typer.Option(
-            help="overview, joint, cartesian, torque, spring, timing or bus; default: all."
+            help="overview, joint, cartesian, torque, spring, timing, bus or hand; default: all."
         ),
     ] = None,
     out: Out = None,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.errors import InputError
-from limber.messages import bit_names, constants
+from limber.messages import HAND, bit_names, constants
 from limber.model.gains_table import law_names
 from limber.model.rotations import between, matrix_of
 from limber.problems import problem, problems_of_bits, sentence
@@ -201,7 +201,7 @@ class Quantities:
         flags, names = self._records()[0]["joint_flags"], self._joint_names()
         return [
             f"{found.code} ({name})"
-            for name, bits in zip(names, flags, strict=False)
+            for name, bits in zip((*names, HAND), flags, strict=False)
             for found in problems_of_bits("joint", int(bits))
         ]
 
@@ -209,7 +209,7 @@ class Quantities:
         found = problem(group, int(value))
         if found is None:
             return ""
-        names = self._joint_names()
+        names = (*self._joint_names(), HAND)
         where = f" ({names[joint]})" if 0 <= joint < len(names) else ""
         return f"{found.code}{where}: {sentence(found.what)} To do: {found.remedy}."
 
