@@ -4,16 +4,18 @@
 
 namespace limber::controller {
 
-bool HandKnots::take(const target_stream_t& message, std::int64_t now_ns) noexcept {
-  if (message.use_hand == 0) return true;
+void HandKnots::take(const target_stream_t& message, std::int64_t now_ns) noexcept {
+  if (message.use_hand == 0) return;
   const std::int64_t start_ns = TargetStream::knot_ns(message, 0, now_ns);
   while (count_ > 0 && knot(count_ - 1).time_ns >= start_ns) --count_;
-  if (count_ + message.num_knots > kMost) return false;
   for (int i = 0; i < message.num_knots; ++i) {
+    if (count_ == kMost) {
+      first_ = (first_ + 1) % kMost;
+      --count_;
+    }
     knot(count_++) = {TargetStream::knot_ns(message, i, now_ns), message.hand_width_m[i],
                       message.hand_force_N};
   }
-  return true;
 }
 
 std::optional<hand_goal_t> HandKnots::due(std::int64_t now_ns) noexcept {

@@ -14,8 +14,9 @@ class HandKnots {
  public:
   static constexpr int kMost = 256;
 
-  /// As KnotPath::replace(), of a message that TargetStream has taken. False: no room.
-  bool take(const target_stream_t& message, std::int64_t now_ns) noexcept;
+  /// As KnotPath::replace(), of a message that TargetStream has taken, which bounds how many wait;
+  /// beyond that the oldest go.
+  void take(const target_stream_t& message, std::int64_t now_ns) noexcept;
   /// The goal of the newest knot whose time has come since the last call; nothing if none has.
   std::optional<hand_goal_t> due(std::int64_t now_ns) noexcept;
   /// None waits any more.
