@@ -136,7 +136,9 @@ def stream(
 
 
 def evaluated(context: Context, x0: float, messages: list[list[object]]) -> Goals:
-    inputs = {"x0": x0, "n": len(clock()), "messages": messages, **BOUNDS}
+    arrivals, times, positions = (list(part) for part in zip(*messages, strict=True))
+    sent = {"arrivals": arrivals, "times": times, "positions": positions}
+    inputs = {"x0": x0, "n": len(clock()), "messages": sent, **BOUNDS}
     return np.asarray(context.eval([case("target_stream_seq", **inputs)])[0]["x"])
 
 
