@@ -53,7 +53,10 @@ class HandLaw {
   double target_m() const noexcept { return target_m_; }
   double bound_N() const noexcept { return bound_N_; }
   bool grasped() const noexcept { return grasped_; }
-  bool moving() const noexcept { return still_s_ < kStill_s || travelling_; }
+  /// On its way, or not yet sure whether it grasps.
+  bool moving() const noexcept {
+    return still_s_ < kStill_s || travelling_ || (pressed_s_ > 0.0 && !grasped_);
+  }
 
  private:
   static constexpr double kStill_s = 0.1;
