@@ -6,7 +6,7 @@
 #include "controller/hand/hand_law.h"
 #include "controller/output/torque_limiter.h"
 
-namespace limber::controller {
+namespace limber::controller::test_hand_law {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -201,4 +201,4 @@ TEST(HandLaw, TakesOverTheTorquePresent) {
 }
 
 }  // namespace
-}  // namespace limber::controller
+}  // namespace limber::controller::test_hand_law
