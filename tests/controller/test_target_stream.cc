@@ -236,7 +236,8 @@ std::vector<Action> actions() {
   };
   return {
       {"joints", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(joints(*r, 0.05)), nullptr); }},
-      {"far joints", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(joints(*r, -0.4)), nullptr); }},
+      {"far joints",
+       [](Rig* r) { ASSERT_EQ(r->controller.on_stream(joints(*r, -0.8, 0.02)), nullptr); }},
       {"pose", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(pose(*r, 0.02)), nullptr); }},
       {"far pose", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(pose(*r, -0.1)), nullptr); }},
       {"twist", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(twist(*r, 0.2)), nullptr); }},

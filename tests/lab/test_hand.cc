@@ -188,7 +188,7 @@ TEST_P(EveryFamily, CycleAllocatesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, EveryFamily, ::testing::Range(0, 3),
-                         [](const auto& info) { return kFamilies[info.param].robot; });
+                         [](const auto& family) { return kFamilies[family.param].robot; });
 
 TEST(Hand, HoldsAHardThingForTenMinutesWithinItsMotorsRating) {
   HandStage stage(kFamilies[0]);

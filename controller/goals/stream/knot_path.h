@@ -46,7 +46,7 @@ class KnotPath {
   bool replace(std::span<const Knot<Space>> knots) noexcept {
     int kept = count_;
     while (kept > 0 && knot(kept - 1).time_ns + kClosest_ns > knots.front().time_ns) --kept;
-    if (kept > 0 && knots.front().time_ns - knot(kept - 1).time_ns > kGap_ns) kept = 0;
+    if (kept > 0 && !belongs(knots.front(), knot(kept - 1))) kept = 0;
     if (kept + static_cast<int>(knots.size()) > kMost) return false;
     count_ = kept;
     for (const Knot<Space>& next : knots) knot(count_++) = next;
@@ -76,6 +76,7 @@ class KnotPath {
   }
 
  private:
+  static constexpr double kJump = 2.0;  // times v_max
   static constexpr double kBrake_s = 0.25;
   static constexpr double kPeak = 1.5;  // of the deceleration along a cubic, over its mean
 
@@ -85,6 +86,14 @@ class KnotPath {
   }
   Knot<Space>& knot(int i) noexcept {
     return knots_[static_cast<std::size_t>((first_ + i) % kMost)];
+  }
+
+  /// Not after a long pause, and not by a jump, which is the splice's to smooth.
+  bool belongs(const Knot<Space>& next, const Knot<Space>& last) const noexcept {
+    if (next.time_ns - last.time_ns > kGap_ns) return false;
+    const Vector way = Space::relative(Space::at_rest(next.x), Space::at_rest(last.x)).x;
+    const Vector speed = way / seconds(next.time_ns - last.time_ns);
+    return clamped<Space>(speed, kJump * v_max_) == speed;
   }
 
   /// The knot with its velocity and acceleration: those of the polynomial through it and its
