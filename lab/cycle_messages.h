@@ -19,6 +19,8 @@ class CycleMessages {
     const std::int64_t seq = lab.state().seq;
     put(channels::kJointState, lab.state());
     put(channels::kSimTruth, lab.truth());
+    const block_truth_t* block = lab.simulator().block_truth();
+    if (block != nullptr) put(channels::kBlockTruth, *block);
     put(channels::kJointTorque, lab.torque());
     if (seq % channels::kControllerStatusEvery == 0)
       put(channels::kControllerStatus, lab.controller_status());

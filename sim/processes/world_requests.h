@@ -1,4 +1,4 @@
-// Live requests to the simulated world: pushes, walls, payloads, faults of drives.
+// Live requests to the simulated world: pushes, walls, workpieces, payloads, faults of drives.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace limber::sim {
 
-/// PUSH and SCENARIO_EVENT are handed to the simulator while `user` handles what waits; `complain`
+/// PUSH, SCENARIO_EVENT and WORKPIECE are handed to the simulator while `user` handles what waits; `complain`
 /// gets the reason for one that is refused. All outlive the port. Set-up only; throws ConfigError.
 inline void take_world_requests(LcmPort* user, Simulator* simulator,
                                 const std::function<void(const char*)>& complain) {
@@ -21,6 +21,11 @@ inline void take_world_requests(LcmPort* user, Simulator* simulator,
       channels::kScenarioEvent, kQueue, [simulator, complain](const scenario_event_t& event) {
         if (!simulator->event(event))
           complain("a SCENARIO_EVENT was refused (values out of range)");
+      });
+  user->subscribe<workpiece_t>(
+      channels::kWorkpiece, kQueue, [simulator, complain](const workpiece_t& workpiece) {
+        if (!simulator->workpiece(workpiece))
+          complain("a WORKPIECE was refused (values out of range)");
       });
 }
 

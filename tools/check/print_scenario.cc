@@ -34,6 +34,11 @@ std::string describe(const compliance_goal_t& goal) {
   return fmt::format("goal: {} within {:g} s", names[goal.kind], goal.duration_s);
 }
 
+std::string describe(const target_stream_t& stream) {
+  const char* const names[] = {"joints", "pose", "twist"};
+  return fmt::format("stream: {} targets of {}", stream.num_knots, names[stream.kind]);
+}
+
 std::string describe(const push_t& push) {
   return fmt::format("push {} at {}: {} N {} N m for {:g} s", push.id,
                      push.link.empty() ? "the tip" : push.link, three(push.wrench),

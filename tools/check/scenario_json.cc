@@ -38,6 +38,12 @@ json::Members members_of(const compliance_goal_t& goal) {
   return {{"goal", json::object(members)}};
 }
 
+json::Members members_of(const target_stream_t& stream) {
+  const char* const kinds[] = {"joints", "pose", "twist"};
+  return {{"stream", json::object({{"kind", json::text(kinds[stream.kind])},
+                                   {"knots", json::number(stream.num_knots)}})}};
+}
+
 json::Members members_of(const push_t& push) {
   return {{"push", json::object({{"link", json::text(push.link)},
                                  {"wrench_N_Nm", array_json(push.wrench)},
