@@ -1,5 +1,6 @@
 #include "sim/world/hole.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace limber::sim {

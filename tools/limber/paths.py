@@ -90,7 +90,7 @@ def cache_folder() -> Path:
 
 # Packages of optional parts, by the module that is imported.
 EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap"}
-EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun"}
+EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun", "gymnasium": "gym"}
 
 
 def command_for_extra(extra: str) -> str:

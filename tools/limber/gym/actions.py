@@ -65,8 +65,9 @@ class Actions:
     ) -> None:
         one_of("control_mode", control_mode, CONTROL_MODES)
         one_of("impedance_mode", impedance_mode, IMPEDANCE_MODES)
-        self._low_q = np.array([joint.low for joint in robot.joints])
-        self._high_q = np.array([joint.high for joint in robot.joints])
+        self.ends = tuple(
+            np.array([getattr(joint, end) for joint in robot.joints]) for end in ("low", "high")
+        )
         self.at_tip = "_ee_" in control_mode
         self.law = "cartesian_impedance" if self.at_tip else "joint_impedance"
         self._absolute = control_mode == "pd_joint_pos"
@@ -78,7 +79,7 @@ class Actions:
             self._step = np.full(self._joints, step_joint)
         K = np.diag(robot.K_x) if self.at_tip else robot.K_q
         ones = np.ones(len(self._step))
-        low, high = (self._low_q, self._high_q) if self._absolute else (-ones, ones)
+        low, high = self.ends if self._absolute else (-ones, ones)
         self._ratios = 1 if impedance_mode == "variable" else 0
         self._stiffnesses = 0 if impedance_mode == "fixed" else len(K)
         if self._stiffnesses:
@@ -97,7 +98,7 @@ class Actions:
         change = self._step * motion
         if not self.at_tip:
             q = np.clip(start.q + change, at.q - LEASH_JOINT, at.q + LEASH_JOINT)
-            return Where(np.clip(q, self._low_q, self._high_q), at.p, at.quat)
+            return Where(np.clip(q, *self.ends), at.p, at.quat)
         p = at.p + _shortened(start.p + change[:3] - at.p, LEASH_M)
         turn = between(at.quat, product(_turn(change[3:]), start.quat))
         quat = product(_turn(_shortened(turn, LEASH_RAD)), at.quat)
@@ -114,12 +115,13 @@ class Actions:
         message.value[0][: len(values)] = values
         return message
 
-    def gains(self, action: Floats, ramp_s: float) -> Any | None:
-        """The impedance of an action as a compliance_gains_t; None where it is fixed."""
-        if not self._stiffnesses:
-            return None
-        values = np.clip(action, self.low, self.high)
-        K = values[self._ratios : self._ratios + self._stiffnesses]
+    def impedance(self, action: Floats) -> Floats:
+        """The part of an action for gains(); empty where the impedance is fixed."""
+        return np.clip(action, self.low, self.high)[: self._ratios + self._stiffnesses]
+
+    def gains(self, values: Floats, ramp_s: float) -> Any:
+        """An impedance as a compliance_gains_t."""
+        K = values[self._ratios :]
         if self.at_tip:
             given = {"K_x_translation_N_per_m": K[:3], "K_x_rotation_Nm_per_rad": K[3:]}
         else:

@@ -35,7 +35,7 @@ class ArmEnv(gymnasium.Env):
 
     reset() draws, by its seed alone, the start pose (`start_spread_rad` round home, for prismatic
     joints in m), `friction_scale` times robot.yaml's and `payload_kg` at the tip, of which the
-    controller is not told. `integrator`: a scenario's. Equal seeds and actions give equal bytes.
+    controller is not told. `integrator`, `step_s`: a scenario's. Equal seeds and actions give equal bytes.
     """
 
     metadata = {"render_modes": []}  # noqa: RUF012  Gymnasium's
@@ -55,6 +55,7 @@ class ArmEnv(gymnasium.Env):
         friction_scale: tuple[float, float] = (1.0, 1.0),
         payload_kg: tuple[float, float] = (0.0, 0.0),
         integrator: str = "reference",
+        step_s: float = 5e-4,
         render_mode: str | None = None,
     ) -> None:
         if render_mode is not None:
@@ -69,12 +70,13 @@ class ArmEnv(gymnasium.Env):
         self._spread = number("start_spread_rad", start_spread_rad, 0.0, 1.0)
         self._friction_scale = _range("friction_scale", friction_scale, 10.0)
         self._payload_kg = _range("payload_kg", payload_kg, 100.0)
-        self._integrator = integrator
+        self._integrator, self._step_s = integrator, step_s
         self.lab: Lab | None = None
         self.action_space = spaces.Box(
             self.actions.low.astype(np.float32), self.actions.high.astype(np.float32)
         )
-        self.observation_space = self._spaces()
+        self._boxes = self._boxes_of()
+        self.observation_space = spaces.Dict(self._boxes)
 
     # --- a task's ---------------------------------------------------------------------------------
 
@@ -102,6 +104,7 @@ class ArmEnv(gymnasium.Env):
         self._make_ready()
         self._read()
         self._goal = self._at()
+        self._impedance = np.empty(0)  # robot.yaml's, until an action names one
         self.start_task(self._goal)
         return self._observation(), self._info(refused="", success=False)
 
@@ -135,10 +138,11 @@ class ArmEnv(gymnasium.Env):
         """Sends goal and impedance; why one of them was refused, or nothing."""
         lab = self._open()
         goal = self.actions.goal(action, self._at(), self._goal)
-        gains = self.actions.gains(action, self._period_s)
+        impedance = self.actions.impedance(action)
         try:
-            if gains is not None:
-                lab.send(gains)
+            if not np.array_equal(impedance, self._impedance):
+                lab.send(self.actions.gains(impedance, self._period_s))
+                self._impedance = impedance
             lab.send(self.actions.target(goal, self._period_s))
         except RefusedByLabError as error:
             return str(error)
@@ -167,23 +171,21 @@ class ArmEnv(gymnasium.Env):
 
     def _scenario(self) -> dict[str, Any]:
         draw = self.np_random.uniform
-        joints = self.robot.joints
-        low = np.array([joint.low for joint in joints])
-        high = np.array([joint.high for joint in joints])
-        start = self.robot.home + draw(-self._spread, self._spread, len(joints))
+        start = self.robot.home + draw(-self._spread, self._spread, len(self.robot.joints))
         friction = draw(*self._friction_scale)
         payload_kg = draw(*self._payload_kg)
         timeline: list[dict[str, Any]] = [
             {"at_s": 0.0, "mode": "hold"},
             {"at_s": 0.0, "mode": "active"},
-            {"at_s": 0.0, "gains": {"law": self.actions.law, "ramp_s": 0.1}},
+            {"at_s": 0.0, "gains": {"law": self.actions.law, "contact": "joint_torque", "ramp_s": 0.1}},
         ]
         if payload_kg >= 1e-3:
             timeline.append({"at_s": 0.0, "payload": {"mass_kg": float(payload_kg)}})
         scenario: dict[str, Any] = {
             "robot": str(self.robot.folder),
             "integrator": self._integrator,
-            "start_q": np.clip(start, low, high).tolist(),
+            "step_s": self._step_s,
+            "start_q": np.clip(start, *self.actions.ends).tolist(),
             "timeline": timeline,
         }
         if friction != 1.0:
@@ -202,13 +204,12 @@ class ArmEnv(gymnasium.Env):
                 found[joint["name"]] = given
         return found
 
-    def _spaces(self) -> spaces.Dict:
+    def _boxes_of(self) -> dict[str, spaces.Box]:
         joints = self.robot.joints
-        low = np.array([max(joint.low, -_FAST) - BEYOND_END_RAD for joint in joints])
-        high = np.array([min(joint.high, _FAST) + BEYOND_END_RAD for joint in joints])
+        low, high = (np.clip(end, -_FAST, _FAST) for end in self.actions.ends)
         wide = np.ones(len(joints))
         bounds = {
-            "agent_pos": (low, high),
+            "agent_pos": (low - BEYOND_END_RAD, high + BEYOND_END_RAD),
             "qvel": (-_FAST * wide, _FAST * wide),
             "tau": (-_LARGE * wide, _LARGE * wide),
             "contact": (-_LARGE * np.ones(6), _LARGE * np.ones(6)),
@@ -218,12 +219,10 @@ class ArmEnv(gymnasium.Env):
                 _FAR_M * np.ones(self.task_size),
             ),
         }
-        return spaces.Dict(
-            {
-                key: spaces.Box(low.astype(np.float32), high.astype(np.float32))
-                for key, (low, high) in bounds.items()
-            }
-        )
+        return {
+            key: spaces.Box(low.astype(np.float32), high.astype(np.float32))
+            for key, (low, high) in bounds.items()
+        }
 
     def _observation(self) -> Observation:
         n = len(self.robot.joints)
@@ -236,12 +235,8 @@ class ArmEnv(gymnasium.Env):
             "environment_state": self.task_state(),
         }
         return {
-            key: np.clip(value, space.low, space.high).astype(np.float32)
-            for (key, space), value in zip(
-                self.observation_space.spaces.items(),
-                (values[key] for key in self.observation_space.spaces),
-                strict=True,
-            )
+            key: np.clip(values[key], box.low, box.high).astype(np.float32)
+            for key, box in self._boxes.items()
         }
 
     def _info(self, refused: str, success: bool) -> dict[str, Any]:
@@ -259,8 +254,9 @@ class ArmEnv(gymnasium.Env):
 
     def _fault(self) -> str:
         """Of the drives, else of the controller, in the words of lcmtypes; empty while active."""
-        if int(self._state["fault"]):
-            return constants("joint_state_t", "FAULT_")[int(self._state["fault"])]
+        fault = constants("joint_state_t", "FAULT_")[int(self._state["fault"])]
+        if fault not in ("NONE", "REQUESTED"):  # REQUESTED: by the controller, which has the cause
+            return fault
         mode = constants("controller_status_t", "MODE_")[int(self._status["mode"])]
         if mode == "ACTIVE":
             return ""

@@ -13,7 +13,8 @@ REST_M_PER_S = 0.05
 
 
 class Reach(ArmEnv):
-    """The target lies within `distance_m` of the tip's start along each axis.
+    """The target is where the tip would be with the joints up to `reach_rad` (of prismatic ones, m)
+    from the start, so that the arm can be there.
 
     Reward: minus the distance, m, and 1 at the end: within `tolerance_m`, slower than 0.05 m/s.
     `environment_state`: the target, base frame, m.
@@ -22,15 +23,17 @@ class Reach(ArmEnv):
     task_size = 3
 
     def __init__(
-        self, *args: Any, distance_m: float = 0.1, tolerance_m: float = 0.01, **more: Any
+        self, *args: Any, reach_rad: float = 0.25, tolerance_m: float = 0.01, **more: Any
     ) -> None:
-        self._distance_m = number("distance_m", distance_m, 0.0, 1.0)
+        self._reach_rad = number("reach_rad", reach_rad, 0.0, 3.0)
         self._tolerance_m = number("tolerance_m", tolerance_m, 1e-4, 1.0)
         self._target = np.zeros(3)
         super().__init__(*args, **more)
 
     def start_task(self, at: Where) -> None:
-        self._target = at.p + self.np_random.uniform(-self._distance_m, self._distance_m, 3)
+        q = at.q + self.np_random.uniform(-self._reach_rad, self._reach_rad, len(at.q))
+        low, high = self.actions.ends
+        self._target = self.robot.chain.forward(np.clip(q, low, high))[:3, 3]
 
     def task_state(self) -> Floats:
         return self._target
