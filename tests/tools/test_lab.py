@@ -8,7 +8,7 @@ import pytest
 from limber.errors import InputError, RunError
 from limber.lab import Lab, RefusedByLabError
 from limber.live import request_messages, stream_messages
-from limber.log.reader import read_log
+from limber.log.reader import Log
 from limber.messages import decode, message_class
 from limber.paths import completed, program
 
@@ -56,11 +56,11 @@ def test_same_bytes_in_turn_and_beside_each_other():
 def test_the_lab_of_the_command_line_gives_the_same_bytes(tmp_path):
     log = tmp_path / "run.lcmlog"
     completed([str(program("limber-lab")), "scenarios/quick.yaml", "--log", str(log)])
-    records = read_log(log)
+    recorded = Log(log)
     with Lab("quick") as lab:
         lab.step(3000)
         for channel in ("JOINT_STATE", "JOINT_TORQUE", "SIM_TRUTH"):
-            assert lab.message(channel) == records[channel][-1], channel
+            assert lab.message_bytes(channel) == recorded.raw(channel)[-1], channel
 
 
 def test_cycles_run_without_pythons_lock():
