@@ -17,7 +17,7 @@ CHANNELS = ("JOINT_STATE", "JOINT_TORQUE", "SIM_TRUTH", "CONTROLLER_STATUS", "DR
 
 def target(joints: int, up_m: float, lab: Lab):
     p, quat = (lab.message("CONTROLLER_STATUS")[key] for key in ("p_BT", "quat_BT"))
-    pose = {"position_m": [p + [0.0, 0.0, up_m]], "quaternion_wxyz": [quat]}
+    pose = {"position_m": [p + np.array([0.0, 0.0, up_m])], "quaternion_wxyz": [quat]}
     message = next(stream_messages.targets(joints, np.zeros(1), {**pose, "delay_s": 0.05}))
     message.t0_ns = message.NOW
     return message
@@ -81,7 +81,7 @@ def test_requests_act_and_are_refused_with_a_reason():
             lab.message("JOINT_STATE")
         lab.step(1)
         goal = request_messages.goal(7, offset_m=[0.05, 0.0, 0.0])
-        with pytest.raises(RefusedByLabError, match="COMPLIANCE_GOAL refused: .*ACTIVE"):
+        with pytest.raises(RefusedByLabError, match=r"COMPLIANCE_GOAL refused: .*ACTIVE"):
             lab.send(goal)
         answer = decode("request_answer_t", lab.message_bytes("REQUEST_ANSWER"))
         assert (answer.accepted, answer.code) == (0, answer.REFUSED_MODE)

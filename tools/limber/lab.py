@@ -1,5 +1,5 @@
-"""A lab in this process: driver, controller and simulated arm in lock step, as fast as the processor
-allows, without network, threads or Python's lock (lab/lab_interface.h).
+"""A lab in this process: driver, controller and simulated arm in lock step, as fast as the
+processor allows, without network, threads or Python's lock (lab/lab_interface.h).
 
     lab = Lab({"robot": "openarm"})
     lab.step(1000)

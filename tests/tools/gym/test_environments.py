@@ -59,9 +59,9 @@ def test_equal_seeds_give_equal_bytes_and_others_do_not(name):
     env = made(name, friction_scale=(0.5, 1.5), payload_kg=(0.0, 0.5))
     first = in_bytes(rolled(env, 3, 20))
     assert in_bytes(rolled(env, 3, 20)) == first, "the same environment again"
-    assert in_bytes(rolled(made(name, friction_scale=(0.5, 1.5), payload_kg=(0.0, 0.5)), 3, 20)) == (
-        first
-    )
+    assert in_bytes(
+        rolled(made(name, friction_scale=(0.5, 1.5), payload_kg=(0.0, 0.5)), 3, 20)
+    ) == (first)
     assert in_bytes(rolled(env, 4, 0)) != first[:1]
 
 

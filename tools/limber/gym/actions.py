@@ -122,6 +122,7 @@ class Actions:
     def gains(self, values: Floats, ramp_s: float) -> Any:
         """An impedance as a compliance_gains_t."""
         K = values[self._ratios :]
+        given: dict[str, Any]
         if self.at_tip:
             given = {"K_x_translation_N_per_m": K[:3], "K_x_rotation_Nm_per_rad": K[3:]}
         else:

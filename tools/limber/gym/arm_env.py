@@ -11,7 +11,7 @@ from limber.errors import InputError, RunError
 from limber.gym.actions import Actions, Where
 from limber.lab import Lab, RefusedByLabError
 from limber.live.values import number
-from limber.messages import bit_names, constants
+from limber.messages import constants
 from limber.model.robot import Robot, load_robot
 
 Observation = dict[str, np.ndarray]
@@ -35,7 +35,8 @@ class ArmEnv(gymnasium.Env):
 
     reset() draws, by its seed alone, the start pose (`start_spread_rad` round home, for prismatic
     joints in m), `friction_scale` times robot.yaml's and `payload_kg` at the tip, of which the
-    controller is not told. `integrator`, `step_s`: a scenario's. Equal seeds and actions give equal bytes.
+    controller is not told. `integrator`, `step_s`: a scenario's. Equal seeds and actions give equal
+    bytes.
     """
 
     metadata = {"render_modes": []}  # noqa: RUF012  Gymnasium's
@@ -72,11 +73,20 @@ class ArmEnv(gymnasium.Env):
         self._payload_kg = _range("payload_kg", payload_kg, 100.0)
         self._integrator, self._step_s = integrator, step_s
         self.lab: Lab | None = None
+        self._words = {
+            prefix: constants(type_name, f"{prefix}_")
+            for type_name, prefix in (
+                ("joint_state_t", "FAULT"),
+                ("controller_status_t", "MODE"),
+                ("controller_status_t", "REASON"),
+                ("controller_status_t", "LIMIT"),
+            )
+        }
         self.action_space = spaces.Box(
             self.actions.low.astype(np.float32), self.actions.high.astype(np.float32)
         )
         self._boxes = self._boxes_of()
-        self.observation_space = spaces.Dict(self._boxes)
+        self.observation_space = spaces.Dict({**self._boxes})
 
     # --- a task's ---------------------------------------------------------------------------------
 
@@ -104,13 +114,11 @@ class ArmEnv(gymnasium.Env):
         self._make_ready()
         self._read()
         self._goal = self._at()
-        self._impedance = np.empty(0)  # robot.yaml's, until an action names one
+        self._impedance: Floats = np.empty(0)  # robot.yaml's, until an action names one
         self.start_task(self._goal)
         return self._observation(), self._info(refused="", success=False)
 
-    def step(
-        self, action: np.ndarray
-    ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         given = np.asarray(action, float)
         if given.shape != self.actions.low.shape or not np.isfinite(given).all():
             raise InputError(f"action: expected {len(self.actions.low)} finite numbers")
@@ -161,10 +169,9 @@ class ArmEnv(gymnasium.Env):
 
     def _make_ready(self) -> None:
         lab = self._open()
-        active = constants("controller_status_t", "MODE_")
         for _ in range(round(READY_S / 0.05)):
             lab.step(round(0.05 * self.robot.rate_hz))
-            if active[int(lab.message("CONTROLLER_STATUS")["mode"])] == "ACTIVE":
+            if self._words["MODE"][int(lab.message("CONTROLLER_STATUS")["mode"])] == "ACTIVE":
                 lab.step(round(SETTLED_S * self.robot.rate_hz))
                 return
         raise RunError("the simulated arm has not become active")
@@ -177,7 +184,10 @@ class ArmEnv(gymnasium.Env):
         timeline: list[dict[str, Any]] = [
             {"at_s": 0.0, "mode": "hold"},
             {"at_s": 0.0, "mode": "active"},
-            {"at_s": 0.0, "gains": {"law": self.actions.law, "contact": "joint_torque", "ramp_s": 0.1}},
+            {
+                "at_s": 0.0,
+                "gains": {"law": self.actions.law, "contact": "joint_torque", "ramp_s": 0.1},
+            },
         ]
         if payload_kg >= 1e-3:
             timeline.append({"at_s": 0.0, "payload": {"mass_kg": float(payload_kg)}})
@@ -240,9 +250,10 @@ class ArmEnv(gymnasium.Env):
         }
 
     def _info(self, refused: str, success: bool) -> dict[str, Any]:
+        limits = int(self._status["limits"])
         return {
             "success": success,
-            "limits": bit_names("controller_status_t", "LIMIT_", int(self._status["limits"])),
+            "limits": [word for bit, word in self._words["LIMIT"].items() if limits & bit],
             "energy_J": {
                 "kinetic": float(self._status["kinetic_energy_J"]),
                 "spring": float(self._status["spring_energy_J"]),
@@ -254,13 +265,13 @@ class ArmEnv(gymnasium.Env):
 
     def _fault(self) -> str:
         """Of the drives, else of the controller, in the words of lcmtypes; empty while active."""
-        fault = constants("joint_state_t", "FAULT_")[int(self._state["fault"])]
+        fault = self._words["FAULT"][int(self._state["fault"])]
         if fault not in ("NONE", "REQUESTED"):  # REQUESTED: by the controller, which has the cause
             return fault
-        mode = constants("controller_status_t", "MODE_")[int(self._status["mode"])]
+        mode = self._words["MODE"][int(self._status["mode"])]
         if mode == "ACTIVE":
             return ""
-        reason = constants("controller_status_t", "REASON_")[int(self._status["reason"])]
+        reason = self._words["REASON"][int(self._status["reason"])]
         return mode if reason == "NONE" else reason
 
 

@@ -41,7 +41,8 @@ class Peg(ArmEnv):
         self._radius_m = number("peg_radius_m", peg_radius_m, 1e-3, 0.1)
         self._clearance_m = number("clearance_m", clearance_m, 1e-5, 0.1)
         self._friction = number("friction", friction, 0.0, 2.0)
-        self._mouth, self._axis = np.zeros(3), np.zeros(3)
+        self._mouth: Floats = np.zeros(3)
+        self._axis: Floats = np.zeros(3)
         super().__init__(*args, **more)
 
     def start_task(self, at: Where) -> None:

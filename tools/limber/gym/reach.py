@@ -27,7 +27,7 @@ class Reach(ArmEnv):
     ) -> None:
         self._reach_rad = number("reach_rad", reach_rad, 0.0, 3.0)
         self._tolerance_m = number("tolerance_m", tolerance_m, 1e-4, 1.0)
-        self._target = np.zeros(3)
+        self._target: Floats = np.zeros(3)
         super().__init__(*args, **more)
 
     def start_task(self, at: Where) -> None:
