@@ -39,118 +39,82 @@ int fail(limber_lab* lab, int code, const std::string& why) {
 
 // --- requests ------------------------------------------------------------------------------------
 
-/// A request of this type to the controller.
-template <typename Request, Refusal (ArmController::*decide)(const Request&) noexcept>
-int ask(limber_lab* lab, const Request& request) {
+/// To the controller.
+template <typename Request>
+int take(limber_lab* lab, const Request& request,
+         Refusal (ArmController::*decide)(const Request&) noexcept) {
   const RequestOutcome outcome = outcome_of(request, (lab->lab.controller().*decide)(request));
   lab->answer = answer_to(outcome, lab->lab.time_ns());
   return outcome.refusal ? fail(lab, LIMBER_LAB_REFUSED, lab->answer->reason) : LIMBER_LAB_DONE;
 }
 
 /// A change of the simulated world.
-template <typename Event, bool (Simulator::*change)(const Event&) noexcept>
-int befall(limber_lab* lab, const Event& event) {
-  return (lab->lab.simulator().*change)(event)
-             ? LIMBER_LAB_DONE
-             : fail(lab, LIMBER_LAB_REFUSED, "values out of range, no such link, or no free slot");
+template <typename Event>
+int take(limber_lab* lab, const Event& event, bool (Simulator::*change)(const Event&) noexcept) {
+  if ((lab->lab.simulator().*change)(event)) return LIMBER_LAB_DONE;
+  return fail(lab, LIMBER_LAB_REFUSED, "values out of range, no such link, or no free slot");
 }
 
-template <typename Message, int (*take)(limber_lab*, const Message&)>
-int decoded(limber_lab* lab, const char* channel, const std::uint8_t* data, std::size_t size) {
-  Message message{};
+template <typename Owner, typename Answer, typename Message>
+Message message_of(Answer (Owner::*)(const Message&) noexcept);
+
+template <auto member>
+int request(limber_lab* lab, const std::uint8_t* data, std::size_t size) {
+  decltype(message_of(member)) message{};
   if (!decode_message(data, size, &message))
-    return fail(lab, LIMBER_LAB_MALFORMED, fmt::format("{}: not a message of its type", channel));
-  return take(lab, message);
+    return fail(lab, LIMBER_LAB_MALFORMED, "not a message of the channel's type");
+  return take(lab, message, member);
 }
 
-using Controller = ArmController;
-using Take = int (*)(limber_lab*, const char*, const std::uint8_t*, std::size_t);
+using Take = int (*)(limber_lab*, const std::uint8_t*, std::size_t);
 constexpr std::pair<const char*, Take> kRequests[] = {
-    {channels::kModeRequest, decoded<mode_request_t, ask<mode_request_t, &Controller::on_mode>>},
-    {channels::kComplianceGoal,
-     decoded<compliance_goal_t, ask<compliance_goal_t, &Controller::on_goal>>},
-    {channels::kComplianceGains,
-     decoded<compliance_gains_t, ask<compliance_gains_t, &Controller::on_gains>>},
-    {channels::kTargetStream,
-     decoded<target_stream_t, ask<target_stream_t, &Controller::on_stream>>},
-    {channels::kTorqueOverlay,
-     decoded<torque_overlay_t, ask<torque_overlay_t, &Controller::on_overlay>>},
-    {channels::kPush, decoded<push_t, befall<push_t, &Simulator::push>>},
-    {channels::kScenarioEvent,
-     decoded<scenario_event_t, befall<scenario_event_t, &Simulator::event>>},
-    {channels::kWorkpiece, decoded<workpiece_t, befall<workpiece_t, &Simulator::workpiece>>},
+    {channels::kModeRequest, request<&ArmController::on_mode>},
+    {channels::kComplianceGoal, request<&ArmController::on_goal>},
+    {channels::kComplianceGains, request<&ArmController::on_gains>},
+    {channels::kTargetStream, request<&ArmController::on_stream>},
+    {channels::kTorqueOverlay, request<&ArmController::on_overlay>},
+    {channels::kPush, request<&Simulator::push>},
+    {channels::kScenarioEvent, request<&Simulator::event>},
+    {channels::kWorkpiece, request<&Simulator::workpiece>},
 };
 
 // --- messages ------------------------------------------------------------------------------------
 
-template <typename Message>
-int encoded(limber_lab* lab, const Message& message, std::uint8_t* out, std::size_t room) {
-  const int size = message.getEncodedSize();
+/// `newest`: the message, or null.
+template <auto newest>
+int message(limber_lab* lab, std::uint8_t* out, std::size_t room) {
+  const auto* found = newest(lab);
+  if (found == nullptr) return fail(lab, LIMBER_LAB_NONE, "there is no such message yet");
+  const int size = found->getEncodedSize();
   if (static_cast<std::size_t>(size) > room)
     return fail(lab, LIMBER_LAB_ROOM, fmt::format("the message has {} bytes", size));
-  return message.encode(out, 0, size);
+  return found->encode(out, 0, size);
 }
 
+using At = limber_lab*;
 using Give = int (*)(limber_lab*, std::uint8_t*, std::size_t);
 constexpr std::pair<const char*, Give> kMessages[] = {
-    {channels::kJointState,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.state(), out, room);
-     }},
-    {channels::kJointTorque,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.torque(), out, room);
-     }},
-    {channels::kSimTruth,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.truth(), out, room);
-     }},
-    {channels::kControllerStatus,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.controller_status(), out, room);
-     }},
-    {channels::kDriverStatus,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.driver_status(), out, room);
-     }},
-    {channels::kRobotInfo,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return encoded(at, at->lab.controller().robot_info(), out, room);
-     }},
-    {channels::kBlockTruth,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       const block_truth_t* block = at->lab.simulator().block_truth();
-       return block != nullptr ? encoded(at, *block, out, room)
-                               : fail(at, LIMBER_LAB_NONE, "no block is on a table");
-     }},
-    {channels::kRequestAnswer,
-     [](limber_lab* at, std::uint8_t* out, std::size_t room) {
-       return at->answer ? encoded(at, *at->answer, out, room)
-                         : fail(at, LIMBER_LAB_NONE, "no request was sent yet");
-     }},
+    {channels::kJointState, message<[](At at) { return &at->lab.state(); }>},
+    {channels::kJointTorque, message<[](At at) { return &at->lab.torque(); }>},
+    {channels::kSimTruth, message<[](At at) { return &at->lab.truth(); }>},
+    {channels::kBlockTruth, message<[](At at) { return at->lab.simulator().block_truth(); }>},
+    {channels::kControllerStatus, message<[](At at) { return &at->lab.controller_status(); }>},
+    {channels::kDriverStatus, message<[](At at) { return &at->lab.driver_status(); }>},
+    {channels::kRobotInfo, message<[](At at) { return &at->lab.controller().robot_info(); }>},
+    {channels::kRequestAnswer, message<[](At at) { return at->answer ? &*at->answer : nullptr; }>},
 };
 
-/// What `call` returns, or the code of what it throws.
-template <typename Call>
-int guarded(limber_lab* lab, int otherwise, Call call) noexcept {
-  try {
-    return call();
-  } catch (const std::exception& error) {
-    try {
-      lab->error = error.what();
-    } catch (const std::exception&) {  // no memory for it
-    }
-    return otherwise;
-  }
-}
-
-/// Calls what belongs to the channel.
+/// Calls what belongs to the channel; a code of what it throws.
 template <typename Rows, typename Call>
-int of_channel(limber_lab* lab, const Rows& rows, const char* channel, Call call) {
-  for (const auto& [name, function] : rows) {
-    if (std::strcmp(name, channel) == 0) return call(function);
+int of_channel(limber_lab* lab, const Rows& rows, const char* channel, Call call) noexcept {
+  try {
+    for (const auto& [name, function] : rows) {
+      if (std::strcmp(name, channel) == 0) return call(function);
+    }
+    return fail(lab, LIMBER_LAB_CHANNEL, fmt::format("no such channel here: '{}'", channel));
+  } catch (const std::exception& error) {
+    return fail(lab, LIMBER_LAB_MALFORMED, error.what());
   }
-  return fail(lab, LIMBER_LAB_CHANNEL, fmt::format("no such channel here: '{}'", channel));
 }
 
 }  // namespace
@@ -177,18 +141,13 @@ void limber_lab_step(limber_lab* lab, int64_t cycles) {
 }
 
 int limber_lab_send(limber_lab* lab, const char* channel, const uint8_t* data, size_t size) {
-  return guarded(lab, LIMBER_LAB_MALFORMED, [&] {
-    return of_channel(lab, kRequests, channel,
-                      [&](Take take) { return take(lab, channel, data, size); });
-  });
+  return of_channel(lab, kRequests, channel, [&](Take take) { return take(lab, data, size); });
 }
 
 int limber_lab_message(limber_lab* lab, const char* channel, uint8_t* out, size_t room) {
-  return guarded(lab, LIMBER_LAB_NONE, [&] {
-    return of_channel(lab, kMessages, channel, [&](Give give) {
-      if (lab->lab.cycles() == 0) return fail(lab, LIMBER_LAB_NONE, "no cycle has been yet");
-      return give(lab, out, room);
-    });
+  return of_channel(lab, kMessages, channel, [&](Give give) {
+    if (lab->lab.cycles() == 0) return fail(lab, LIMBER_LAB_NONE, "no cycle has been yet");
+    return give(lab, out, room);
   });
 }
 

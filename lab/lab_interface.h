@@ -18,7 +18,7 @@ typedef struct limber_lab limber_lab;
 
 enum limber_lab_code {
   LIMBER_LAB_DONE = 0,
-  LIMBER_LAB_REFUSED = -1,  ///< controller or simulator did not take the message; nothing changed
+  LIMBER_LAB_REFUSED = -1,    ///< controller or simulator did not take the message; nothing changed
   LIMBER_LAB_MALFORMED = -2,  ///< no message of the channel's type and version
   LIMBER_LAB_CHANNEL = -3,    ///< none that is taken, or given, here
   LIMBER_LAB_NONE = -4,       ///< no message of it yet
@@ -36,7 +36,7 @@ LIMBER_PUBLIC void limber_lab_close(limber_lab* lab);
 LIMBER_PUBLIC void limber_lab_step(limber_lab* lab, int64_t cycles);
 
 /// An encoded request of channels.yaml to controller or simulator; it acts from the next cycle on.
-/// The sender holds the scenario's lease if `client` is that of its timeline. Returns a code.
+/// Who sends with the timeline's `client` has its lease. Returns a code.
 LIMBER_PUBLIC int limber_lab_send(limber_lab* lab, const char* channel, const uint8_t* data,
                                   size_t size);
 /// Newest message of a channel, encoded, as the processes publish it. Of controller and driver

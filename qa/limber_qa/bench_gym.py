@@ -8,13 +8,13 @@ weight, once a step of 1 ms as limber's. limber's has driver, bus and watches be
 take turns, the best of all turns counts. Then labs in as many threads: cycles a second of all.
 """
 
+import importlib.util
 import os
 import platform
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -35,51 +35,36 @@ THREAD_CYCLES = 20_000
 def limber_steps() -> Callable[[], None]:
     env = Reach()
     env.reset(seed=1)
-    action = np.zeros(6)
 
     def run() -> None:
         for _ in range(STEPS):
-            env.step(action)
+            env.step(np.zeros(6))
 
     return run
 
 
-def mujoco_steps(law: bool) -> Callable[[], None] | None:
-    try:
-        import mujoco
-    except ImportError:
-        return None
+def mujoco_steps(law: bool) -> Callable[[], None]:
+    """tau = Jᵀ (K e - D J v) + g + C v, with e of the translation; D for a mass of a kilogram."""
+    import mujoco
+
     robot = load_robot("openarm")
     model = mujoco.MjModel.from_xml_string(mjcf.text(robot))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
-    torque = _law(mujoco, model, data, robot.K_x)
+    K, J, e = robot.K_x, np.zeros((6, model.nv)), np.zeros(6)
+    D = 2.0 * DAMPING_RATIO * np.sqrt(K)
+    start = data.site_xpos[0].copy()
 
     def run() -> None:
         for _ in range(STEPS * SUBSTEPS):
             if law:
-                data.ctrl[:] = torque()
+                mujoco.mj_jacSite(model, data, J[:3], J[3:], 0)
+                e[:3] = start - data.site_xpos[0]
+                data.ctrl[:] = J.T @ (K @ e - D @ (J @ data.qvel)) + data.qfrc_bias
             mujoco.mj_step(model, data)
 
     return run
-
-
-def _law(mujoco: Any, model: Any, data: Any, K: np.ndarray) -> Callable[[], np.ndarray]:
-    """tau = Jᵀ (K e - D J v) + g + C v, with e of the translation; D by a mass of a kilogram."""
-    J = np.zeros((6, model.nv))
-    start = data.site_xpos[0].copy()
-    D = 2.0 * DAMPING_RATIO * np.sqrt(K)
-
-    def torque() -> np.ndarray:
-        mujoco.mj_jacSite(model, data, J[:3], J[3:], 0)
-        e = np.zeros(6)
-        e[:3] = start - data.site_xpos[0]
-        F = K @ e - D @ (J @ data.qvel)
-        found: np.ndarray = J.T @ F + data.qfrc_bias
-        return found
-
-    return torque
 
 
 def best_rates(runs: dict[str, Callable[[], None]]) -> dict[str, float]:
@@ -117,19 +102,15 @@ def instruction_set() -> str:
 def main() -> None:
     if RELEASE.is_dir():
         os.environ.setdefault("LIMBER_BIN", str(RELEASE))
-    runs = {
-        f"limber/Reach-v0, {HZ} Hz": limber_steps(),
-        "MuJoCo with a law in Python": mujoco_steps(law=True),
-        "MuJoCo bare": mujoco_steps(law=False),
-    }
-    found = best_rates({name: run for name, run in runs.items() if run is not None})
+    runs = {f"limber/Reach-v0, {HZ} Hz": limber_steps()}
+    if importlib.util.find_spec("mujoco"):
+        runs["MuJoCo with a law in Python"] = mujoco_steps(law=True)
+        runs["MuJoCo bare"] = mujoco_steps(law=False)
     drawn = Table(
         f"steps of 50 ms, one thread ({instruction_set()})", "a second", "times real time"
     )
-    for name in runs:
-        rate = found.get(name)
-        shown = ("not installed", "") if rate is None else (f"{rate:.0f}", f"{rate / HZ:.1f}")
-        drawn.add_row(name, *shown)
+    for name, rate in best_rates(runs).items():
+        drawn.add_row(name, f"{rate:.0f}", f"{rate / HZ:.1f}")
     for threads in (1, os.cpu_count() or 1):
         drawn.add_row(f"cycles of {threads} labs in threads", f"{cycles_per_s(threads):.0f}", "")
     Console().print(drawn)

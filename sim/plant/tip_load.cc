@@ -6,7 +6,7 @@ namespace limber::sim {
 namespace {
 
 Vector6 tip_wrench(const LinkDynamics& arm, const Environment& environment,
-                       std::int64_t t_ns) noexcept {
+                   std::int64_t t_ns) noexcept {
   Vector6 F = environment.contact_wrench(arm);
   for (int i = 0; i < environment.pushes.count(); ++i) {
     if (environment.pushes[i].link == arm.tip()) F += environment.pushes[i].at(t_ns);

@@ -50,10 +50,10 @@ void SimPort::handle_messages() noexcept {
   if (user_.undecodable() == undecodable_told_ || !may_complain()) return;
   undecodable_told_ = user_.undecodable();
   tell([this] {
-    complain(
-        fmt::format("{} messages to the simulator (PUSH, SCENARIO_EVENT, WORKPIECE) were dropped: no such "
-                    "message, or of another version of limber",
-                    undecodable_told_));
+    complain(fmt::format(
+        "{} messages to the simulator (PUSH, SCENARIO_EVENT, WORKPIECE) were dropped: no such "
+        "message, or of another version of limber",
+        undecodable_told_));
   });
 }
 

@@ -41,8 +41,8 @@ struct ContactMaterial {
   /// On the ball whose touching point moves with v against the surface.
   Eigen::Vector3d force(const Touch& at, const Eigen::Vector3d& v) const noexcept {
     const Approach approach(-at.depth * at.normal, v, Eigen::Vector3d::Zero(), at.normal);
-    const double push = kelvin_voigt(approach, std::min(stiffness, max_stiffness),
-                                     std::min(damping, max_damping));
+    const double push =
+        kelvin_voigt(approach, std::min(stiffness, max_stiffness), std::min(damping, max_damping));
     const Eigen::Vector3d sliding = v - at.normal.dot(v) * at.normal;
     const double drag = friction * push / std::max(sliding.norm(), kSlowest_m_per_s);
     return push * at.normal - std::min(drag, max_damping) * sliding;

@@ -59,13 +59,13 @@ double Block::kinetic_energy() const noexcept {
   return 0.5 * (mass_ * v_.squaredNorm() + inertia * yaw_rate_ * yaw_rate_);
 }
 
-void Block::advance(const Eigen::Vector3d& force, const Eigen::Vector3d& point,
-                    double h) noexcept {
+void Block::advance(const Eigen::Vector3d& force, const Eigen::Vector3d& point, double h) noexcept {
   const Eigen::Vector3d n = table_.col(2);
   const double r = std::sqrt(size_.head<2>().squaredNorm() / 12.0);
   const Eigen::Vector3d total = force + mass_ * gravity_;
   const double moment = n.dot((point - p_).cross(force));
-  // Velocities (v, r w) without friction at the step's end; each newton of either changes them alike.
+  // Velocities (v, r w) without friction at the step's end; each newton of either changes them
+  // alike.
   Eigen::Vector3d v = v_ + h / mass_ * (total - n.dot(total) * n);
   double rw = r * yaw_rate_ + h / mass_ * moment / r;
   const double speed = std::sqrt(v.squaredNorm() + rw * rw);

@@ -5,9 +5,9 @@
 //
 // Friction (f, t) lies within an ellipsoid, the usual approximation of the limit surface of a
 // sliding base (Goyal, Ruina, Papadopoulos, Wear 143, 1991): |(f, t / r)| <= mu N, along
-// (v, r w) while it slides, N the weight and what presses from above. With r = sqrt(I / m), 6 % more
-// than even pressure under a square would give, one step of it is solved in closed form: it sticks,
-// or slows along (v, r w).
+// (v, r w) while it slides, N the weight and what presses from above. With r = sqrt(I / m), 6 %
+// more than even pressure under a square would give, one step of it is solved in closed form: it
+// sticks, or slows along (v, r w).
 #pragma once
 
 #include <limber/block_truth_t.hpp>

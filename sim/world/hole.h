@@ -1,7 +1,8 @@
 // A plate with a round blind hole, its mouth chamfered by 45 degrees, as a ball meets it.
 //
 // All is round about the hole's axis, so the plate is a convex corner in the plane of the radius
-// rho and the height z over the face:  z <= 0,  rho >= R,  rho - z >= R + c,  and the floor z <= -d.
+// rho and the height z over the face:  z <= 0,  rho >= R,  rho - z >= R + c,  and the floor z <=
+// -d.
 #pragma once
 
 #include "sim/world/ball_contact.h"

@@ -83,8 +83,8 @@ bool read_workpiece(const workpiece_t& message, const Eigen::Vector3d& gravity,
   Workpiece read;
   const Eigen::Vector3d normal = three(message.normal).normalized();
   if (message.kind == workpiece_t::KIND_HOLE && hole_is_valid(message)) {
-    read.shape_ = Hole{three(message.point), normal, message.radius_m, message.chamfer_m,
-                       message.depth_m};
+    read.shape_ =
+        Hole{three(message.point), normal, message.radius_m, message.chamfer_m, message.depth_m};
     read.peg_ = three(message.peg);
   } else if (message.kind == workpiece_t::KIND_BLOCK && block_is_valid(message)) {
     read.shape_ = Block(three(message.point), normal, message.yaw, three(message.size),

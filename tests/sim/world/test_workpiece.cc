@@ -1,13 +1,12 @@
 // Hole and block by hand calculations, and by their energies.
-#include "sim/world/workpiece.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "sim/world/workpiece.h"
 
 namespace limber::sim::test_workpiece {
 namespace {

@@ -206,11 +206,7 @@ def test_a_peg_beside_the_hole_stays_outside():
     env = made("Peg", offset_m=0.0, friction=0.0)
     env.reset(seed=1)
     env._mouth = env._mouth + 0.02 * np.linalg.svd(env._axis[None])[2][1]
-    env.lab.send(
-        limber.gym.workpieces.hole(
-            env._mouth, -env._axis, np.zeros(3), env._radius_m, 5e-4, 0.003, 0.03, 0.0
-        )
-    )
+    env.place_plate()
     for k in range(40):
         env.step(np.array([*(0.3 if k < 15 else 0.0) * env._axis, 0.0, 0.0, 0.0]))
     truth = env.lab.message("SIM_TRUTH")

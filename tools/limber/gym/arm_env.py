@@ -11,12 +11,14 @@ from limber.errors import InputError, RunError
 from limber.gym.actions import Actions, Where
 from limber.lab import Lab, RefusedByLabError
 from limber.live.values import number
-from limber.messages import constants
+from limber.messages import constants, message_class
 from limber.model.robot import Robot, load_robot
 
 Observation = dict[str, np.ndarray]
 READY_S = 10.0
 SETTLED_S = 0.3  # after the arm is active
+CONTACT = {"stiffness_N_per_m": 2e4, "damping_Ns_per_m": 50.0}  # of workpieces
+FRICTIONS = ("friction", "link_friction")
 BEYOND_END_RAD = 0.5  # an end stop is soft
 _FAR_M, _FAST, _LARGE = 10.0, 100.0, 1000.0
 
@@ -123,7 +125,7 @@ class ArmEnv(gymnasium.Env):
         if given.shape != self.actions.low.shape or not np.isfinite(given).all():
             raise InputError(f"action: expected {len(self.actions.low)} finite numbers")
         refused = self._act(given)
-        self._open().step(self.frame_skip)
+        self.open_lab().step(self.frame_skip)
         self._read()
         reward, success = self.judge(self._at())
         info = self._info(refused, success)
@@ -137,14 +139,22 @@ class ArmEnv(gymnasium.Env):
 
     # --- the arm ----------------------------------------------------------------------------------
 
-    def _open(self) -> Lab:
+    def open_lab(self) -> Lab:
         if self.lab is None:
             raise RunError("the environment is closed: reset() opens it")
         return self.lab
 
+    def place(self, kind: str, **fields: Any) -> None:
+        """Puts a workpiece_t into the world; RefusedByLabError if its values are out of range."""
+        message = message_class("workpiece_t")()
+        message.kind = getattr(message, f"KIND_{kind}")
+        for field, value in {**CONTACT, **fields}.items():
+            setattr(message, field, np.asarray(value, float).tolist())
+        self.open_lab().send(message)
+
     def _act(self, action: Floats) -> str:
         """Sends goal and impedance; why one of them was refused, or nothing."""
-        lab = self._open()
+        lab = self.open_lab()
         goal = self.actions.goal(action, self._at(), self._goal)
         impedance = self.actions.impedance(action)
         try:
@@ -158,7 +168,7 @@ class ArmEnv(gymnasium.Env):
         return ""
 
     def _read(self) -> None:
-        lab = self._open()
+        lab = self.open_lab()
         self._state = lab.message("JOINT_STATE")
         self._status = lab.message("CONTROLLER_STATUS")
         self._truth = lab.message("SIM_TRUTH")
@@ -168,7 +178,7 @@ class ArmEnv(gymnasium.Env):
         return Where(self._state["q"][:n], self._status["p_BT"], self._status["quat_BT"])
 
     def _make_ready(self) -> None:
-        lab = self._open()
+        lab = self.open_lab()
         for _ in range(round(READY_S / 0.05)):
             lab.step(round(0.05 * self.robot.rate_hz))
             if self._words["MODE"][int(lab.message("CONTROLLER_STATUS")["mode"])] == "ACTIVE":
@@ -203,36 +213,30 @@ class ArmEnv(gymnasium.Env):
         return scenario
 
     def _frictions(self, scale: float) -> dict[str, Any]:
-        found = {}
-        for joint in self.robot.resolved["joints"]:
-            given = {
-                key: {name: scale * value for name, value in joint[key].items() if "_Nm" in name}
-                for key in ("friction", "link_friction")
-                if joint.get(key)
-            }
-            if given:
-                found[joint["name"]] = given
-        return found
+        """Of plant_overrides."""
+
+        def scaled(friction: dict[str, float]) -> dict[str, float]:
+            return {key: scale * value for key, value in friction.items() if "_Nm" in key}
+
+        return {
+            joint["name"]: {key: scaled(joint[key]) for key in FRICTIONS if joint.get(key)}
+            for joint in self.robot.resolved["joints"]
+        }
 
     def _boxes_of(self) -> dict[str, spaces.Box]:
-        joints = self.robot.joints
+        n = len(self.robot.joints)
         low, high = (np.clip(end, -_FAST, _FAST) for end in self.actions.ends)
-        wide = np.ones(len(joints))
-        bounds = {
-            "agent_pos": (low - BEYOND_END_RAD, high + BEYOND_END_RAD),
-            "qvel": (-_FAST * wide, _FAST * wide),
-            "tau": (-_LARGE * wide, _LARGE * wide),
-            "contact": (-_LARGE * np.ones(6), _LARGE * np.ones(6)),
-            "tip": (-_FAR_M * np.ones(7), _FAR_M * np.ones(7)),
-            "environment_state": (
-                -_FAR_M * np.ones(self.task_size),
-                _FAR_M * np.ones(self.task_size),
-            ),
-        }
-        return {
-            key: spaces.Box(low.astype(np.float32), high.astype(np.float32))
-            for key, (low, high) in bounds.items()
-        }
+        low, high = low - BEYOND_END_RAD, high + BEYOND_END_RAD
+        boxes = {"agent_pos": spaces.Box(low.astype(np.float32), high.astype(np.float32))}
+        for key, most, size in (
+            ("qvel", _FAST, n),
+            ("tau", _LARGE, n),
+            ("contact", _LARGE, 6),
+            ("tip", _FAR_M, 7),
+            ("environment_state", _FAR_M, self.task_size),
+        ):
+            boxes[key] = spaces.Box(-most, most, (size,))
+        return boxes
 
     def _observation(self) -> Observation:
         n = len(self.robot.joints)

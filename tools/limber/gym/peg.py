@@ -5,10 +5,8 @@ from typing import Any
 import numpy as np
 
 from limber.arrays import Floats
-from limber.gym import workpieces
 from limber.gym.actions import Where
 from limber.gym.arm_env import ArmEnv
-from limber.live.values import number
 from limber.model.rotations import matrix_of
 
 AHEAD_M = 0.03  # from the nose to the plate at the start
@@ -19,8 +17,7 @@ CHAMFER_M, DEPTH_M = 0.003, 0.03
 class Peg(ArmEnv):
     """The hole's axis is the tip's z axis at the start; its mouth lies 30 mm ahead and up to
     `offset_m` aside. Peg: two balls of `peg_radius_m`, 50 mm apart, so that it may tilt and jam;
-    hole: `clearance_m` wider in radius, chamfer 3 mm, 30 mm deep; contact 20 kN/m, Coulomb's
-    `friction`.
+    hole: `clearance_m` wider in radius, chamfer 3 mm, 30 mm deep; Coulomb's `friction`.
 
     Reward: minus the distance of the nose from the floor, m, and 1 at the end: 25 mm deep.
     `environment_state`: mouth (m), axis into the hole, base frame.
@@ -37,31 +34,30 @@ class Peg(ArmEnv):
         friction: float = 0.2,
         **more: Any,
     ) -> None:
-        self._offset_m = number("offset_m", offset_m, 0.0, 0.1)
-        self._radius_m = number("peg_radius_m", peg_radius_m, 1e-3, 0.1)
-        self._clearance_m = number("clearance_m", clearance_m, 1e-5, 0.1)
-        self._friction = number("friction", friction, 0.0, 2.0)
+        self._offset_m, self._radius_m = offset_m, peg_radius_m
+        self._clearance_m, self._friction = clearance_m, friction
         self._mouth: Floats = np.zeros(3)
         self._axis: Floats = np.zeros(3)
         super().__init__(*args, **more)
 
     def start_task(self, at: Where) -> None:
         R = matrix_of(at.quat)
-        self._axis = R[:, 2]
         aside = self.np_random.uniform(-self._offset_m, self._offset_m, 2)
+        self._axis = R[:, 2]
         self._mouth = at.p + R @ np.array([*aside, AHEAD_M + self._radius_m])
-        held = np.array([0.0, 0.0, -PEG_M])
-        self._open().send(
-            workpieces.hole(
-                self._mouth,
-                -self._axis,
-                held,
-                self._radius_m,
-                self._clearance_m,
-                CHAMFER_M,
-                DEPTH_M,
-                self._friction,
-            )
+        self.place_plate()
+
+    def place_plate(self) -> None:
+        self.place(
+            "HOLE",
+            point=self._mouth,
+            normal=-self._axis,
+            tip_radius_m=self._radius_m,
+            peg=[0.0, 0.0, -PEG_M],
+            friction=self._friction,
+            radius_m=self._radius_m + self._clearance_m,
+            chamfer_m=CHAMFER_M,
+            depth_m=DEPTH_M,
         )
 
     def task_state(self) -> Floats:

@@ -5,12 +5,10 @@ from typing import Any
 import numpy as np
 
 from limber.arrays import Floats
-from limber.gym import workpieces
 from limber.gym.actions import Where
 from limber.gym.arm_env import ArmEnv
-from limber.live.values import number
 
-SIZE_M = np.array([0.06, 0.06, 0.08])
+SIZE_M = (0.06, 0.06, 0.08)
 TIP_RADIUS_M = 0.01
 BEFORE_M = 0.05  # of the tip, at the start: middle of the block
 
@@ -19,7 +17,7 @@ class Push(ArmEnv):
     """A block of 60 x 60 x 80 mm stands before the tip, along the base's x axis, on a table 40 mm
     below it; it is to be moved by up to `distance_m` forwards and half of that aside. The tip is a
     ball of 10 mm. The block slides and turns with Coulomb's friction, and does not tip; the tip
-    does not touch the table.
+    does not touch the table. `mass_kg`, `table_friction`: ranges to draw from.
 
     Reward: minus the block's distance from its place, m, and 1 at the end: within `tolerance_m`.
     `environment_state`: block (x, y, m; yaw, rad), its place (x, y), base frame.
@@ -37,11 +35,9 @@ class Push(ArmEnv):
         table_friction: tuple[float, float] = (0.2, 0.4),
         **more: Any,
     ) -> None:
-        self._distance_m = number("distance_m", distance_m, 0.01, 1.0)
-        self._tolerance_m = number("tolerance_m", tolerance_m, 1e-4, 1.0)
+        self._distance_m, self._tolerance_m, self._friction = distance_m, tolerance_m, friction
         self._mass_kg, self._table_friction = mass_kg, table_friction
-        self._friction = number("friction", friction, 0.0, 2.0)
-        self._place = np.zeros(2)
+        self._place: Floats = np.zeros(2)
         super().__init__(*args, **more)
 
     def start_task(self, at: Where) -> None:
@@ -49,20 +45,20 @@ class Push(ArmEnv):
         base = at.p + np.array([BEFORE_M, draw(-0.01, 0.01), -0.5 * SIZE_M[2]])
         far = draw(0.5, 1.0) * self._distance_m
         self._place = base[:2] + np.array([far, draw(-0.5, 0.5) * far])
-        self._open().send(
-            workpieces.block(
-                base,
-                float(draw(-0.2, 0.2)),
-                SIZE_M,
-                float(draw(*self._mass_kg)),
-                TIP_RADIUS_M,
-                self._friction,
-                float(draw(*self._table_friction)),
-            )
+        self.place(
+            "BLOCK",
+            point=base,
+            normal=[0.0, 0.0, 1.0],
+            tip_radius_m=TIP_RADIUS_M,
+            friction=self._friction,
+            yaw=draw(-0.2, 0.2),
+            size=SIZE_M,
+            mass_kg=draw(*self._mass_kg),
+            table_friction=draw(*self._table_friction),
         )
 
     def task_state(self) -> Floats:
-        block = self._open().message("BLOCK_TRUTH")
+        block = self.open_lab().message("BLOCK_TRUTH")
         return np.array([*block["p_BO"][:2], block["yaw"], *self._place])
 
     def judge(self, at: Where) -> tuple[float, bool]:
