@@ -18,6 +18,7 @@ using namespace controller;
 
 // Steps of the torque that tau_gravity may make in a cycle; the gate lets three pass.
 constexpr double kGravitySteps = 2.0;
+constexpr Refusal kNoHand = {request_answer_t::REFUSED_NO_HAND, "robot.yaml has no `hand:`"};
 constexpr std::int64_t kLongestStep = 3;  // periods
 constexpr std::int64_t kStartPatience_ns = 5'000'000'000;
 
@@ -84,6 +85,7 @@ ArmController::ArmController(const LoadedRobot& robot, const ArmControllerOption
       energy_watch_(robot.robot),
       gravity_limiter_(gravity_limiter(robot.robot)),
       info_(info_of(robot.robot, options.controller, is_simulated(robot.robot, options))) {
+  if (robot.robot.hand) hand_.emplace(robot.robot, options.controller);
   answer_.controller = options.controller;
   answer_.num_joints = static_cast<std::int16_t>(robot.robot.size());
   status_.controller = options.controller;
@@ -99,6 +101,7 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   if (judgement.usable) {
     period_s_ = static_cast<double>(state.period_ns) * 1e-9;
     cycle_.measure(state);
+    if (hand_) hand_->measure(state);
     apply_timeline(state.time_ns);
   }
 
@@ -111,6 +114,7 @@ const joint_command_t& ArmController::step(const joint_state_t& state) noexcept 
   if (activity != Activity::kStandby && !cycle_.step(activity, dt_s))
     supervisor_.raise(Event::kTorqueInvalid);
   if (activity_of(supervisor_) == Activity::kStandby) cycle_.stand_by(standby());
+  if (hand_) move_hand(activity_of(supervisor_), dt_s);
 
   write_answer(state);
   write_status(started_ns);
@@ -171,6 +175,7 @@ void ArmController::apply_timeline(std::int64_t time_ns) noexcept {
             [&](const target_stream_t& m) {
               if (const Refusal refusal = on_stream(m)) outcomes_.push_back(outcome_of(m, refusal));
             },
+            [&](const hand_goal_t& m) { outcomes_.push_back(outcome_of(m, on_hand(m))); },
             [](const auto&) {},  // the simulator's
         },
         *timeline_->due(time_ns));
@@ -202,6 +207,24 @@ void ArmController::write_gravity() noexcept {
   Eigen::Map<VectorJ>(answer_.tau_gravity, answer_.num_joints) = tau;
 }
 
+void ArmController::move_hand(Activity activity, double dt_s) noexcept {
+  if (activity != Activity::kLaw) hand_knots_.end();
+  if (std::optional<hand_goal_t> goal = hand_knots_.due(cycle_.time_ns())) {
+    goal->width_m = hand_->within_travel(goal->width_m);
+    hand_->set_goal(*goal);
+  }
+  if (activity != Activity::kStandby) return hand_->step(activity == Activity::kLaw, dt_s);
+  using Rest = HandControl::Rest;
+  switch (standby().torque) {
+    case Standby::Torque::kZero:
+      return hand_->stand_by(Rest::kNone, dt_s);
+    case Standby::Torque::kAsSent:
+      return hand_->stand_by(Rest::kApplied, dt_s);
+    case Standby::Torque::kGravity:
+      return hand_->stand_by(Rest::kKept, dt_s);
+  }
+}
+
 void ArmController::write_answer(const joint_state_t& state) noexcept {
   write_gravity();
   answer_.state_seq = state.seq;
@@ -212,6 +235,7 @@ void ArmController::write_answer(const joint_state_t& state) noexcept {
   const int n = answer_.num_joints;
   Eigen::Map<VectorJ>(answer_.tau, n) = cycle_.torque();
   Eigen::Map<VectorJ>(answer_.tau_preload, n) = cycle_.preload_torque();
+  if (hand_) hand_->write(&answer_);
 }
 
 void ArmController::write_status(std::int64_t started_ns) noexcept {
@@ -229,6 +253,7 @@ void ArmController::write_status(std::int64_t started_ns) noexcept {
   status_.unexplained_energy_J = energy_watch_.unexplained_J();
   controller::write_status(cycle_.trace(), &status_);
   write_stream();
+  if (hand_ && published) hand_->write_state(status_.seq, status_.time_ns);
   if (!options_.measure_time) return;
   status_.cycle_ns = monotonic_ns() - started_ns;
   status_.cycle_max_ns = std::max(status_.cycle_max_ns, status_.cycle_ns);
@@ -285,6 +310,7 @@ Refusal ArmController::on_gains(const compliance_gains_t& gains) noexcept {
 Refusal ArmController::on_stream(const target_stream_t& stream) noexcept {
   const std::int64_t now_ns = cycle_.time_ns();
   Refusal refusal = check_active(stream.client);
+  if (!refusal) refusal = check_hand(stream);
   if (!refusal) refusal = cycle_.set_stream(stream, activity_of(supervisor_));
   if (refusal) {
     cycle_.stream().count_refused();
@@ -292,16 +318,39 @@ Refusal ArmController::on_stream(const target_stream_t& stream) noexcept {
   }
   supervisor_.take_lease(stream.client);
   if (TargetStream::stale(stream, now_ns)) return refusal;
+  hand_knots_.take(stream, now_ns);
   const double left_s = 1e-9 * static_cast<double>(TargetStream::end_ns(stream, now_ns) - now_ns);
   const double valid_s = stream.valid_for_s;
   supervisor_.take_goal(valid_s > 0.0 ? valid_s + std::max(left_s, 0.0) : 0.0);
   return refusal;  // perhaps with a warning
 }
 
+Refusal ArmController::check_hand(const target_stream_t& stream) const noexcept {
+  if (stream.use_hand == 0) return {};
+  if (!hand_) return kNoHand;
+  for (int i = 0; i < std::clamp<int>(stream.num_knots, 0, 16); ++i) {
+    hand_goal_t goal{};
+    goal.width_m = hand_->within_travel(static_cast<double>(stream.hand_width_m[i]));
+    goal.force_N = static_cast<double>(stream.hand_force_N);
+    if (const Refusal refusal = hand_->check(goal)) return refusal;
+  }
+  return {};
+}
+
 Refusal ArmController::on_overlay(const torque_overlay_t& overlay) noexcept {
   if (const Refusal refusal = check_active(overlay.client)) return counted(refusal);
   if (const Refusal refusal = cycle_.set_overlay(overlay)) return counted(refusal);
   supervisor_.take_lease(overlay.client);
+  return {};
+}
+
+Refusal ArmController::on_hand(const hand_goal_t& goal) noexcept {
+  if (!hand_) return counted(kNoHand);
+  if (const Refusal refusal = check_active(goal.client)) return counted(refusal);
+  if (const Refusal refusal = hand_->check(goal)) return counted(refusal);
+  hand_knots_.end();
+  hand_->set_goal(goal);
+  supervisor_.take_lease(goal.client);
   return {};
 }
 

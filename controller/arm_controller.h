@@ -6,6 +6,8 @@
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
 #include <limber/controller_status_t.hpp>
+#include <limber/hand_goal_t.hpp>
+#include <limber/hand_state_t.hpp>
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <limber/mode_request_t.hpp>
@@ -17,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "controller/goals/stream/hand_knots.h"
+#include "controller/hand/hand_control.h"
 #include "controller/modes/supervisor.h"
 #include "controller/output/torque_limiter.h"
 #include "controller/request_outcome.h"
@@ -71,6 +75,7 @@ class ArmController {
   Refusal on_overlay(const torque_overlay_t& overlay) noexcept;
   /// A message of a stream came again, or after a newer one.
   void count_stale_stream() noexcept { cycle_.stream().count_stale(); }
+  Refusal on_hand(const hand_goal_t& goal) noexcept;
 
   /// A request was refused before it came here.
   void count_refusal() noexcept { ++status_.requests_refused; }
@@ -89,6 +94,8 @@ class ArmController {
   void on_silence() noexcept;
 
   const controller_status_t& status() const noexcept { return status_; }
+  /// nullptr for an arm without a hand.
+  const hand_state_t* hand_state() const noexcept { return hand_ ? &hand_->state() : nullptr; }
   /// Which arm this is, for tools.
   const robot_info_t& robot_info() const noexcept { return info_; }
 
@@ -96,10 +103,12 @@ class ArmController {
   void apply_timeline(std::int64_t time_ns) noexcept;
   void watch_motion(const joint_state_t& state, double dt_s) noexcept;
   controller::Standby standby() const noexcept;
+  void move_hand(controller::Activity activity, double dt_s) noexcept;
   void write_answer(const joint_state_t& state) noexcept;
   void write_gravity() noexcept;
   void write_status(std::int64_t started_ns) noexcept;
   void write_stream() noexcept;
+  Refusal check_hand(const target_stream_t& stream) const noexcept;
   Refusal check_active(std::int64_t client) const noexcept;
   Refusal counted(Refusal refusal) noexcept;
 
@@ -111,6 +120,8 @@ class ArmController {
   controller::EncoderWatch encoder_watch_;
   controller::EnergyWatch energy_watch_;
   controller::TorqueLimiter gravity_limiter_;
+  std::optional<controller::HandControl> hand_;
+  controller::HandKnots hand_knots_;
   bool was_engaged_ = false;
   std::optional<Timeline> timeline_;
   std::vector<RequestOutcome> outcomes_;  ///< room for all of the timeline

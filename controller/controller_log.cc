@@ -13,7 +13,7 @@
 namespace limber {
 namespace {
 
-constexpr std::array kKindNames = {"mode", "goal", "gains", "stream", "overlay"};
+constexpr std::array kKindNames = {"mode", "goal", "gains", "hand", "stream", "overlay"};
 
 template <typename Names>
 const char* name_in(const Names& names, int index) {

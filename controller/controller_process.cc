@@ -101,6 +101,8 @@ void ControllerProcess::answer(const joint_state_t& state) noexcept {
 void ControllerProcess::publish_status() noexcept {
   controller_->count_undecodable(arm_.undecodable() + user_.undecodable());
   user_.publish(channels::kControllerStatus, controller_->status());
+  if (controller_->hand_state() != nullptr)
+    user_.publish(channels::kHandState, *controller_->hand_state());
 }
 
 void ControllerProcess::check_silence() noexcept {

@@ -13,8 +13,8 @@
 #include "controller/laws/law_bank.h"
 #include "controller/observers/observers.h"
 #include "controller/output/passivity_guard.h"
-#include "controller/output/torque_overlay.h"
 #include "controller/output/torque_output.h"
+#include "controller/output/torque_overlay.h"
 
 namespace limber::controller {
 

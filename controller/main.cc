@@ -83,7 +83,7 @@ int run(const Arguments& given) {
   if (scenario) controller.set_timeline(&scenario->timeline);
   ControllerProcess process(
       &controller, {pace, given.duration_s, given.priority, !robot.robot.on_virtual_buses(),
-                    robot.robot.joint_names(), robot.robot.name, robot.robot.rate_hz});
+                    robot.robot.driven_names(), robot.robot.name, robot.robot.rate_hz});
   const auto& stop = stop_on_signals();
   spdlog::info("{}: {} joints, law {}, {}, controller {}", robot.robot.name, robot.robot.size(),
                options.law, lockstep ? "lock step" : "realtime", options.controller);

@@ -25,6 +25,9 @@ Refusal decide(ArmController* controller, const compliance_goal_t& goal) noexcep
 Refusal decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
   return controller->on_gains(gains);
 }
+Refusal decide(ArmController* controller, const hand_goal_t& goal) noexcept {
+  return controller->on_hand(goal);
+}
 Refusal decide(ArmController* controller, const target_stream_t& stream) noexcept {
   return controller->on_stream(stream);
 }
@@ -54,6 +57,7 @@ RequestDesk::RequestDesk(ArmController* controller, LcmPort* user)
   subscribe<compliance_gains_t>(channels::kComplianceGains);
   subscribe<target_stream_t>(channels::kTargetStream);
   subscribe<torque_overlay_t>(channels::kTorqueOverlay);
+  subscribe<hand_goal_t>(channels::kHandGoal);
 }
 
 template <typename Request>
@@ -81,7 +85,8 @@ Refusal RequestDesk::judge(const Request& request) noexcept {
       return refusal;
     }
   }
-  if (const std::int64_t lease = controller_->lease(); request.client != lease && client_gone(lease))
+  if (const std::int64_t lease = controller_->lease();
+      request.client != lease && client_gone(lease))
     controller_->free_lease();
   return decide(controller_, request);
 }

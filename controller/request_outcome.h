@@ -3,6 +3,7 @@
 
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
+#include <limber/hand_goal_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <limber/target_stream_t.hpp>
 #include <limber/torque_overlay_t.hpp>
@@ -34,6 +35,9 @@ inline RequestOutcome outcome_of(const torque_overlay_t& overlay, Refusal refusa
 }
 inline RequestOutcome outcome_of(const compliance_gains_t& gains, Refusal refusal) noexcept {
   return {request_answer_t::KIND_GAINS, 0, gains.client, gains.seq, refusal};
+}
+inline RequestOutcome outcome_of(const hand_goal_t& hand, Refusal refusal) noexcept {
+  return {request_answer_t::KIND_HAND, 0, hand.client, hand.seq, refusal};
 }
 
 }  // namespace limber

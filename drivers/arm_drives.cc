@@ -29,8 +29,8 @@ std::string out_of_range_line(const ArmJoint& joint) {
 }  // namespace
 
 ArmDrives::ArmDrives(const Robot& robot, int bridged_cycles)
-    : settling_cycles_(cycles_of(kSettling_s, robot.rate_hz)) {
-  for (const JointConfig& joint : robot.joints) {
+    : has_hand_(robot.hand.has_value()), settling_cycles_(cycles_of(kSettling_s, robot.rate_hz)) {
+  for (const JointConfig& joint : robot.driven()) {
     joints_.emplace_back(robot, joint, bridged_cycles);
     rest_torque_.emplace_back(joint.torque_limit_Nm, robot.rate_hz);
   }
@@ -321,6 +321,7 @@ void ArmDrives::write_state(joint_state_t* state) const noexcept {
   state->fault = machine_.fault();
   state->fault_joint = machine_.fault_joint();
   for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].write_state(i, state);
+  if (has_hand_) state->joint_flags[joints_.size() - 1] |= joint_state_t::JOINT_HAND;
 }
 
 void ArmDrives::write_status(driver_status_t* status) const noexcept {

@@ -32,6 +32,7 @@ class ArmDrives {
   bool in(DriveState state) const noexcept { return machine_.state() == state; }
   /// Commands sent since the state was entered.
   std::int64_t cycles_in_state() const noexcept { return cycles_in_state_; }
+  /// The hand, which is none of the chain, is the last one.
   const std::vector<ArmJoint>& joints() const noexcept { return joints_; }
   bool all_answered() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::answered); }
   bool all_disabled() const noexcept { return std::ranges::all_of(joints_, &ArmJoint::disabled); }
@@ -111,6 +112,7 @@ class ArmDrives {
   const Drive& motor_at(int motor) const noexcept;
 
   std::vector<ArmJoint> joints_;
+  bool has_hand_;  ///< the last of them
   DriveStateMachine machine_;
   std::atomic<bool> enabling_ended_ = false;  ///< by its time-out; read by the thread that logs
   int settling_cycles_;                       ///< FALLBACK: damping before the position is held

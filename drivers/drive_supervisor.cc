@@ -14,7 +14,7 @@ constexpr int kSilentCycles = 3;
 /// As long as the slowest of them may take.
 double enabling_s(const Robot& robot) {
   double longest_s = 0.0;
-  for (const JointConfig& joint : robot.joints)
+  for (const JointConfig& joint : robot.driven())
     longest_s = std::max(longest_s, joint.drive.protocol->enabling_s);
   return longest_s;
 }

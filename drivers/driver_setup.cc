@@ -23,9 +23,9 @@ int cycles_of(double seconds, double rate_hz) noexcept {
   return std::max(1, static_cast<int>(std::ceil(seconds * rate_hz - 1e-6)));
 }
 
-int drive_watchdog_cycles_of(const Robot& robot) noexcept {
+int drive_watchdog_cycles_of(const Robot& robot) {
   double longest_s = 0.0;
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     for (int motor = 0; motor < joint.motors(); ++motor)
       longest_s = std::max(longest_s, joint.motor(motor).watchdog_s);
   }
@@ -37,8 +37,9 @@ void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t sessio
     throw ConfigError::at(robot.name, 0, key, problem);
   };
   if (!robot.has_drives) refuse("drives", "none are described; a bare URDF cannot be driven");
-  if (robot.joints.empty() || robot.size() > kMaxJoints)
-    refuse("joints", fmt::format("{} found, 1 to {} allowed", robot.size(), kMaxJoints));
+  const int most = robot.hand ? kMaxJoints - 1 : kMaxJoints;
+  if (robot.joints.empty() || robot.size() > most)
+    refuse("joints", fmt::format("{} found, 1 to {} allowed", robot.size(), most));
   if (robot.buses.empty() || robot.buses.size() > kMaxBuses || robot.buses.size() != open_buses)
     refuse("buses", fmt::format("{} described, {} open, 1 to {} allowed", robot.buses.size(),
                                 open_buses, kMaxBuses));
@@ -61,16 +62,18 @@ std::int64_t least_round_trip_ns_of(const Robot& robot) noexcept {
   return std::llround(1e9 * least_s);
 }
 
-GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept {
+GateLimits gate_limits(const Robot& robot, std::int64_t session) {
   GateLimits limits;
-  limits.n = robot.size();
+  const std::vector<JointConfig> driven = robot.driven();
+  limits.n = static_cast<int>(driven.size());
+  limits.hand = robot.hand ? 1 : 0;
   limits.session = session;
   limits.lease_cycles = cycles_of(kLease_s, robot.rate_hz);
   // The controller shapes at the limit itself; a noisy velocity must not trip the arm.
   limits.power_W = kPowerSlack * robot.power_limit_W;
   limits.refusal_cycles = cycles_of(kRefusals_s, robot.rate_hz);
-  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const JointConfig& joint = robot.joints[i];
+  for (std::size_t i = 0; i < driven.size(); ++i) {
+    const JointConfig& joint = driven[i];
     limits.torque_Nm[i] = std::min(joint.torque_limit_Nm, joint.drive.range.torque_Nm);
     limits.torque_step_Nm[i] =
         joint.torque_rate_limit_Nm_per_s / robot.rate_hz * (1.0 + kRoundingSlack);

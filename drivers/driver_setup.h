@@ -13,10 +13,10 @@ namespace limber {
 void check_robot(const Robot& robot, std::size_t open_buses, std::int64_t session);
 
 /// Limits of the gate at robot.rate_hz.
-GateLimits gate_limits(const Robot& robot, std::int64_t session) noexcept;
+GateLimits gate_limits(const Robot& robot, std::int64_t session);
 
 /// Cycles after which the watchdog of the slowest drive has acted.
-int drive_watchdog_cycles_of(const Robot& robot) noexcept;
+int drive_watchdog_cycles_of(const Robot& robot);
 
 /// A time in whole cycles, rounded up; at least one.
 int cycles_of(double seconds, double rate_hz) noexcept;

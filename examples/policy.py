@@ -29,5 +29,5 @@ with Arm() as arm:
         stream.send(position_m=policy(observation), quaternion_wxyz=start.quat)
         worst_mm = max(worst_mm, 1e3 * float(np.linalg.norm(state.error[:3])))
     print(f"a circle in {t:.1f} s; the arm was at most {worst_mm:.1f} mm from its goal")
-    print(f"of its targets {arm.state.stream}")
+    print(f"of its targets {arm.state.targets}")
     arm.wait(at_rest=True)

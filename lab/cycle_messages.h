@@ -22,8 +22,13 @@ class CycleMessages {
     const block_truth_t* block = lab.simulator().block_truth();
     if (block != nullptr) put(channels::kBlockTruth, *block);
     put(channels::kJointTorque, lab.torque());
-    if (seq % channels::kControllerStatusEvery == 0)
+    if (lab.simulator().hand_truth() != nullptr)
+      put(channels::kHandTruth, *lab.simulator().hand_truth());
+    if (seq % channels::kControllerStatusEvery == 0) {
       put(channels::kControllerStatus, lab.controller_status());
+      if (lab.controller().hand_state() != nullptr)
+        put(channels::kHandState, *lab.controller().hand_state());
+    }
     if (seq % channels::kRobotInfoEvery == 0)
       put(channels::kRobotInfo, lab.controller().robot_info());
     for (const RequestOutcome& outcome : lab.controller().timeline_outcomes())

@@ -73,6 +73,7 @@ constexpr std::pair<const char*, Take> kRequests[] = {
     {channels::kComplianceGains, request<&ArmController::on_gains>},
     {channels::kTargetStream, request<&ArmController::on_stream>},
     {channels::kTorqueOverlay, request<&ArmController::on_overlay>},
+    {channels::kHandGoal, request<&ArmController::on_hand>},
     {channels::kPush, request<&Simulator::push>},
     {channels::kScenarioEvent, request<&Simulator::event>},
     {channels::kWorkpiece, request<&Simulator::workpiece>},
@@ -101,6 +102,8 @@ constexpr std::pair<const char*, Give> kMessages[] = {
     {channels::kControllerStatus, message<[](At at) { return &at->lab.controller_status(); }>},
     {channels::kDriverStatus, message<[](At at) { return &at->lab.driver_status(); }>},
     {channels::kRobotInfo, message<[](At at) { return &at->lab.controller().robot_info(); }>},
+    {channels::kHandState, message<[](At at) { return at->lab.controller().hand_state(); }>},
+    {channels::kHandTruth, message<[](At at) { return at->lab.simulator().hand_truth(); }>},
     {channels::kRequestAnswer, message<[](At at) { return at->answer ? &*at->answer : nullptr; }>},
 };
 

@@ -8,7 +8,7 @@
 namespace limber {
 
 Told::Told(const Robot& robot, BlackBox* black_box)
-    : joints_(robot.joint_names()), black_box_(black_box), controller_(joints_, black_box) {}
+    : joints_(robot.driven_names()), black_box_(black_box), controller_(joints_, black_box) {}
 
 void Told::note(Lab& lab) {
   controller_.note(lab.controller_status(), lab.state());

@@ -29,7 +29,8 @@ sim::SimulatedArm checked_arm(const LoadedRobot& robot, std::size_t buses,
           options.integrator,
           options.friction,
           sim::start_position(plant.robot, options.start_q),
-          options.stand};
+          options.stand,
+          options.objects};
 }
 
 }  // namespace
@@ -124,9 +125,10 @@ void Simulator::advance_to(std::int64_t sim_time_ns) noexcept {
 }
 
 void Simulator::step() noexcept {
-  nodes_.command(&arm_.forces());
+  nodes_.command(&arm_);
   carry_frames();
   arm_.step(clock_.step_s(), clock_.now_ns(), clock_.next_ns(), nodes_.all_enabled());
+  if (arm_.load_changed()) load_nodes();
   clock_.advance();
   nodes_.update(arm_, clock_.step_s(), clock_.now_ns(), &buses_);
 }
@@ -153,6 +155,7 @@ void Simulator::restart_timeline() noexcept {
   timeline_.rewind();
   if (!has_timeline_) return;
   arm_.environment() = sim::Environment();
+  arm_.reset_objects();
   set_payload(0.0, Eigen::Vector3d::Zero());
   nodes_.clear_faults();
 }
@@ -186,9 +189,9 @@ bool Simulator::event(const scenario_event_t& message) noexcept {
       set_payload(payload.mass, payload.p_TL);
       return true;
     case scenario_event_t::EVENT_FAULT:
-      if (!sim::read_fault(
-              message, {arm_.body().size(), nodes_.has_tip_sensor(), nodes_.has_emergency_stop()},
-              &fault))
+      if (!sim::read_fault(message,
+                           {nodes_.joints(), nodes_.has_tip_sensor(), nodes_.has_emergency_stop()},
+                           &fault))
         return false;
       nodes_.inject(fault, clock_.now_ns());
       return true;
@@ -203,7 +206,12 @@ bool Simulator::workpiece(const workpiece_t& message) noexcept {
 
 void Simulator::set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept {
   arm_.set_payload(mass, p_TL);
-  nodes_.set_payload(arm_, mass, p_TL);
+  load_nodes();
+}
+
+void Simulator::load_nodes() noexcept {
+  const sim::HeldMass load = arm_.tip_load();
+  nodes_.set_payload(arm_, load.mass_kg, load.p_T);
 }
 
 const sim_truth_t& Simulator::truth() noexcept {
@@ -221,6 +229,14 @@ const block_truth_t* Simulator::block_truth() noexcept {
   block_truth_.time_ns = clock_.arm_time_known() ? clock_.arm_time_ns() : 0;
   block->fill(&block_truth_);
   return &block_truth_;
+}
+
+const hand_truth_t* Simulator::hand_truth() noexcept {
+  if (arm_.hand() == nullptr) return nullptr;
+  hand_truth_.seq = clock_.periods();
+  hand_truth_.time_ns = clock_.arm_time_known() ? clock_.arm_time_ns() : 0;
+  arm_.hand()->fill(&hand_truth_);
+  return &hand_truth_;
 }
 
 }  // namespace limber

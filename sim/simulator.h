@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limber/block_truth_t.hpp>
+#include <limber/hand_truth_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
 #include <limber/sim_truth_t.hpp>
@@ -31,6 +32,7 @@ struct SimulatorOptions {
   bool lockstep = true;         ///< false: TICKs are ignored, time passes by advance_to() alone
   /// Lock step: frames take time and may be lost. Stamps of what the driver receives are arm time.
   WireOptions wire;
+  std::vector<ObjectConfig> objects;  ///< for the hand
   /// The arm, its motors and sensors as they are, where they differ from robot.yaml;
   /// null: robot.yaml is right. The drives' firmware believes robot.yaml in any case.
   const LoadedRobot* plant = nullptr;
@@ -39,10 +41,9 @@ struct SimulatorOptions {
 /// What a scenario, which must outlive them, wants of the simulated world. Lock step is set by the
 /// caller.
 inline SimulatorOptions simulator_options(const Scenario& scenario) {
-  return {scenario.integrator, scenario.step_s,
-          scenario.friction,   scenario.start_q,
-          scenario.stand,      true,
-          scenario.wire,       scenario.plant ? &*scenario.plant : nullptr};
+  return {scenario.integrator, scenario.step_s,  scenario.friction,
+          scenario.start_q,    scenario.stand,   true,
+          scenario.wire,       scenario.objects, scenario.plant ? &*scenario.plant : nullptr};
 }
 
 /// Lock step: TICK(k) starts the control period [k T, (k+1) T] of arm time. JOINT_STATE(k), taken
@@ -85,8 +86,8 @@ class Simulator {
   /// The messages outlive the simulator; those for others (modes, goals, gains) are passed over.
   void set_timeline(const std::vector<TimedMessage>* timeline) noexcept;
   /// A new session of the driver: if there is a timeline it starts over, in a world without walls,
-  /// payload, pushes and faults. Lock step sees a new session by itself, when the TICK's number
-  /// falls.
+  /// payload, pushes and faults, with its objects where they lay. Lock step sees a new session by
+  /// itself, when the TICK's number falls.
   void restart_timeline() noexcept;
 
   /// Checked whole; false and nothing changed if a value is not finite, out of range, or names an
@@ -109,6 +110,8 @@ class Simulator {
   const sim_truth_t& truth() noexcept;
   /// Likewise the block on a table; nullptr without one.
   const block_truth_t* block_truth() noexcept;
+  /// The same of the hand; nullptr without one.
+  const hand_truth_t* hand_truth() noexcept;
   /// Steps that were not taken because they would have ended in a state that is not finite; the arm
   /// stopped instead.
   std::int64_t diverged() const noexcept { return arm_.diverged(); }
@@ -123,6 +126,7 @@ class Simulator {
   void apply_timeline() noexcept;
   bool apply(const ScenarioMessage& message) noexcept;
   void set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept;
+  void load_nodes() noexcept;
 
   bool lockstep_;
   sim::SimulatedArm arm_;
@@ -135,6 +139,7 @@ class Simulator {
   std::int64_t refused_ = 0;
   sim_truth_t truth_{};
   block_truth_t block_truth_{};
+  hand_truth_t hand_truth_{};
 };
 
 }  // namespace limber

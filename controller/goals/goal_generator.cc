@@ -60,9 +60,8 @@ Refusal GoalGenerator::set(const compliance_goal_t& message, GoalType type) noex
 Refusal GoalGenerator::set_stream(const target_stream_t& message, const Pose* poses, bool at_tip,
                                   std::int64_t now_ns) noexcept {
   const QuinticMotion<VectorJ>& joints = at_tip ? posture_ : joints_;
-  const Refusal refusal =
-      stream_.take(message, poses, {pose_.X_BD, pose_.V_BD, pose_.A_BD},
-                   {joints.x, joints.v, joints.a}, now_ns);
+  const Refusal refusal = stream_.take(message, poses, {pose_.X_BD, pose_.V_BD, pose_.A_BD},
+                                       {joints.x, joints.v, joints.a}, now_ns);
   if (refusal) return refusal;
   at_tip_ = at_tip;
   smooth_.end();

@@ -48,8 +48,7 @@ GoalLimits::GoalLimits(const Robot& robot)
 
 Refusal GoalLimits::check(const compliance_goal_t& message, GoalType type, const Pose& end,
                           bool moving) const noexcept {
-  if (message.num_joints != position_min_.size())
-    return malformed("num_joints is not this arm's");
+  if (message.num_joints != position_min_.size()) return malformed("num_joints is not this arm's");
   if (!(message.duration_s >= 0.0 && message.duration_s <= kLongestMotion_s)) {
     return beyond_goal_limit("duration_s must be within 0..600 s");
   }
@@ -107,7 +106,8 @@ Refusal GoalLimits::check_tip(const compliance_goal_t& message, const Pose& end,
     case compliance_goal_t::GOAL_WRENCH:
       return {};
     default:
-      return malformed("kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH, GOAL_CIRCLE");
+      return malformed(
+          "kind is none of GOAL_POSE, GOAL_JOINT, GOAL_OFFSET, GOAL_WRENCH, GOAL_CIRCLE");
   }
 }
 

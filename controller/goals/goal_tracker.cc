@@ -97,8 +97,8 @@ GoalTracker::Set GoalTracker::set_stream(const target_stream_t& message, GoalTyp
     }
   }
   const bool switched = change_kind(to_tip, type);
-  Refusal taken = generator_.set_stream(message, of_joints && to_tip ? poses.data() : nullptr,
-                                        to_tip, now_ns);
+  Refusal taken =
+      generator_.set_stream(message, of_joints && to_tip ? poses.data() : nullptr, to_tip, now_ns);
   taken.warning = far.reason;
   return {taken, switched};
 }

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kShortestPeriod_ns = 10'000;
 constexpr std::int64_t kLongestPeriod_ns = 100'000'000;
 
-bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noexcept {
+bool usable(const joint_state_t& state, int joints, int driven, const JointFlags& flags) noexcept {
   if (state.num_joints != joints || state.time_ns < 0) return false;
   if (state.period_ns < kShortestPeriod_ns || state.period_ns > kLongestPeriod_ns) return false;
   if (state.drive_state < joint_state_t::DRIVE_CONFIGURING ||
@@ -21,11 +21,11 @@ bool usable(const joint_state_t& state, int joints, const JointFlags& flags) noe
     return false;
   for (const double* values :
        {state.q, state.v, state.theta, state.theta_dot, state.tau, state.tau_applied}) {
-    if (!std::all_of(values, values + joints, [](double x) { return std::isfinite(x); })) {
+    if (!std::all_of(values, values + driven, [](double x) { return std::isfinite(x); })) {
       return false;
     }
   }
-  for (int i = 0; i < joints; ++i) {
+  for (int i = 0; i < driven; ++i) {
     if (!(std::isfinite(state.preload[i]) && std::isfinite(state.preload_dot[i]) &&
           std::isfinite(state.tau_preload_applied[i])))
       return false;
@@ -44,6 +44,7 @@ JointFlags equipment_of(const Robot& robot) {
     if (joint.torque_sensor.present) flags[i] |= joint_state_t::JOINT_TORQUE_SENSOR;
     if (joint.has_antagonist) flags[i] |= joint_state_t::JOINT_TWO_MOTORS;
   }
+  if (robot.hand) flags[robot.joints.size()] = joint_state_t::JOINT_HAND;
   return flags;
 }
 
@@ -87,11 +88,11 @@ StateJudgement StateJudge::judge(const joint_state_t& state) noexcept {
   ++received_;
   lost_ += judgement.missed;
 
-  judgement.usable = usable(state, joints_, flags_);
+  judgement.usable = usable(state, joints_, driven_, flags_);
   if (!judgement.usable) return judgement;
   judgement.fresh = true;
   judgement.silent = judgement.missed > bridged_;
-  for (int i = 0; i < joints_; ++i) {
+  for (int i = 0; i < driven_; ++i) {
     if ((state.joint_flags[i] & joint_state_t::JOINT_FRESH) == 0) judgement.fresh = false;
     if (!(state.age_cycles[i] <= bridged_)) judgement.silent = true;
   }

@@ -13,9 +13,9 @@ namespace limber::controller {
 
 /// What a joint has, as its flags tell.
 using JointFlags = std::array<std::int32_t, kMaxJoints>;
-inline constexpr std::int32_t kEquipment = int{joint_state_t::JOINT_LINK_ENCODER} |
-                                           int{joint_state_t::JOINT_TORQUE_SENSOR} |
-                                           int{joint_state_t::JOINT_TWO_MOTORS};
+inline constexpr std::int32_t kEquipment =
+    int{joint_state_t::JOINT_LINK_ENCODER} | int{joint_state_t::JOINT_TORQUE_SENSOR} |
+    int{joint_state_t::JOINT_TWO_MOTORS} | int{joint_state_t::JOINT_HAND};
 /// As robot.yaml has it. For set-up.
 JointFlags equipment_of(const Robot& robot);
 
@@ -37,8 +37,12 @@ class StateJudge {
   /// `joints`: at most kMaxJoints. `flags`: the JOINT_* bits of kEquipment that each joint has; a
   /// state that says otherwise is of another arm. So many cycles in a row without a state, or
   /// without a joint's answer, are bridged.
+  /// A hand is judged as a joint after them; `flags` has it.
   StateJudge(int joints, int bridged_cycles, const JointFlags& flags = {})
-      : joints_(joints), bridged_(bridged_cycles), flags_(flags) {}
+      : joints_(joints),
+        driven_(joints + hands_in(joints, flags)),
+        bridged_(bridged_cycles),
+        flags_(flags) {}
   StateJudgement judge(const joint_state_t& state) noexcept;
   /// The next state may have any number: nothing new has come for too long.
   void forget_sequence() noexcept { seq_ = -1; }
@@ -58,7 +62,12 @@ class StateJudge {
   /// sends another one, or in lock step the same again.
   bool is_doubtful(const joint_state_t& state) noexcept;
 
+  static int hands_in(int joints, const JointFlags& flags) noexcept {
+    return joints < kMaxJoints && flags[static_cast<std::size_t>(joints)] != 0 ? 1 : 0;
+  }
+
   int joints_;
+  int driven_;  ///< with the hand
   int bridged_;
   JointFlags flags_;
   std::int64_t session_ = 0;

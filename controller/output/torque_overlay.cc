@@ -11,8 +11,7 @@ TorqueOverlay::TorqueOverlay(const Robot& robot)
 }
 
 Refusal TorqueOverlay::set(const torque_overlay_t& message, std::int64_t now_ns) noexcept {
-  if (message.num_joints != most_.size())
-    return malformed("num_joints is not this arm's");
+  if (message.num_joints != most_.size()) return malformed("num_joints is not this arm's");
   if (!(message.valid_for_s > 0.0F && message.valid_for_s <= static_cast<float>(kLongest_s)))
     return beyond_goal_limit("valid_for_s must be within 0..0.05 s");
   const VectorJ tau = Eigen::Map<const Eigen::VectorXf>(message.tau, most_.size()).cast<double>();

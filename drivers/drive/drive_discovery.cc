@@ -31,7 +31,7 @@ class Discovery {
         buses_(buses),
         lockstep_(lockstep),
         found_(static_cast<std::size_t>(robot.motors()), false) {
-    for (const JointConfig& joint : robot.joints) {
+    for (const JointConfig& joint : robot.driven()) {
       for (int motor = 0; motor < joint.motors(); ++motor) add(motor_view(joint, motor));
     }
   }

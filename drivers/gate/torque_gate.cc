@@ -23,7 +23,7 @@ bool every_joint(const CheckInput& in, Test test) noexcept {
 }
 
 bool size_fits(const CheckInput& in) noexcept {
-  return in.command.num_joints == in.limits.n && in.limits.n <= kMaxJoints;
+  return in.command.num_joints == in.limits.n - in.limits.hand && in.limits.n <= kMaxJoints;
 }
 
 bool session_is_ours(const CheckInput& in) noexcept {
@@ -95,7 +95,8 @@ bool gravity_step_within_limits(const CheckInput& in) noexcept {
 
 bool power_within_limit(const CheckInput& in) noexcept {
   double power_W = 0.0;
-  for (int i = 0; i < in.limits.n; ++i) power_W += in.command.tau[i] * in.situation.velocity[i];
+  for (int i = 0; i < in.limits.n - in.limits.hand; ++i)
+    power_W += in.command.tau[i] * in.situation.velocity[i];
   return !in.situation.followed || power_W <= in.limits.power_W;
 }
 

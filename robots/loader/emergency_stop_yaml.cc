@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostId = 0x7FE;  // 0x7FF is Damiao's register identifier
 
 void check_free(const YamlMap& yaml, const EmergencyStopConfig& stop, const Robot& robot) {
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     for (int motor = 0; motor < joint.motors(); ++motor) {
       const DriveConfig& drive = joint.motor(motor);
       if (drive.bus == stop.bus && (uses_id(drive, stop.id) || accepts_id(drive, stop.id)))

@@ -88,21 +88,6 @@ TransmissionConfig read_transmission(const YamlMap& yaml, const JointUnits& unit
   return transmission;
 }
 
-FrictionConfig read_friction(const YamlMap& yaml, const JointUnits& units) {
-  FrictionConfig friction;
-  friction.coulomb_Nm = yaml.number("coulomb" + units.force, {0.0, 1000.0});
-  friction.static_Nm = yaml.number_or("static" + units.force, {0.0, 1000.0}, friction.coulomb_Nm);
-  if (!(friction.static_Nm >= friction.coulomb_Nm))
-    yaml.refuse("static" + units.force, "must be at least the coulomb friction");
-  friction.viscous_Nms_per_rad = yaml.number("viscous" + units.damping, {0.0, 1000.0});
-  friction.stribeck_rad_per_s =
-      yaml.number_or("stribeck" + units.velocity, {1e-6, 100.0}, friction.stribeck_rad_per_s);
-  friction.bristle_rad =
-      yaml.number_or("bristle" + units.position, {1e-7, 0.1}, friction.bristle_rad);
-  yaml.finish();
-  return friction;
-}
-
 EncoderErrors read_encoder_errors(const YamlMap& yaml, const JointUnits& units) {
   EncoderErrors errors;
   errors.bias_rad = yaml.number_or("bias" + units.position, {-1.0, 1.0}, 0.0);
@@ -156,6 +141,21 @@ TorqueLoopConfig read_torque_loop(const YamlMap& yaml, double rate_hz, const Joi
 }
 
 }  // namespace
+
+FrictionConfig read_friction(const YamlMap& yaml, const JointUnits& units) {
+  FrictionConfig friction;
+  friction.coulomb_Nm = yaml.number("coulomb" + units.force, {0.0, 1000.0});
+  friction.static_Nm = yaml.number_or("static" + units.force, {0.0, 1000.0}, friction.coulomb_Nm);
+  if (!(friction.static_Nm >= friction.coulomb_Nm))
+    yaml.refuse("static" + units.force, "must be at least the coulomb friction");
+  friction.viscous_Nms_per_rad = yaml.number("viscous" + units.damping, {0.0, 1000.0});
+  friction.stribeck_rad_per_s =
+      yaml.number_or("stribeck" + units.velocity, {1e-6, 100.0}, friction.stribeck_rad_per_s);
+  friction.bristle_rad =
+      yaml.number_or("bristle" + units.position, {1e-7, 0.1}, friction.bristle_rad);
+  yaml.finish();
+  return friction;
+}
 
 const JointUnits& units_of(const JointConfig& joint) {
   return joint.type == JointType::kPrismatic ? kLinear : kRotary;

@@ -15,6 +15,8 @@ struct JointUnits {
 /// Rotary and continuous joints: _rad, _Nm ...; prismatic joints: _m, _N ...
 const JointUnits& units_of(const JointConfig& joint);
 
+FrictionConfig read_friction(const YamlMap& yaml, const JointUnits& units);
+
 /// `transmission`, `friction`, `link_friction`, `link_encoder`, `torque_sensor` and `torque_loop`
 /// of one joint; each may be left out. Throws ConfigError. Set-up only.
 void read_joint_chain(const YamlMap& yaml, double rate_hz, JointConfig* joint);

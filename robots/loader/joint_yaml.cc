@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/complaints.h"
+#include "common/joints.h"
 #include "common/suggest.h"
 #include "common/unit_hint.h"
 #include "robots/loader/address_yaml.h"
@@ -178,6 +179,25 @@ void read_joint(const YamlMap& yaml, const std::map<std::string, DriveConfig>& m
 
 bool ignores_urdf_limits(const YamlMap& joint) {
   return joint.word_or("urdf_limits", {"use", "ignore"}, "use") == "ignore";
+}
+
+void read_hand_drive(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
+                     Robot* robot, JointConfig* drive) {
+  if (robot->size() >= kMaxJoints)
+    yaml.refuse(fmt::format("an arm with a hand has at most {} joints", kMaxJoints - 1));
+  // Addresses are checked against those of all joints, of which it is the last for so long.
+  Robot with = *robot;
+  with.joints.push_back(*drive);
+  JointConfig& joint = with.joints.back();
+  joint.drive = motors.at(yaml.word("motor", names_of(motors)));
+  read_address(yaml, with, with.joints.size() - 1, &joint.drive);
+  const JointUnits& units = units_of(joint);
+  read_mounting(yaml, units, &joint.drive);
+  check_drive_range(yaml, joint);
+  if (yaml.has("friction")) joint.friction = read_friction(yaml.map("friction"), units);
+  joint.drive.frames = frames_of(joint, with);
+  read_hold(yaml.map("hold"), units, &joint.drive);
+  *drive = joint;
 }
 
 void read_joints(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,

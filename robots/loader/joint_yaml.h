@@ -18,4 +18,9 @@ bool ignores_urdf_limits(const YamlMap& joint);
 void read_joints(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
                  Robot* robot);
 
+/// Motor, address, mounting, friction and hold of the hand, whose name and way `drive` has.
+/// Likewise.
+void read_hand_drive(const YamlMap& yaml, const std::map<std::string, DriveConfig>& motors,
+                     Robot* robot, JointConfig* drive);
+
 }  // namespace limber

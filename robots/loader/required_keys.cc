@@ -44,6 +44,22 @@ const RequiredKey kOfEveryRobot[] = {
     {"joints.*", "hold", "", "how the driver holds the joint without a controller"},
     {"joints.*.hold", "kp_Nm_per_rad|kp_N_per_m", "", "stiffness of holding"},
     {"joints.*.hold", "kd_Nms_per_rad|kd_Ns_per_m", "", "damping of holding"},
+    {"hand", "motor", "", "of an arm with a hand: name of one of the motors"},
+    {"hand", "bus", "", "name of one of the buses"},
+    {"hand", "id", "", "number of its drive on the bus"},
+    {"hand", "travel", "", "width between the fingers against angle of the motor"},
+    {"hand", "stiffness_N_per_m", "", "of the width"},
+    {"hand", "damping_Ns_per_m", "", "of the width"},
+    {"hand", "force_limit_N", "", "most that each finger presses with"},
+    {"hand", "speed_limit_m_per_s", "", "most that the width changes by"},
+    {"hand", "velocity_limit_rad_per_s", "", "of the motor, behind its gear; faster is a fault"},
+    {"hand", "continuous_torque_Nm", "", "that the motor makes for ever"},
+    {"hand", "heat_time_constant_s", "", "of the motor's winding"},
+    {"hand", "hold", "", "as of a joint"},
+    {"hand.travel", "width_m", "", "list, rising, from closed to open"},
+    {"hand.travel", "angle_rad", "", "list of as many angles, monotone"},
+    {"hand.hold", "kp_Nm_per_rad", "", "stiffness of holding"},
+    {"hand.hold", "kd_Nms_per_rad", "", "damping of holding"},
     {"gains", "K_q_Nm_per_rad", "", "joint stiffness; one number or one a joint"},
     {"gains", "joint_damping_ratio", "", "of the joint stiffness; 0.7 settles fast"},
     {"gains", "K_x_translation_N_per_m", "", "stiffness of the tip"},
@@ -147,6 +163,12 @@ void check_joints(const YamlMap& joints, const std::map<std::string, std::string
   }
 }
 
+void check_hand(const YamlMap& hand, Search* search) {
+  search->check(hand, "hand");
+  for (const char* part : {"travel", "hold"})
+    search->check_below(hand, part, std::string("hand.") + part);
+}
+
 void check_buses(const YamlMap& yaml, Search* search) {
   for (const YamlMap& bus : yaml.maps("buses")) {
     bool fd = false;
@@ -170,6 +192,7 @@ void check_required_keys(const YamlMap& yaml) {
   std::map<std::string, std::string> protocols;
   if (yaml.is_map("motors")) protocols = check_motors(yaml.map("motors"), &search);
   if (yaml.is_map("joints")) check_joints(yaml.map("joints"), protocols, &search);
+  if (yaml.is_map("hand")) check_hand(yaml.map("hand"), &search);
   search.check_below(yaml, "gains", "gains");
   search.finish();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robots/loader/emergency_stop_config.h"
+#include "robots/loader/hand_travel.h"
 #include "robots/loader/joint_chain.h"
 #include "robots/loader/tip_sensor_config.h"
 
@@ -121,6 +122,29 @@ struct JointConfig {
   }
 };
 
+/// A hand behind the tip, closed and opened by one motor.
+struct HandConfig {
+  /// Its motor, as a joint of the driver that is none of the chain: named "hand", rad, N m. Its
+  /// limits are a tenth of the travel beyond the table's ends.
+  JointConfig drive;
+  HandTravel travel;
+  double stiffness_N_per_m = 0.0;    ///< of the width
+  double damping_Ns_per_m = 0.0;     ///< likewise
+  double force_limit_N = 0.0;        ///< of each finger
+  double speed_limit_m_per_s = 0.0;  ///< of the width that is aimed at
+  double hold_force_N = 0.0;         ///< once something is grasped
+  double rated_torque_Nm = 0.0;      ///< for ever, at the motor behind its gear
+  double heat_time_constant_s = 30.0;
+  // For the simulator.
+  double finger_mass_kg = 0.0;       ///< of each finger
+  double p_TG[3] = {0.0, 0.0, 0.0};  ///< where objects are grasped, tip axes, m
+
+  /// Of motor and fingers as the width moves them: B / s^2 + m / 2 at a slope s, kg.
+  double mass_kg(double slope) const {
+    return drive.drive.rotor_inertia_kgm2 / (slope * slope) + 0.5 * finger_mass_kg;
+  }
+};
+
 /// Gains a robot starts with.
 struct DefaultGains {
   std::vector<double> K_q;  ///< N m/rad, joint impedance and HOLD
@@ -152,15 +176,29 @@ struct Robot {
   bool has_tip_sensor = false;
   TipSensorConfig tip_sensor;  ///< counts only if there is one
   std::optional<EmergencyStopConfig> emergency_stop;
+  std::optional<HandConfig> hand;
 
+  /// Joints of the chain; the hand is none.
   int size() const { return static_cast<int>(joints.size()); }
   std::vector<std::string> joint_names() const {
     std::vector<std::string> names;
     for (const JointConfig& joint : joints) names.push_back(joint.name);
     return names;
   }
+  /// All that the driver commands: the joints, then the hand.
+  std::vector<JointConfig> driven() const {
+    std::vector<JointConfig> all = joints;
+    if (hand) all.push_back(hand->drive);
+    return all;
+  }
+  std::vector<std::string> driven_names() const {
+    std::vector<std::string> names = joint_names();
+    if (hand) names.push_back(hand->drive.name);
+    return names;
+  }
+  /// With the hand's.
   int motors() const {
-    int count = 0;
+    int count = hand ? 1 : 0;
     for (const JointConfig& joint : joints) count += joint.motors();
     return count;
   }

@@ -7,6 +7,7 @@
 
 #include "common/complaints.h"
 #include "robots/loader/emergency_stop_yaml.h"
+#include "robots/loader/hand_yaml.h"
 #include "robots/loader/joint_yaml.h"
 #include "robots/loader/motor_yaml.h"
 #include "robots/loader/tip_sensor_yaml.h"
@@ -40,10 +41,12 @@ void read_watchdog(const YamlMap& yaml, Robot* robot) {
                             ? NodeWatchdogReaction::kDamp
                             : NodeWatchdogReaction::kOff;
   yaml.finish();
-  for (JointConfig& joint : robot->joints) {
-    joint.drive.watchdog_s = timeout_s;
-    joint.drive.watchdog_reaction = reaction;
-  }
+  const auto set = [&](JointConfig* joint) {
+    joint->drive.watchdog_s = timeout_s;
+    joint->drive.watchdog_reaction = reaction;
+  };
+  for (JointConfig& joint : robot->joints) set(&joint);
+  if (robot->hand) set(&robot->hand->drive);
 }
 
 std::set<std::string> ignored_limits(const YamlMap& yaml) {
@@ -87,6 +90,8 @@ void read_robot_yaml(const YamlMap& yaml, Robot* robot) {
   const bool motors_known = complaints.collect([&] { motors = read_motors(yaml); });
   yaml.has("joints");
   if (buses_known && motors_known) complaints.collect([&] { read_joints(yaml, motors, robot); });
+  if (yaml.has("hand") && buses_known && motors_known)
+    complaints.collect([&] { read_hand(yaml.map("hand"), motors, robot); });
   if (yaml.has("tip_sensor") && buses_known)
     complaints.collect([&] { read_tip_sensor(yaml.map("tip_sensor"), robot); });
   if (yaml.has("emergency_stop") && buses_known)

@@ -106,7 +106,7 @@ void read_wire(const YamlMap& yaml, const Robot& robot, TipSensorConfig* sensor)
 
 void check_free(const YamlMap& yaml, const std::string& key, std::uint32_t id, const Robot& robot,
                 int bus) {
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     for (int motor = 0; motor < joint.motors(); ++motor) {
       const DriveConfig& drive = joint.motor(motor);
       if (drive.bus != bus) continue;

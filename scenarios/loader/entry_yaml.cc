@@ -8,6 +8,7 @@
 #include "lcmtypes/mode_words.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/goal_yaml.h"
+#include "scenarios/loader/hand_yaml.h"
 #include "scenarios/loader/stream_yaml.h"
 #include "scenarios/loader/values_yaml.h"
 #include "scenarios/loader/world_yaml.h"
@@ -15,8 +16,8 @@
 namespace limber {
 namespace {
 
-const std::vector<std::string> kKinds = {"mode", "gains",   "goal", "stream", "push",
-                                         "wall", "payload", "fault"};
+const std::vector<std::string> kKinds = {"mode", "gains", "goal",    "stream", "hand",
+                                         "push", "wall",  "payload", "fault"};
 const std::vector<std::string> kModes(kModeRequestWords.begin(), kModeRequestWords.end());
 
 ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
@@ -30,6 +31,7 @@ ScenarioMessage read_message(const YamlMap& yaml, const std::string& kind,
   }
   if (kind == "stream") return read_stream(yaml.map("stream"), context.robot.robot);
   if (kind == "goal") return read_goal(yaml.map("goal"), context.robot.robot);
+  if (kind == "hand") return read_hand_goal(yaml.map("hand"), context.robot.robot);
   if (kind == "push") return read_push(yaml.map("push"), context.robot);
   if (kind == "wall") return read_wall(yaml);
   if (kind == "payload") return read_payload(yaml);

@@ -7,6 +7,7 @@
 #include "common/complaints.h"
 #include "common/yaml_reader.h"
 #include "scenarios/loader/entry_yaml.h"
+#include "scenarios/loader/hand_yaml.h"
 #include "scenarios/loader/plant_overrides.h"
 #include "scenarios/loader/scenario_yaml.h"
 #include "scenarios/loader/values_yaml.h"
@@ -172,6 +173,7 @@ Scenario load_scenario(const YamlMap& yaml, const LoadedRobot& robot, const LawC
   const char* overrides = yaml.has("plant_overrides") ? "plant_overrides" : "reality";
   if (yaml.has(overrides)) scenario.plant = read_plant(yaml.map(overrides), robot);
   scenario.start_q = read_start(yaml, robot.robot);
+  scenario.objects = read_objects(yaml, robot.robot);
   scenario.measure = read_measure(yaml);
   scenario.record = yaml.boolean_or("record", true);
   scenario.law_files = scenario_laws(yaml);

@@ -13,12 +13,13 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-const Keys kArm = {"urdf", "gravity", "motors", "joints", "tip_sensor", "emergency_stop"};
+const Keys kArm = {"urdf", "gravity", "motors", "joints", "tip_sensor", "emergency_stop", "hand"};
 const Keys kMotor = {"gear_ratio", "rotor_inertia", "rotor_torque_constant", "phase_resistance",
                      "actuator"};
 const Keys kMounting = {"sign", "offset"};
 const Keys kJoint = {"motor",    "sign",          "offset",        "antagonist",   "transmission",
                      "friction", "link_friction", "motor_encoder", "link_encoder", "torque_sensor"};
+const Keys kHand = {"motor", "sign", "offset", "friction", "finger_mass", "grasp_point"};
 const Keys kLinkEncoder = {"bias", "eccentricity", "noise", "delay"};
 
 /// Names stand without their units, which follow after an underscore.
@@ -46,6 +47,7 @@ void check_plant_keys(const YamlMap& plant) {
     const YamlMap motors = plant.map("motors");
     for (const std::string& name : motors.keys()) allow_in(motors, name, kMotor);
   }
+  allow_in(plant, "hand", kHand);
   if (!plant.is_map("joints")) return;
   const YamlMap joints = plant.map("joints");
   for (const std::string& name : joints.keys()) {

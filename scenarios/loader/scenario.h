@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limber/compliance_gains_t.hpp>
 #include <limber/compliance_goal_t.hpp>
+#include <limber/hand_goal_t.hpp>
 #include <limber/mode_request_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
@@ -17,12 +18,13 @@
 
 #include "lcmtypes/gains_table.h"
 #include "robots/loader/load_robot.h"
+#include "scenarios/loader/object_config.h"
 
 namespace limber {
 
 using ScenarioMessage =
-    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, target_stream_t, push_t,
-                 scenario_event_t>;
+    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, target_stream_t, hand_goal_t,
+                 push_t, scenario_event_t>;
 
 struct TimedMessage {
   std::int64_t time_ns =
@@ -64,6 +66,7 @@ struct Scenario {
   bool stand = true;  ///< the arm is carried at its start pose until the drives hold it
   /// The simulated arm, where it differs from what drives and controller believe.
   std::optional<LoadedRobot> plant;
+  std::vector<ObjectConfig> objects;   ///< for the hand
   std::vector<double> start_q;         ///< pose of the simulated arm at time zero; defaults to home
   std::vector<TimedMessage> timeline;  ///< sorted by time, file order within the same time
 };

@@ -67,7 +67,7 @@ target_stream_t read_stream(const YamlMap& yaml, const Robot& robot) {
   stream.t0_ns = yaml.has("t0_s") ? std::llround(1e9 * yaml.number("t0_s", {0.0, 1e6}))
                                   : std::int64_t{target_stream_t::NOW};
   if (yaml.has("hand_width_m")) {
-    const auto widths = yaml.numbers("hand_width_m", stream.num_knots, {0.0, 1.0}, true);
+    const auto widths = yaml.numbers("hand_width_m", stream.num_knots, {-0.02, 1.0}, true);
     std::transform(widths.begin(), widths.end(), stream.hand_width_m,
                    [](double w) { return static_cast<float>(w); });
     stream.use_hand = 1;
@@ -75,8 +75,7 @@ target_stream_t read_stream(const YamlMap& yaml, const Robot& robot) {
   stream.hand_force_N = static_cast<float>(yaml.number_or("hand_force_N", {0.0, 1e3}, 0.0));
   stream.delay_s = static_cast<float>(yaml.number_or("delay_s", {0.0, 2.0}, 0.0));
   stream.valid_for_s = static_cast<float>(yaml.number_or("valid_for_s", {0.0, 600.0}, 0.0));
-  stream.stiffness_scale =
-      static_cast<float>(yaml.number_or("stiffness_scale", {0.05, 1.0}, 0.0));
+  stream.stiffness_scale = static_cast<float>(yaml.number_or("stiffness_scale", {0.05, 1.0}, 0.0));
   read_six(yaml, &stream);
   yaml.finish();
   return stream;

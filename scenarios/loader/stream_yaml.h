@@ -8,7 +8,8 @@
 
 namespace limber {
 
-/// Checks form and counts; what the arm may follow is the controller's to check. Throws ConfigError.
+/// Checks form and counts; what the arm may follow is the controller's to check. Throws
+/// ConfigError.
 target_stream_t read_stream(const YamlMap& yaml, const Robot& robot);
 
 }  // namespace limber

@@ -100,8 +100,7 @@ void read_sensor_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t
 }
 
 void read_joint_fault(const YamlMap& yaml, const Robot& robot, scenario_event_t* event) {
-  std::vector<std::string> names;
-  for (const JointConfig& joint : robot.joints) names.push_back(joint.name);
+  const std::vector<std::string> names = robot.driven_names();
   event->joint = index_of(yaml.word("joint", names), names);
   const std::string kind = yaml.word("kind", kFaults);
   event->fault =

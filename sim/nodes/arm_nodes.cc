@@ -5,13 +5,17 @@
 namespace limber::sim {
 
 ArmNodes::ArmNodes(const Robot& robot, const Robot& plant, const SimulatedArm& arm)
-    : motors_(robot, plant, arm.forces(), arm.state()) {
+    : joints_(robot.size()), motors_(robot, plant, arm.forces(), arm.state()) {
+  if (arm.hand() != nullptr)
+    hand_.emplace(robot, as_mounted(robot.hand.value().drive, plant.hand.value().drive),
+                  motors_.size() + 2, arm.hand()->fingers());
   if (plant.has_tip_sensor) tip_sensor_.emplace(plant.tip_sensor, arm.body());
   if (plant.emergency_stop) emergency_stop_.emplace(*plant.emergency_stop);
 }
 
 void ArmNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusSide* out) noexcept {
   motors_.receive(bus, frame, now_ns, out);
+  if (hand_) hand_->receive(bus, frame, now_ns, out);
   if (!tip_sensor_ || tip_sensor_->bus != bus) return;
   for (const CanFrame& answer : tip_sensor_->node.receive(frame)) {
     out->send(motors_.size(), answer, now_ns);
@@ -21,6 +25,7 @@ void ArmNodes::receive(int bus, const CanFrame& frame, std::int64_t now_ns, BusS
 void ArmNodes::update(const SimulatedArm& arm, double h, std::int64_t now_ns,
                       std::vector<BusSide>* buses) noexcept {
   motors_.update(arm.forces(), arm.state(), h, now_ns, buses);
+  if (hand_) hand_->update(arm.hand()->fingers(), h, now_ns, buses);
   update_tip_sensor(arm, h, now_ns);
   CanFrame frame;
   if (emergency_stop_ && emergency_stop_->next(now_ns, &frame)) {
@@ -46,6 +51,8 @@ void ArmNodes::inject(const NodeFault& fault, std::int64_t now_ns) noexcept {
     tip_sensor_->node.silence(until_ns);
   } else if (fault.joint == scenario_event_t::NODE_EMERGENCY_STOP) {
     emergency_stop_->inject(fault.fault, until_ns);
+  } else if (hand_ && fault.joint == joints_) {
+    hand_->inject(fault.fault, until_ns);
   } else {
     motors_.inject(fault.joint, fault.fault, until_ns);
   }
@@ -53,6 +60,7 @@ void ArmNodes::inject(const NodeFault& fault, std::int64_t now_ns) noexcept {
 
 void ArmNodes::clear_faults() noexcept {
   motors_.clear_faults();
+  if (hand_) hand_->drive().clear_faults();
   if (tip_sensor_) tip_sensor_->node.clear_faults();
   if (emergency_stop_) emergency_stop_->clear_faults();
 }

@@ -18,7 +18,10 @@ JointConfig antagonist_of(const JointConfig& joint) {
   return out;
 }
 
-/// What drives know is from robot.yaml; how they are mounted and wired is the arm's.
+bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(ratio)) < 1e-6; }
+
+}  // namespace
+
 JointConfig as_mounted(const JointConfig& believed, const JointConfig& real) {
   JointConfig out = believed;
   out.drive.command_id = real.drive.command_id;
@@ -29,10 +32,6 @@ JointConfig as_mounted(const JointConfig& believed, const JointConfig& real) {
   out.antagonist.offset_rad = real.antagonist.offset_rad;
   return out;
 }
-
-bool whole(double ratio) { return ratio > 0.5 && std::abs(ratio - std::round(ratio)) < 1e-6; }
-
-}  // namespace
 
 MotorNodes::MotorNodes(const Robot& robot, const Robot& plant, const ForceModel& forces,
                        const ArmState& x) {
@@ -57,18 +56,20 @@ void MotorNodes::add(const JointConfig& joint, int index, const Robot& robot) {
       {make_motor_node(joint, robot.buses[bus].fd), bus, index, joint.torque_sensor.present, {}});
 }
 
-std::int64_t MotorNodes::steps_per_period(double rate_hz, double step_s) const {
+std::int64_t MotorNodes::steps_per_period(double rate_hz, double step_s, double loop_hz) const {
   constexpr std::int64_t kMostTimes = 1000;
   // The tolerance keeps 0.001 / 0.00025 from becoming 5 steps by rounding.
   const std::int64_t fewest =
       std::max(1LL, std::llround(std::ceil(1.0 / (rate_hz * step_s) - 1e-6)));
   for (std::int64_t steps = fewest; steps <= kMostTimes * fewest; ++steps) {
     const double per_second = rate_hz * static_cast<double>(steps);
-    const auto fits = [per_second](const Node& node) {
-      const double loop_hz = node.motor->loop_rate_hz();
-      return loop_hz == 0.0 || whole(per_second / loop_hz);
+    const auto fits = [per_second](double of_hz) {
+      return of_hz == 0.0 || whole(per_second / of_hz);
     };
-    if (std::all_of(nodes_.begin(), nodes_.end(), fits)) return steps;
+    if (fits(loop_hz) && std::ranges::all_of(nodes_, fits, [](const Node& node) {
+          return node.motor->loop_rate_hz();
+        }))
+      return steps;
   }
   throw ConfigError(fmt::format(
       "no whole number of integration steps makes both a control period at {} Hz and a period of "

@@ -15,6 +15,9 @@
 
 namespace limber::sim {
 
+/// What drives know is from robot.yaml; how they are mounted and wired is the arm's. Set-up only.
+JointConfig as_mounted(const JointConfig& believed, const JointConfig& real);
+
 /// After construction every member but steps_per_period() is allowed in the cycle.
 class MotorNodes {
  public:
@@ -23,9 +26,9 @@ class MotorNodes {
   MotorNodes(const Robot& robot, const Robot& plant, const ForceModel& forces, const ArmState& x);
 
   /// The fewest integration steps no longer than step_s of which a whole number makes a control
-  /// period, and another the period of every sampled loop in the drives. Throws ConfigError if
-  /// there is none within a thousand times as many.
-  std::int64_t steps_per_period(double rate_hz, double step_s) const;
+  /// period, and another the period of every sampled loop in the drives, and of one more at
+  /// `loop_hz` (0: none). Throws ConfigError if there is none within a thousand times as many.
+  std::int64_t steps_per_period(double rate_hz, double step_s, double loop_hz = 0.0) const;
 
   int size() const noexcept { return static_cast<int>(nodes_.size()); }
   /// Hands a frame from a bus to its nodes and sends their answers there.

@@ -40,18 +40,20 @@ void check_setup(const Robot& robot, std::size_t buses, double step_s) {
     refuse(robot, "rate {} Hz; allowed: 1 to 1e5", robot.rate_hz);
   if (robot.has_tip_sensor && !(robot.tip_sensor.bus < static_cast<int>(buses)))
     refuse(robot, "the tip sensor is on bus number {}, which does not exist", robot.tip_sensor.bus);
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     check_bus(robot, joint, joint.drive.bus);
     if (joint.has_antagonist) check_bus(robot, joint, joint.antagonist.bus);
   }
 }
 
 void check_plant(const Robot& robot, const Robot& plant) {
-  bool same = robot.size() == plant.size() && robot.has_tip_sensor == plant.has_tip_sensor;
+  bool same = robot.size() == plant.size() && robot.has_tip_sensor == plant.has_tip_sensor &&
+              robot.hand.has_value() == plant.hand.has_value();
   for (int i = 0; same && i < robot.size(); ++i) {
     same = robot.joints[i].has_antagonist == plant.joints[i].has_antagonist;
   }
-  if (!same) refuse(robot, "its plant has other joints, motors or tip sensor; the same are needed");
+  if (!same)
+    refuse(robot, "its plant has other joints, motors, tip sensor or hand; the same are needed");
 }
 
 VectorJ start_position(const Robot& robot, const std::vector<double>& start_q) {

@@ -61,6 +61,8 @@ void SimPort::publish_truth() noexcept {
   user_.publish(channels::kSimTruth, simulator_.truth());
   const block_truth_t* block = simulator_.block_truth();
   if (block != nullptr) user_.publish(channels::kBlockTruth, *block);
+  if (const hand_truth_t* hand = simulator_.hand_truth())
+    user_.publish(channels::kHandTruth, *hand);
 }
 
 void SimPort::set_black_box(BlackBox* box) {

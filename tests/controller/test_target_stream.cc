@@ -45,8 +45,7 @@ Stream pose(const Rig& rig, double away_m) {
   Stream stream = stream_of(rig, Stream::KIND_POSE);
   stream.delay_s = 0.05F;
   const Status& status = rig.controller.status();
-  for (int i = 0; i < 3; ++i)
-    stream.value[0][i] = static_cast<float>(status.p_BT[i] + away_m);
+  for (int i = 0; i < 3; ++i) stream.value[0][i] = static_cast<float>(status.p_BT[i] + away_m);
   for (int i = 0; i < 4; ++i) stream.value[0][3 + i] = static_cast<float>(status.quat_BT[i]);
   return stream;
 }
@@ -70,11 +69,10 @@ TEST(TargetStream, IsFollowedByLawsOfBothKinds) {
     rig.to_active();
     select(&rig, law);
     rig.run(0.3);
+    Stream stream = joints(rig, 0.0, 0.06);
     const double q0 = rig.state.q[3];
     for (int message = 0; message < 60; ++message) {  // 0.2 rad/s at 30 Hz
-      Stream stream = joints(rig, 0.0, 0.06);
-      for (int j = 0; j < stream.num_joints; ++j)
-        stream.value[0][j] = static_cast<float>(limber::testing::seven_joint_arm().robot.joints[static_cast<std::size_t>(j)].home);
+      stream.t0_ns = rig.state.time_ns;
       stream.value[0][3] = static_cast<float>(q0 + 0.2 * message / 30.0);
       ASSERT_EQ(rig.controller.on_stream(stream), nullptr) << law;
       rig.run(1.0 / 30.0);
@@ -154,9 +152,22 @@ TEST(TargetStream, IsRefusedWithTheReason) {
   refused([](Stream* s) { s->value[0][2] = kNaN; }, "not finite", Answer::REFUSED_MALFORMED);
   refused([](Stream* s) { s->value[0][3] = 2.0F; }, "unit quaternion", Answer::REFUSED_MALFORMED);
   refused([](Stream* s) { s->value[0][0] = 11.0F; }, "10 m", Answer::REFUSED_GOAL_LIMIT);
+  refused(
+      [](Stream* s) {
+        s->kind = Stream::KIND_TWIST;
+        s->value[0][0] = 1.1F;
+      },
+      "1 m/s", Answer::REFUSED_GOAL_LIMIT);
+  refused(
+      [](Stream* s) {
+        s->kind = Stream::KIND_JOINTS;
+        s->value[0][0] = 1e6F;
+      },
+      "1000 rad", Answer::REFUSED_GOAL_LIMIT);
   refused([](Stream* s) { s->delay_s = 3.0F; }, "delay_s", Answer::REFUSED_GOAL_LIMIT);
   refused([](Stream* s) { s->valid_for_s = 601.0F; }, "valid_for_s", Answer::REFUSED_GOAL_LIMIT);
-  refused([](Stream* s) { s->stiffness_scale = 1.1F; }, "stiffness_scale", Answer::REFUSED_GOAL_LIMIT);
+  refused([](Stream* s) { s->stiffness_scale = 1.1F; }, "stiffness_scale",
+          Answer::REFUSED_GOAL_LIMIT);
   refused([](Stream* s) { s->F_ff[1] = 300.0F; }, "F_ff", Answer::REFUSED_GOAL_LIMIT);
   refused([](Stream* s) { s->t0_ns += 6'000'000'000; }, "5 s ahead", Answer::REFUSED_GOAL_LIMIT);
   refused([](Stream* s) { s->t0_ns = std::numeric_limits<std::int64_t>::max(); }, "5 s ahead",
@@ -175,7 +186,7 @@ TEST(TargetStream, IsRefusedWithTheReason) {
   select(&rig, "gravity_compensation");
   refused([](Stream*) {}, "follows no goal", Answer::REFUSED_GOAL_KIND);
   rig.step();
-  EXPECT_EQ(rig.controller.status().stream_refused, 20);
+  EXPECT_EQ(rig.controller.status().stream_refused, 22);
   EXPECT_EQ(rig.controller.status().stream_taken, 0);
 }
 
@@ -236,9 +247,9 @@ std::vector<Action> actions() {
          chunk.stiffness_scale = 0.5F;
          chunk.F_ff[2] = 5.0F;
          for (int k = 0; k < 16; ++k) {
-           chunk.dt_s[k] = 0.02F * static_cast<float>(k);
+           chunk.dt_s[k] = 0.04F * static_cast<float>(k);
            for (int i = 0; i < 7; ++i) chunk.value[k][i] = chunk.value[0][i];
-           chunk.value[k][1] += 0.04F * std::sin(0.5F * static_cast<float>(k));
+           chunk.value[k][1] += 0.01F * std::sin(0.5F * static_cast<float>(k));
          }
          ASSERT_EQ(r->controller.on_stream(chunk), nullptr);
        }},
@@ -317,11 +328,15 @@ TEST(TargetStream, AnyMessagesAtAnyRate) {
             stream.value[k][c] = stream.value[0][c] / static_cast<float>(std::sqrt(norm));
         }
       }
-      if (uniform(random) > 0.9) stream.value[random() % 16][random() % 16] = static_cast<float>(any(1.0));
+      if (uniform(random) > 0.9)
+        stream.value[random() % 16][random() % 16] = static_cast<float>(any(1.0));
       taken += rig.controller.on_stream(stream) == nullptr;
     }
     rig.step();
     ASSERT_TRUE(rig.tau().allFinite()) << cycle;
+    ASSERT_EQ(rig.mode(), +Status::MODE_ACTIVE)
+        << cycle << " reason " << int{rig.controller.status().reason} << " joint "
+        << int{rig.controller.status().reason_joint};
     ASSERT_LE(rig.jump(), 1.0 + 1e-9) << cycle;
   }
   EXPECT_EQ(allocations(), before);
@@ -342,7 +357,7 @@ TEST(TorqueOverlay, IsAddedBoundedAndFades) {
   rig.clear_jumps();
   ASSERT_EQ(rig.controller.on_overlay(overlay), nullptr);
   rig.run(0.004);
-  EXPECT_NEAR(rig.tau()[5] - before[5], 1.0, 0.1);
+  EXPECT_NEAR(rig.tau()[5] - before[5], 1.0, 0.2);
   rig.run(0.05);
   EXPECT_LE(rig.jump(), 1.0 + 1e-9);
   EXPECT_EQ(rig.controller.status().overlays_taken, 1);

@@ -8,7 +8,7 @@ import sys
 import tomllib
 from importlib import metadata
 
-from limber.paths import ROOT
+from limber.paths import LACKING, ROOT
 
 COMES_WITH = {"trimesh": "viser", "websockets": "viser"}
 CALLED = {"google": "protobuf", "rerun": "rerun-sdk", "yaml": "pyyaml"}  # in pyproject.toml
@@ -40,6 +40,7 @@ def test_what_is_imported_is_named():
     extras = project["optional-dependencies"]
     users = ("identify", "mcap", "can", "parquet", "rerun", "gym")
     needed = [*project["dependencies"], *(line for extra in users for line in extras[extra])]
+    assert set(LACKING.values()) <= set(needed), "what the Debian package has pip install"
     named = {package(requirement) for requirement in needed}
     for path in sorted((ROOT / "tools" / "limber").rglob("*.py")):
         for module in imported(path.read_text(encoding="utf-8")):

@@ -16,6 +16,8 @@ CHANNELS = (
     "DRIVER_STATUS",
     "ROBOT_INFO",
     "REQUEST_ANSWER",
+    "HAND_STATE",
+    "HAND_TRUTH",
 )
 
 

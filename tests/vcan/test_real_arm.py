@@ -136,10 +136,10 @@ class Services:
     """What systemd makes of the units of `limber export service`, without its sandbox."""
 
     def __init__(self, folder: Path) -> None:
-        self.units = {path.name: path.read_text() for path in folder.glob("*.service")}
+        self.folder = folder
         (line,) = [
             line
-            for line in (folder / "limber-my_arm.tmpfiles.conf").read_text().splitlines()
+            for line in (folder / "limber.tmpfiles.conf").read_text().splitlines()
             if line.startswith("d ")
         ]
         self.run_folder = Path(line.split()[1])
@@ -149,11 +149,13 @@ class Services:
     def start(self, role: str) -> None:
         unit = configparser.ConfigParser(interpolation=None, strict=False)
         unit.optionxform = str
-        unit.read_string(self.units[f"limber-my_arm-{role}.service"])
+        unit.read_string((self.folder / f"limber-{role}@.service").read_text())
         name, _, value = unit["Service"]["Environment"].partition("=")
         assert unit["Service"]["Restart"] == "on-failure"
+        unit.read_string((self.folder / f"limber-{role}@my_arm.service.d/robot.conf").read_text())
         self.processes[role] = subprocess.Popen(
-            shlex.split(unit["Service"]["ExecStart"]), env=os.environ | {name: value}
+            shlex.split(unit["Service"]["ExecStart"]),
+            env=os.environ | {name: value.replace("%i", "my_arm")},
         )
 
     def kill(self, role: str) -> None:

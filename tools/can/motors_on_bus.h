@@ -25,7 +25,7 @@ inline BusFacts facts_of(const Robot& robot, int bus) {
 
 inline std::vector<Motor> motors_on_bus(const Robot& robot, int bus) {
   std::vector<Motor> motors;
-  for (const JointConfig& joint : robot.joints) {
+  for (const JointConfig& joint : robot.driven()) {
     if (joint.drive.bus == bus) motors.push_back({joint.name, joint});
     if (joint.has_antagonist && joint.antagonist.bus == bus)
       motors.push_back({joint.name + "/2", second_motor(joint)});

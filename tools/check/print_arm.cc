@@ -71,6 +71,16 @@ std::string joint_table(const Robot& robot, const ArmReport& report) {
   return table;
 }
 
+std::string hand_text(const Robot& robot) {
+  const HandConfig& hand = *robot.hand;
+  const DriveConfig& drive = hand.drive.drive;
+  return fmt::format(
+      "  hand {:g} to {:g} m wide, {:g} N (holds with {:.4g}), {:g} m/s: {}, {}, {}/{}\n",
+      hand.travel.closed_m(), hand.travel.open_m(), hand.force_limit_N, hand.hold_force_N,
+      hand.speed_limit_m_per_s, drive.motor, robot.buses[static_cast<std::size_t>(drive.bus)].name,
+      as_seen(drive, drive.command_id), as_seen(drive, drive.reply_id));
+}
+
 std::string joint_json(const Robot& robot, const ArmReport& report, std::size_t i) {
   json::Members members = joint_members(robot, robot.joints[i]);
   members.emplace_back("home_gravity_Nm", json::number(report.home_gravity_Nm[i]));
@@ -100,6 +110,7 @@ std::string arm_text(const LoadedRobot& robot, const ArmReport& report) {
   for (std::size_t i = 0; i < report.buses.size(); ++i)
     text += bus_text(arm.buses[i], report.buses[i], arm.rate_hz);
   if (arm.has_tip_sensor) text += tip_sensor_text(arm);
+  if (arm.hand) text += hand_text(arm);
   for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   for (const std::string& note : robot.notes) text += "  note: " + note + "\n";
   return text;

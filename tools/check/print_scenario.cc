@@ -35,8 +35,13 @@ std::string describe(const compliance_goal_t& goal) {
 }
 
 std::string describe(const target_stream_t& stream) {
-  const char* const names[] = {"joints", "pose", "twist"};
-  return fmt::format("stream: {} targets of {}", stream.num_knots, names[stream.kind]);
+  const char* const names[] = {"joints", "poses", "twists"};
+  return fmt::format("stream: {} {} over {:g} s, {:g} s late", int{stream.num_knots},
+                     names[stream.kind], stream.dt_s[stream.num_knots - 1], stream.delay_s);
+}
+
+std::string describe(const hand_goal_t& goal) {
+  return fmt::format("hand to {:g} m", goal.width_m);
 }
 
 std::string describe(const push_t& push) {

@@ -20,6 +20,29 @@ std::string tip_sensor_json(const Robot& robot) {
                        {"tool_mass_kg", json::number(sensor.tool_mass_kg)}});
 }
 
+std::string hand_json(const Robot& robot) {
+  if (!robot.hand) return "null";
+  const HandConfig& hand = *robot.hand;
+  std::vector<double> widths;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < hand.travel.count; ++i) {
+    widths.push_back(hand.travel.points[i].width_m);
+    angles.push_back(hand.travel.points[i].angle_rad);
+  }
+  return json::object({{"drive", json::object(joint_members(robot, hand.drive))},
+                       {"width_m", json::numbers(widths)},
+                       {"angle_rad", json::numbers(angles)},
+                       {"stiffness_N_per_m", json::number(hand.stiffness_N_per_m)},
+                       {"damping_Ns_per_m", json::number(hand.damping_Ns_per_m)},
+                       {"force_limit_N", json::number(hand.force_limit_N)},
+                       {"speed_limit_m_per_s", json::number(hand.speed_limit_m_per_s)},
+                       {"hold_force_N", json::number(hand.hold_force_N)},
+                       {"continuous_torque_Nm", json::number(hand.rated_torque_Nm)},
+                       {"heat_time_constant_s", json::number(hand.heat_time_constant_s)},
+                       {"finger_mass_kg", json::number(hand.finger_mass_kg)},
+                       {"grasp_point_m", json::numbers({hand.p_TG, hand.p_TG + 3})}});
+}
+
 std::string gains_json(const DefaultGains& gains) {
   return json::object({{"K_q_Nm_per_rad", json::numbers(gains.K_q)},
                        {"joint_damping_ratio", json::number(gains.joint_damping_ratio)},
@@ -93,6 +116,7 @@ json::Members robot_members(const LoadedRobot& loaded) {
       {"energy_limit_J", json::number(robot.energy_limit_J)},
       {"gravity_m_per_s2", json::numbers({robot.gravity[0], robot.gravity[1], robot.gravity[2]})},
       {"tip_sensor", tip_sensor_json(robot)},
+      {"hand", hand_json(robot)},
       {"notes", json::texts(loaded.notes)}};
 }
 

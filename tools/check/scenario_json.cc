@@ -44,6 +44,12 @@ json::Members members_of(const target_stream_t& stream) {
                                    {"knots", json::number(stream.num_knots)}})}};
 }
 
+json::Members members_of(const hand_goal_t& goal) {
+  return {{"hand", json::object({{"width_m", json::number(goal.width_m)},
+                                 {"force_N", json::number(goal.force_N)},
+                                 {"speed_m_per_s", json::number(goal.speed_m_per_s)}})}};
+}
+
 json::Members members_of(const push_t& push) {
   return {{"push", json::object({{"link", json::text(push.link)},
                                  {"wrench_N_Nm", array_json(push.wrench)},
@@ -117,6 +123,19 @@ std::string gains_over_time(const Scenario& scenario, const Robot& robot) {
   return json::list(found);
 }
 
+std::string objects_json(const std::vector<ObjectConfig>& objects) {
+  std::vector<std::string> all;
+  for (const ObjectConfig& object : objects)
+    all.push_back(json::object({{"name", json::text(object.name)},
+                                {"position_m", array_json(object.p_B)},
+                                {"width_m", json::number(object.width_m)},
+                                {"stiffness_N_per_m", json::number(object.stiffness_N_per_m)},
+                                {"damping_Ns_per_m", json::number(object.damping_Ns_per_m)},
+                                {"mass_kg", json::number(object.mass_kg)},
+                                {"friction", json::number(object.friction)}}));
+  return json::list(all);
+}
+
 }  // namespace
 
 json::Members scenario_members(const Scenario& scenario, const LoadedRobot& robot) {
@@ -137,6 +156,7 @@ json::Members scenario_members(const Scenario& scenario, const LoadedRobot& robo
                                 {"contact_force", json::number(scenario.measure.contact_force)}})},
       {"plant_overrides", json::flag(scenario.plant.has_value())},
       {"start_q", json::numbers(scenario.start_q)},
+      {"objects", objects_json(scenario.objects)},
       {"gains", gains_over_time(scenario, robot.robot)},
       {"timeline", timeline_json(scenario)}};
 }

@@ -69,7 +69,7 @@ class Lab:
 
     def send(self, message: Any) -> None:
         """A request such as mode_request_t, compliance_goal_t, compliance_gains_t,
-        target_stream_t, push_t, scenario_event_t or workpiece_t; it acts from the next cycle on.
+        target_stream_t, hand_goal_t, push_t, scenario_event_t or workpiece_t; it acts from the next cycle on.
         Number, time, sender and run of the controller are filled in. RefusedByLabError with the
         reason.
         """
@@ -87,7 +87,7 @@ class Lab:
 
     def message(self, channel: str) -> np.void:
         """Newest message of a channel of fixed size, by field: JOINT_STATE, JOINT_TORQUE,
-        CONTROLLER_STATUS, DRIVER_STATUS, SIM_TRUTH, BLOCK_TRUTH. SI units, as in lcmtypes/.
+        CONTROLLER_STATUS, DRIVER_STATUS, SIM_TRUTH, BLOCK_TRUTH, HAND_STATE, HAND_TRUTH. SI units, as in lcmtypes/.
         """
         data = self.message_bytes(channel)
         return view(channels()[channel].type_name, data)

@@ -8,6 +8,7 @@ import importlib
 import os
 import struct
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
@@ -34,7 +35,10 @@ IN_CACHE = 200  # messages whose bytes are turned at a time, field by field
 SCENARIO_CLIENT = 0x5343454E  # of every request in a timeline
 SENDERS = ("controller", "session")  # fields that name a run of a program, the nearer first
 CLIENT_WITH_LOCK = 1 << 62  # bit of a client that holds a lock while it lives (client_life.h)
-SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = CLIENT_WITH_LOCK + 0x50590000, 32  # the first of Python's Arm, and how many
+SCRIPT_CLIENT, NUM_SCRIPT_CLIENTS = (
+    CLIENT_WITH_LOCK + 0x50590000,
+    32,
+)  # the first of Python's Arm, and how many
 MONITOR_CLIENT = 0x4D4F0000  # of `limber monitor`; its port is added
 SEND_CLIENT = 0x48414E44  # of `limber send`
 CLIENTS = {
@@ -188,3 +192,20 @@ def turned(type_name: str, data: bytearray | np.ndarray) -> np.ndarray:
         for at in range(0, len(records), IN_CACHE):
             records[at : at + IN_CACHE].byteswap(inplace=True)
     return records.view(native_dtype_of(type_name))
+
+
+HAND = "hand"  # the driver's joint behind the last one of the arm, if there is a hand
+
+
+def joint_name(names: Sequence[str], index: int) -> str:
+    """Of an index of JOINT_STATE or of a fault in it; without names by its number from 1."""
+    if index < len(names):
+        return names[index]
+    return HAND if names and index == len(names) else f"joint {index + 1}"
+
+
+def driven_joints(state: np.void) -> int:
+    """Of a JOINT_STATE: the joints, and the hand if there is one."""
+    joints, flags = int(state["num_joints"]), state["joint_flags"]
+    flag = message_class("joint_state_t").JOINT_HAND
+    return joints + int(joints < len(flags) and int(flags[joints]) & flag != 0)

@@ -1,12 +1,14 @@
-"""Where programs, robots, scenarios and message files are: of a clone, or of what pip installed.
+"""Where programs, robots, scenarios and message files are: of a clone, of what pip installed, or of
+the Debian package.
 
-A clone has them where they are made; an installed package has `bin`, `lib` and `share/limber` in
-itself (CMake's install rules). Nothing is written beside either.
+A clone has them where they are made; what is installed has `bin`, `lib` and `share/limber` (CMake's
+install rules) in the Python package itself, that of Debian in /usr. Nothing is written there.
 """
 
 import os
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +18,20 @@ PACKAGE = Path(__file__).resolve().parent
 ROOT = PACKAGE.parents[1]  # of a clone
 IN_A_CLONE = (ROOT / "CMakeLists.txt").is_file() and (ROOT / "lcmtypes").is_dir()
 DISTRIBUTION = "limber-arm"  # its name for pip
-SHARE = ROOT if IN_A_CLONE else PACKAGE / "share" / "limber"
+FROM_DEBIAN = not IN_A_CLONE and not (PACKAGE / "share").is_dir()
+# /usr/lib/python3/dist-packages/limber is in /usr
+PREFIX = ROOT / "build" / "dev" if IN_A_CLONE else PACKAGE.parents[3] if FROM_DEBIAN else PACKAGE
+SHARE = ROOT if IN_A_CLONE else PREFIX / "share" / "limber"
 SCENARIOS, MESSAGE_FILES = SHARE / "scenarios", SHARE / "lcmtypes"
-CMAKE = (ROOT / "build" / "dev" if IN_A_CLONE else PACKAGE) / "lib" / "cmake" / "limber"
-REPAIR = "run ./limber to build it" if IN_A_CLONE else f"install {DISTRIBUTION} again"
+MULTIARCH = sysconfig.get_config_var("MULTIARCH") if FROM_DEBIAN else ""
+CMAKE = PREFIX / "lib" / MULTIARCH / "cmake" / "limber"
+REPAIR = (
+    "run ./limber to build it"
+    if IN_A_CLONE
+    else "sudo apt-get install --reinstall limber liblimber0"
+    if FROM_DEBIAN
+    else f"install {DISTRIBUTION} again"
+)
 RELEASE = ROOT / "build" / "release" / "bin"  # what `limber dev bench` builds
 LEFT_BY_RUNS = ("run.lcmlog", "run.lcmlog.zst", "run.can.log", "summary.json")
 ASSETS = PACKAGE / "assets"
@@ -27,8 +39,13 @@ ASSETS = PACKAGE / "assets"
 
 def programs_folder() -> Path:
     """Where the C++ programs are: $LIMBER_BIN, the development build, or the package."""
-    own = ROOT / "build" / "dev" / "bin" if IN_A_CLONE else PACKAGE / "bin"
-    return Path(os.environ.get("LIMBER_BIN") or own)
+    return Path(os.environ.get("LIMBER_BIN") or PREFIX / "bin")
+
+
+def private_library(name: str) -> Path:
+    """A shared library for Python, beside the programs."""
+    found = programs_folder().parent / "lib" / name
+    return found if found.exists() else found.parent / "limber" / name  # in /usr
 
 
 def program(name: str) -> Path:
@@ -91,10 +108,28 @@ def cache_folder() -> Path:
 # Packages of optional parts, by the module that is imported.
 EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap"}
 EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun", "gymnasium": "gym"}
+# For the Debian package: what Debian has, and what it lacks, as in pyproject.toml. The latter goes
+# into an environment of the user's that has Debian's packages, too; there `python -m limber`.
+DEBIAN = {"scipy": "python3-scipy", "google": "python3-protobuf"}
+LACKING = {"lcm": "lcm==1.5.3", "viser": "viser>=1.1,<1.2", "mcap": "mcap>=1.2,<2"}
+LACKING |= {"pyarrow": "pyarrow>=18", "rerun": "rerun-sdk>=0.41,<0.42", "gymnasium": "gymnasium>=1.0,<2"}
 
 
-def command_for_extra(extra: str) -> str:
-    """The command that installs an optional part of this installation."""
+def command_for(module: str) -> str | None:
+    """The command that installs what `module` is of; None of what belongs to this installation."""
+    if FROM_DEBIAN and module in DEBIAN:
+        return f"sudo apt-get install {DEBIAN[module]}"
+    if FROM_DEBIAN and module in LACKING and sys.prefix != sys.base_prefix:
+        return f"{sys.executable} -m pip install '{LACKING[module]}'"
+    if FROM_DEBIAN and module in LACKING:
+        return (
+            "sudo apt-get install python3-venv && python3 -m venv --system-site-packages "
+            "~/limber-python && ~/limber-python/bin/pip "
+            f"install '{LACKING[module]}'; then ~/limber-python/bin/python -m limber ..."
+        )
+    if FROM_DEBIAN or module not in EXTRAS:
+        return None
+    extra = EXTRAS[module]
     what = f"-e '{ROOT}[{extra}]'" if IN_A_CLONE else f"'{DISTRIBUTION}[{extra}]'"
     return f"{sys.executable} -m pip install {what}"
 

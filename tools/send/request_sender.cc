@@ -107,6 +107,7 @@ void RequestSender::send(const ScenarioMessage& message, std::int64_t controller
                  [&](const compliance_goal_t& m) { publish(channels::kComplianceGoal, m); },
                  [&](const compliance_gains_t& m) { publish(channels::kComplianceGains, m); },
                  [&](const target_stream_t& m) { publish(channels::kTargetStream, m); },
+                 [&](const hand_goal_t& m) { publish(channels::kHandGoal, m); },
                  [&](const push_t& m) { publish(channels::kPush, m); },
                  [&](const scenario_event_t& m) { publish(channels::kScenarioEvent, m); },
              },

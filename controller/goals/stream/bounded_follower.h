@@ -36,10 +36,11 @@ class BoundedFollower {
     }
     const Rates<Vector> away = Space::relative(Space::at_rest(reference.x), at_rest());
     Vector wish = reference.v + 0.5 * kRate_per_s * away.x;
-    wish = clamped(wish, v_max_).cwiseMin(v_up).cwiseMax(-v_down);
+    wish = clamped<Space>(wish, v_max_).cwiseMin(v_up).cwiseMax(-v_down);
     const Vector rate = reference.a + 2.0 * kRate_per_s * (wish - out_.v);
-    const Vector next = clamped(Vector(out_.v + dt_s * rate), v_max_).cwiseMin(v_up).cwiseMax(-v_down);
-    const Vector a = clamped(Vector((next - out_.v) / dt_s), a_max_);
+    const Vector next =
+        clamped<Space>(Vector(out_.v + dt_s * rate), v_max_).cwiseMin(v_up).cwiseMax(-v_down);
+    const Vector a = clamped<Space>(Vector((next - out_.v) / dt_s), a_max_);
     const Vector way = dt_s * (out_.v + 0.5 * dt_s * a);
     out_.x = Space::compose({way, 0.0 * a, 0.0 * a}, at_rest()).x;
     out_.v += dt_s * a;
@@ -61,17 +62,9 @@ class BoundedFollower {
   Point at_rest() const noexcept { return Space::at_rest(out_.x); }
 
   bool within(const Point& point, const Vector& v_up, const Vector& v_down) const noexcept {
-    return clamped(point.v, v_max_) == point.v && clamped(point.a, a_max_) == point.a &&
-           (v_up - point.v).minCoeff() >= 0.0 && (v_down + point.v).minCoeff() >= 0.0;
-  }
-
-  static Vector clamped(Vector x, const Vector& most) noexcept {
-    for (Eigen::Index i = 0; i < x.size(); i += Space::kBlock) {
-      auto block = x.template segment<Space::kBlock>(i);
-      const double length = block.norm();
-      if (length > most[i]) block *= most[i] / length;
-    }
-    return x;
+    return clamped<Space>(point.v, v_max_) == point.v &&
+           clamped<Space>(point.a, a_max_) == point.a && (v_up - point.v).minCoeff() >= 0.0 &&
+           (v_down + point.v).minCoeff() >= 0.0;
   }
 
   Vector v_max_, a_max_;

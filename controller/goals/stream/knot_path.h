@@ -19,20 +19,23 @@ struct Knot {
 };
 
 /// Between two knots a polynomial of degree five with velocity and acceleration at its ends from
-/// the knots around (knot_point()): position, velocity and acceleration are continuous. Before the first knot and after the last the curve
-/// comes from rest and to rest within max(kBrake, v / a_max). All members may be called in the
-/// cycle.
+/// the knots around (knot_point()): position, velocity and acceleration are continuous. Before the
+/// first knot and after the last the curve comes from rest and to rest within max(kBrake, v /
+/// a_max). All members may be called in the cycle.
 template <typename Space>
 class KnotPath {
  public:
   using Point = typename Space::Point;
   using Vector = typename Space::Vector;
   static constexpr int kMost = 256;
+  /// Knots nearer than this are one.
+  static constexpr std::int64_t kClosest_ns = 1'000'000;
   /// Knots further apart than this do not belong together.
   static constexpr std::int64_t kGap_ns = 500'000'000;
 
-  /// `brake`: most deceleration after the last knot, rad/s^2 or m/s^2, an entry each.
-  explicit KnotPath(const Vector& brake) : brake_(brake) {}
+  /// Most velocity and acceleration at a knot, whatever its neighbours, and of the deceleration
+  /// after the last one, an entry each: knots that jump do not make the curve swing.
+  KnotPath(const Vector& v_max, const Vector& a_max) : v_max_(v_max), a_max_(a_max) {}
 
   bool empty() const noexcept { return count_ == 0; }
   void clear() noexcept { count_ = 0; }
@@ -42,7 +45,7 @@ class KnotPath {
   /// has changed. `knots`: at least one, with rising times.
   bool replace(std::span<const Knot<Space>> knots) noexcept {
     int kept = count_;
-    while (kept > 0 && knot(kept - 1).time_ns >= knots.front().time_ns) --kept;
+    while (kept > 0 && knot(kept - 1).time_ns + kClosest_ns > knots.front().time_ns) --kept;
     if (kept > 0 && knots.front().time_ns - knot(kept - 1).time_ns > kGap_ns) kept = 0;
     if (kept + static_cast<int>(knots.size()) > kMost) return false;
     count_ = kept;
@@ -101,6 +104,8 @@ class KnotPath {
       point.v += weights.first[static_cast<std::size_t>(k)] * way;
       point.a += weights.second[static_cast<std::size_t>(k)] * way;
     }
+    point.v = clamped<Space>(point.v, v_max_);
+    point.a = clamped<Space>(point.a, a_max_);
     return point;
   }
   double step(int i) const noexcept { return seconds(knot(i + 1).time_ns - knot(i).time_ns); }
@@ -118,13 +123,13 @@ class KnotPath {
     rest.start(Vector(0.0 * to.x), T);
     rest.advance(t);
     const double s = t - T;
-    return Space::compose({rest.x + to.x + s * to.v + 0.5 * s * s * to.a,
-                           rest.v + to.v + s * to.a, rest.a + to.a},
-                          base);
+    return Space::compose(
+        {rest.x + to.x + s * to.v + 0.5 * s * s * to.a, rest.v + to.v + s * to.a, rest.a + to.a},
+        base);
   }
 
   double brake_time(const Point& point) const noexcept {
-    return std::max(kBrake_s, kPeak * point.v.cwiseAbs().cwiseQuotient(brake_).maxCoeff());
+    return std::max(kBrake_s, kPeak * point.v.cwiseAbs().cwiseQuotient(a_max_).maxCoeff());
   }
 
   Point leaving(double t) const noexcept { return stopping(knot_point(count_ - 1), t, 1.0); }
@@ -142,7 +147,7 @@ class KnotPath {
     return Space::compose({stop.x, direction * stop.v, stop.a}, base);
   }
 
-  Vector brake_;
+  Vector v_max_, a_max_;
   std::array<Knot<Space>, kMost> knots_;
   int first_ = 0;
   int count_ = 0;

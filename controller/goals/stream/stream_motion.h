@@ -30,7 +30,7 @@ class StreamMotion {
 
   explicit StreamMotion(const StreamBounds<Vector>& bounds)
       : bounds_(bounds),
-        path_(bounds.a_max),
+        path_(bounds.v_max, bounds.a_max),
         fade_(Vector(0.0 * bounds.v_max)),
         follower_(bounds.v_max, bounds.a_max) {}
 
@@ -53,7 +53,8 @@ class StreamMotion {
   }
 
   /// `v_up`, `v_down`: bounds of this cycle in either direction. There must be a knot.
-  void advance(std::int64_t now_ns, double dt_s, const Vector& v_up, const Vector& v_down) noexcept {
+  void advance(std::int64_t now_ns, double dt_s, const Vector& v_up,
+               const Vector& v_down) noexcept {
     // After missed cycles the goal goes on from where it was.
     const Point old = path_at(last_ns_ + std::llround(1e9 * dt_s));
     const bool gap = std::abs(1e-9 * static_cast<double>(now_ns - last_ns_) - dt_s) > 1e-6;
@@ -82,12 +83,13 @@ class StreamMotion {
   /// The reference goes on where it is; the curve is now another than `old` was.
   void join(const Point& old) noexcept {
     const Point fresh = path_.at(last_ns_);
-    const double T = std::max({kShortestFade_s, fade_.left_s(),
-                               fade_time(Space::relative(old, fresh).x)});
+    const double T =
+        std::max({kShortestFade_s, fade_.left_s(), fade_time(Space::relative(old, fresh).x)});
     const Rates<Vector> left = Space::relative(reference_, fresh);
     fade_.reset(left.x);
-    fade_.v = left.v;
-    fade_.a = left.a;
+    // Of knots that jump: what is too fast to be faded is the follower's to smooth.
+    fade_.v = clamped<Space>(left.v, 2.0 * bounds_.v_max);
+    fade_.a = clamped<Space>(left.a, 2.0 * bounds_.a_max);
     fade_.start(Vector(0.0 * left.x), T);
   }
 
@@ -95,8 +97,8 @@ class StreamMotion {
     double longest = 0.0;
     for (Eigen::Index i = 0; i < jump.size(); i += Space::kBlock) {
       const double d = jump.template segment<Space::kBlock>(i).norm();
-      longest = std::max({longest, 1.875 * d / bounds_.v_fade[i],
-                          std::sqrt(5.77 * d / bounds_.a_fade[i])});
+      longest = std::max(
+          {longest, 1.875 * d / bounds_.v_fade[i], std::sqrt(5.77 * d / bounds_.a_fade[i])});
     }
     return longest;
   }

@@ -24,8 +24,8 @@ Rates<Vector6> TipSpace::relative(const Point& point, const Point& from) noexcep
   const Eigen::Vector3d r = log_rotation(turn);
   const Eigen::Vector3d carried = turn * Eigen::Vector3d(from.v.tail<3>());
   const Eigen::Vector3d omega = point.v.tail<3>() - carried;
-  const Eigen::Vector3d alpha = point.a.tail<3>() - turn * Eigen::Vector3d(from.a.tail<3>()) -
-                                omega.cross(carried);
+  const Eigen::Vector3d alpha =
+      point.a.tail<3>() - turn * Eigen::Vector3d(from.a.tail<3>()) - omega.cross(carried);
   const Eigen::Matrix3d inverse = left_jacobian_inverse(r);
   const Eigen::Vector3d rate = inverse * omega;
   motion.x << point.x.p - from.x.p, r;

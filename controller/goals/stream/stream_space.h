@@ -45,4 +45,16 @@ struct TipSpace {
   static Point compose(const Rates<Vector>& motion, const Point& from) noexcept;
 };
 
+/// Each block of `x` shortened to the length `most` has there. In the cycle.
+template <typename Space>
+typename Space::Vector clamped(typename Space::Vector x,
+                               const typename Space::Vector& most) noexcept {
+  for (Eigen::Index i = 0; i < x.size(); i += Space::kBlock) {
+    auto block = x.template segment<Space::kBlock>(i);
+    const double length = block.norm();
+    if (length > most[i]) block *= most[i] / length;
+  }
+  return x;
+}
+
 }  // namespace limber::controller

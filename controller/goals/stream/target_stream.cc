@@ -14,13 +14,14 @@ constexpr double kFadeAcceleration = 2.0;           // m/s^2, rad/s^2
 constexpr double kFastestAcceleration = 10.0;       // of the tip, m/s^2
 constexpr double kFastestJointAcceleration = 25.0;  // rad/s^2; the tip's turn, too
 constexpr std::size_t kMostKnots = 16;
-constexpr double kClipped = 1e-6;  // rad or m: more than float32 rounds
+constexpr float kFarthestJoint = 1e3F;
+constexpr double kRounded = 1.0 + 1e-6;  // a number that was rounded to 32 bits
+constexpr double kClipped = 1e-6;        // rad or m: more than float32 rounds
 
 StreamBounds<VectorJ> joint_bounds(const Robot& robot) {
   const int n = robot.size();
   StreamBounds<VectorJ> bounds{VectorJ::Zero(n), VectorJ::Constant(n, kFadeAcceleration),
-                               VectorJ::Zero(n),
-                               VectorJ::Constant(n, kFastestJointAcceleration)};
+                               VectorJ::Zero(n), VectorJ::Constant(n, kFastestJointAcceleration)};
   for (int i = 0; i < n; ++i) {
     const double most = robot.joints[static_cast<std::size_t>(i)].velocity_limit;
     bounds.v_fade[i] = GoalLimits::kDefaultJointShare * most;
@@ -43,7 +44,9 @@ StreamBounds<Vector6> tip_bounds() {
 }
 
 // As it was meant before it was rounded to 32 bits.
-double seconds_of(float given) noexcept { return 1e-6 * std::round(1e6 * static_cast<double>(given)); }
+double seconds_of(float given) noexcept {
+  return 1e-6 * std::round(1e6 * static_cast<double>(given));
+}
 
 int columns(const target_stream_t& message) noexcept {
   switch (message.kind) {
@@ -56,7 +59,7 @@ int columns(const target_stream_t& message) noexcept {
   }
 }
 
-std::int64_t knot_ns(const target_stream_t& message, int knot, std::int64_t now_ns) noexcept {
+std::int64_t time_of(const target_stream_t& message, int knot, std::int64_t now_ns) noexcept {
   const std::int64_t t0_ns = message.t0_ns == target_stream_t::NOW ? now_ns : message.t0_ns;
   const double after_s = static_cast<double>(message.dt_s[knot]) + message.delay_s;
   return t0_ns + std::llround(1e9 * after_s);
@@ -89,7 +92,7 @@ Refusal check_times(const target_stream_t& message, std::int64_t now_ns) noexcep
   const std::int64_t ahead_ns =
       message.t0_ns == target_stream_t::NOW ? 0 : message.t0_ns - std::max<std::int64_t>(now_ns, 0);
   if (ahead_ns > TargetStream::kFarthest_ns ||
-      knot_ns(message, message.num_knots - 1, now_ns) - now_ns > TargetStream::kFarthest_ns)
+      time_of(message, message.num_knots - 1, now_ns) - now_ns > TargetStream::kFarthest_ns)
     return beyond_goal_limit("knots are more than 5 s ahead: t0_ns counts arm time");
   return {};
 }
@@ -105,6 +108,25 @@ Refusal check_poses(const target_stream_t& message) noexcept {
     const Eigen::Quaterniond turn = pose_of(message, i).Q * pose_of(message, i - 1).Q.conjugate();
     if (!(log_rotation(turn).norm() <= TargetStream::kLargestTurn_rad))
       return beyond_goal_limit("knots that follow on each other are more than 2 rad apart");
+  }
+  return {};
+}
+
+Refusal check_twists(const target_stream_t& message) noexcept {
+  for (int i = 0; i < message.num_knots; ++i) {
+    const Vector6 V = row(message, i).head<6>().cast<double>();
+    if (!(V.head<3>().norm() <= kRounded * GoalLimits::kFastestSpeed_m_per_s &&
+          V.tail<3>().norm() <= kRounded * GoalLimits::kFastestTurn_rad_per_s))
+      return beyond_goal_limit("a twist is more than 1 m/s or 4 rad/s");
+  }
+  return {};
+}
+
+// Of joints without ends: those with are stopped there.
+Refusal check_joints(const target_stream_t& message) noexcept {
+  for (int i = 0; i < message.num_knots; ++i) {
+    if (!(row(message, i).head(message.num_joints).cwiseAbs().maxCoeff() <= kFarthestJoint))
+      return beyond_goal_limit("a joint is more than 1000 rad from zero: is it another unit?");
   }
   return {};
 }
@@ -138,8 +160,8 @@ Refusal TargetStream::check(const target_stream_t& message, GoalType type,
   for (int i = 0; i < message.num_knots; ++i) {
     if (!row(message, i).head(columns(message)).allFinite())
       return malformed("a knot is not finite");
-    if (message.use_hand != 0 && !(message.hand_width_m[i] >= 0.0F))
-      return malformed("hand_width_m must be 0 or more");
+    if (message.use_hand != 0 && !std::isfinite(message.hand_width_m[i]))
+      return malformed("hand_width_m is not finite");
   }
   if (!(message.hand_force_N >= 0.0F && std::isfinite(message.hand_force_N)))
     return malformed("hand_force_N must be 0 or more");
@@ -147,12 +169,25 @@ Refusal TargetStream::check(const target_stream_t& message, GoalType type,
       scale != 0.0F && !(scale >= static_cast<float>(kSoftest) && scale <= 1.0F))
     return beyond_goal_limit("stiffness_scale must be 0, or within 0.05..1");
   const Vector6 F = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(message.F_ff).cast<double>();
-  if (const Refusal refusal = limits_.check_common(seconds_of(message.valid_for_s), F, type)) return refusal;
-  return message.kind == target_stream_t::KIND_POSE ? check_poses(message) : Refusal{};
+  if (const Refusal refusal = limits_.check_common(seconds_of(message.valid_for_s), F, type))
+    return refusal;
+  switch (message.kind) {
+    case target_stream_t::KIND_POSE:
+      return check_poses(message);
+    case target_stream_t::KIND_TWIST:
+      return check_twists(message);
+    default:
+      return check_joints(message);
+  }
+}
+
+std::int64_t TargetStream::knot_ns(const target_stream_t& message, int knot,
+                                   std::int64_t now_ns) noexcept {
+  return time_of(message, knot, now_ns);
 }
 
 std::int64_t TargetStream::end_ns(const target_stream_t& message, std::int64_t now_ns) noexcept {
-  return knot_ns(message, message.num_knots - 1, now_ns);
+  return time_of(message, message.num_knots - 1, now_ns);
 }
 
 VectorJ TargetStream::joints_of(const target_stream_t& message, int knot) const noexcept {
@@ -188,7 +223,7 @@ bool TargetStream::take_joints(const target_stream_t& message, std::int64_t now_
     const VectorJ q = joints_of(message, i);
     const VectorJ wanted = row(message, i).head(q.size()).cast<double>();
     clipped_ = clipped_ || !(q - wanted).isZero(kClipped);
-    knots[static_cast<std::size_t>(i)] = {knot_ns(message, i, now_ns), q};
+    knots[static_cast<std::size_t>(i)] = {time_of(message, i, now_ns), q};
   }
   return joints_.take(std::span(knots).first(static_cast<std::size_t>(message.num_knots)));
 }
@@ -197,7 +232,7 @@ bool TargetStream::take_tip(const target_stream_t& message, const Pose* poses,
                             std::int64_t now_ns) noexcept {
   std::array<Knot<TipSpace>, kMostKnots> knots;
   for (int i = 0; i < message.num_knots; ++i) {
-    knots[static_cast<std::size_t>(i)] = {knot_ns(message, i, now_ns),
+    knots[static_cast<std::size_t>(i)] = {time_of(message, i, now_ns),
                                           poses != nullptr ? poses[i] : pose_of(message, i)};
   }
   return tip_.take(std::span(knots).first(static_cast<std::size_t>(message.num_knots)));
@@ -207,15 +242,15 @@ bool TargetStream::take_tip(const target_stream_t& message, const Pose* poses,
 bool TargetStream::take_twist(const target_stream_t& message, std::int64_t now_ns) noexcept {
   std::array<Knot<TipSpace>, kMostKnots + 1> knots;
   const int n = message.num_knots;
-  Knot<TipSpace> knot{knot_ns(message, 0, now_ns), {}};
+  Knot<TipSpace> knot{time_of(message, 0, now_ns), {}};
   knot.x = tip_.path_at(std::max(knot.time_ns, cycle_ns_)).x;
   Vector6 V = row(message, 0).head<6>().cast<double>();
   for (int i = 0; i < n; ++i) {
     knots[static_cast<std::size_t>(i)] = knot;
     const bool last = i + 1 == n;
     const Vector6 next = row(message, last ? i : i + 1).head<6>().cast<double>();
-    const std::int64_t then_ns = last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s)
-                                      : knot_ns(message, i + 1, now_ns);
+    const std::int64_t then_ns =
+        last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s) : time_of(message, i + 1, now_ns);
     const double dt_s = 1e-9 * static_cast<double>(then_ns - knot.time_ns);
     const Rates<Vector6> way{0.5 * dt_s * (V + next), Vector6::Zero(), Vector6::Zero()};
     knot = {then_ns, TipSpace::compose(way, TipSpace::at_rest(knot.x)).x};

@@ -39,7 +39,9 @@ class TargetStream {
   static bool stale(const target_stream_t& message, std::int64_t now_ns) noexcept {
     return end_ns(message, now_ns) + kOldest_ns < now_ns;
   }
-  /// When the message's last knot acts, arm time.
+  /// When a knot acts, and the last one, arm time.
+  static std::int64_t knot_ns(const target_stream_t& message, int knot,
+                              std::int64_t now_ns) noexcept;
   static std::int64_t end_ns(const target_stream_t& message, std::int64_t now_ns) noexcept;
 
   /// Joint positions, rad or m, of a checked message of that kind; beyond a joint's end: its end.

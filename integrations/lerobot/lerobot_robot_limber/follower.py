@@ -13,7 +13,6 @@ from limber.model.rotations import between, quaternion_of, turned_about
 from .config import LimberFollowerConfig
 from .keys import FORCE, GRIPPER, POSE, STIFFNESS, TIP, Keys
 
-
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 
 

@@ -1,4 +1,4 @@
-"""Names and units of an arm's numbers in LeRobot: `joint_1.pos` in degrees, `gripper.pos` 0..100."""
+"""Names and units of an arm's numbers in LeRobot: `joint_1.pos` in degrees, ..."""
 
 import math
 from dataclasses import dataclass

@@ -41,7 +41,9 @@ class LimberLeader(Teleoperator):
         return self._arm is not None
 
     def connect(self, calibrate: bool = True) -> None:
-        self._arm = Arm(self.config.arm if "/" not in self.config.arm else None, url=self.config.url)
+        self._arm = Arm(
+            self.config.arm if "/" not in self.config.arm else None, url=self.config.url
+        )
         self._arm.gains(law="gravity_compensation")
         self._arm.activate()
 

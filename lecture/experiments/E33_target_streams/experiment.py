@@ -140,9 +140,7 @@ def evaluated(context: Context, x0: float, messages: list[list[object]]) -> Goal
     return np.asarray(context.eval([case("target_stream_seq", **inputs)])[0]["x"])
 
 
-def chunk_goals(
-    context: Context, signal: Callable[[float], float], size: int
-) -> dict[str, Goals]:
+def chunk_goals(context: Context, signal: Callable[[float], float], size: int) -> dict[str, Goals]:
     """Chunks at 30 Hz, a new one after half of one, 0.1 s late; those that disagree by 20 mrad."""
     h, every = 1.0 / 30.0, size // 2
     chunks, off_chunks = [], []
@@ -202,7 +200,14 @@ def quintics(arrivals: list[tuple[float, Target]], start: float, horizon_s: floa
             x, v, a = state
             d, V, A = arrivals[k][1][1] - x, v * horizon_s, a * horizon_s**2
             c = np.array(
-                [x, V, A / 2, 10 * d - 6 * V - 1.5 * A, -15 * d + 8 * V + 1.5 * A, 6 * d - 3 * V - A / 2]
+                [
+                    x,
+                    V,
+                    A / 2,
+                    10 * d - 6 * V - 1.5 * A,
+                    -15 * d + 8 * V + 1.5 * A,
+                    6 * d - 3 * V - A / 2,
+                ]
             )
             begun_s, k = t, k + 1
         s = min((t - begun_s) / horizon_s, 1.0)
@@ -262,7 +267,9 @@ def contact_force(goal: Goals) -> float:
 
 
 def write_table(context: Context, found: dict[tuple[str, str], tuple[float, ...]]) -> None:
-    head = "| goal | targets | lag ms | rms error mrad | peak rad/s² | rms jerk rad/s³ | contact N |"
+    head = (
+        "| goal | targets | lag ms | rms error mrad | peak rad/s² | rms jerk rad/s³ | contact N |"
+    )
     rows = [head, "|---|---|---|---|---|---|---|"]
     for (name, targets), values in found.items():
         numbers = " | ".join(f"{value:.3g}" for value in values)

@@ -65,6 +65,8 @@ def read_arm(name_or_path: str, addresses: dict[str, str] | None = None) -> Arm:
         motors = [
             motor for name, urdf in limits.items() for motor in _motors(name, urdf, content, buses)
         ]
+        if "hand" in content:
+            motors.append(_hand(content, buses))
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{file}: {error} is missing or wrong; see `limber check`") from error
     return Arm(content["name"], round(1e9 / content["rate_hz"]), motors)
@@ -88,6 +90,21 @@ def _motors(name: str, urdf: Limits, content: dict[str, Any], buses: dict[str, A
         return [first]
     other = {"motor": joint["motor"], "bus": joint["bus"], **joint["antagonist"]}
     return [first, _motor(f"{name} (antagonist)", other, joint, urdf, content, buses)]
+
+
+def _hand(content: dict[str, Any], buses: dict[str, Any]) -> Motor:
+    """A joint whose way and torque are those of the travel table."""
+    hand = content["hand"]
+    widths, angles = hand["travel"]["width_m"], hand["travel"]["angle_rad"]
+    steepest = max(
+        abs((widths[i + 1] - widths[i]) / (angles[i + 1] - angles[i]))
+        for i in range(len(widths) - 1)
+    )
+    margin = 0.1 * (max(angles) - min(angles))
+    way = Limits(
+        min(angles) - margin, max(angles) + margin, math.inf, hand["force_limit_N"] * steepest
+    )
+    return _motor("hand", hand, hand, way, content, buses)
 
 
 def _motor(

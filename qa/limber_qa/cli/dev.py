@@ -158,11 +158,12 @@ def bench(
 @app.command(epilog="Example: limber dev release --out ../release")
 def release(
     out: Annotated[Path, typer.Option("--out", help="An empty folder.")],
+    debs: Annotated[bool, typer.Option(help="Debian packages: as root, with mmdebstrap.")] = True,
 ) -> None:
-    """Make what is handed out: the wheel, the sources, the pages, checksums."""
+    """Make what is handed out: wheel, Debian packages, sources, pages, licences, checksums."""
     from limber_qa import release as module
 
-    module.release(out, console)
+    module.release(out, console, debs)
 
 
 @app.command(epilog="Example: limber dev site --out out/site")

@@ -6,6 +6,9 @@
 #include <limber/compliance_goal_t.hpp>
 #include <limber/controller_status_t.hpp>
 #include <limber/driver_status_t.hpp>
+#include <limber/hand_goal_t.hpp>
+#include <limber/hand_state_t.hpp>
+#include <limber/hand_truth_t.hpp>
 #include <limber/joint_command_t.hpp>
 #include <limber/joint_state_t.hpp>
 #include <limber/law_parameter_t.hpp>
@@ -49,6 +52,9 @@ inline const MessageType& message_type_of(std::uint8_t number) {
       message_type<compliance_goal_t>(),
       message_type<controller_status_t>(),
       message_type<driver_status_t>(),
+      message_type<hand_goal_t>(),
+      message_type<hand_state_t>(),
+      message_type<hand_truth_t>(),
       message_type<joint_command_t>(),
       message_type<joint_state_t>(),
       message_type<law_parameter_t>(),

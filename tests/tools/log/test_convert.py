@@ -173,6 +173,7 @@ def test_a_number_that_is_no_word_stays_one():
 
 
 UNITLESS = ("quat_", "normal.", "law_outputs.", "bus_load_", "damping_ratio", "friction_share")
+UNITLESS += ("opening", "heat")
 
 
 NUMBERS = {row.type_name for row in messages.channels().values()}

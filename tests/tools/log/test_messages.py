@@ -12,6 +12,9 @@ FIXED = [
     "driver_status_t",
     "sim_truth_t",
     "compliance_goal_t",
+    "hand_goal_t",
+    "hand_state_t",
+    "hand_truth_t",
     "mode_request_t",
     "scenario_event_t",
 ]

@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from limber.errors import InputError
-from limber.lcm_package import lcm_package
 from limber.log.event_file import HEADER, SYNC
+from limber.log.event_writer import EventWriter
 
 FORMAT = "limber-black-box/1"
 HEADER_BYTES = 4096
@@ -137,14 +137,16 @@ def write_log(boxes: list[Box], path: Path) -> int:
     """
     seen = set()
     count = 0
-    log = lcm_package().EventLog(str(path), "w", overwrite=True)
+    log = EventWriter(path, compress=False)
     epoch_us, _ = _opened(boxes[0].path)
     records = [record for box in boxes for record in read(box.path, epoch_us)]
     for record in sorted(records, key=lambda record: record.time_us):
         if (record.channel, record.data) in seen:
             continue
         seen.add((record.channel, record.data))
-        log.write_event(record.time_us, record.channel, record.data)
+        name = record.channel.encode("ascii")
+        header = HEADER.pack(SYNC, count, record.time_us, len(name), len(record.data))
+        log.write(header + name + record.data)
         count += 1
     log.close()
     return count

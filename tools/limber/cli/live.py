@@ -17,8 +17,8 @@ def send(
     entries: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Such as 'mode: active' or 'gains: {law: salisbury}'; recover: from a fault to "
-            "a running law (acknowledge, hold, active), waiting for each."
+            help="Such as 'mode: active' or 'hand: {width_m: 0.03, force_N: 20}'; recover: from a "
+            "fault to a running law (acknowledge, hold, active), waiting for each."
         ),
     ] = None,
     robot: Annotated[
@@ -33,7 +33,7 @@ def send(
         ),
     ] = False,
 ) -> None:
-    """Send requests (mode, gains, goal, push, wall, ...) to a running stack."""
+    """Send requests (mode, gains, goal, hand, push, ...) to a running stack."""
     from limber.live.known_words import check_entries
     from limber.live.network import require_multicast
 

@@ -70,7 +70,9 @@ def convert(
     path: LogPath,
     to: Annotated[
         str | None,
-        typer.Option(help="csv, parquet, mcap, rerun, npz or lcm; default: by the end of --out."),
+        typer.Option(
+            help="csv, parquet, mcap, rerun, npz, lerobot or lcm; default: by the end of --out."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
@@ -154,7 +156,7 @@ def plot(
     what: Annotated[
         list[str] | None,
         typer.Option(
-            help="overview, joint, cartesian, torque, spring, timing or bus; default: all."
+            help="overview, joint, cartesian, torque, spring, timing, bus or hand; default: all."
         ),
     ] = None,
     out: Out = None,

@@ -6,10 +6,9 @@ import stat
 import sys
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
-from typer.exceptions import TyperException
 
 from limber.cli import (
     black_box,
@@ -28,9 +27,12 @@ from limber.cli import (
 from limber.cli.options import console
 from limber.cli.panels import Commands, put_in_panels
 from limber.errors import RUN_FAILED, WRONG_INPUT, LimberError
-from limber.paths import CMAKE, EXTRAS, command_for_extra
+from limber.paths import CMAKE, command_for
 
 INTERRUPTED = 130
+# What a wrong command line raises, just below Exception: TyperException, or click's in a typer that
+# is built on it, as Debian 13's is.
+PARSER_ERROR: Any = typer.BadParameter.__mro__[-4]
 
 app = typer.Typer(
     cls=Commands,
@@ -82,8 +84,8 @@ def fail(message: str, code: int) -> NoReturn:
 def complaint(error: ImportError) -> str:
     """Of a package that is not there, or cannot be loaded: the command that installs it."""
     name = (error.name or "").partition(".")[0]
-    if name in EXTRAS:
-        return f"this needs the package {error.name}: {command_for_extra(EXTRAS[name])}"
+    if command := command_for(name):
+        return f"this needs the package {error.name}: {command}"
     return f"{error} (LIMBER_DEBUG=1 shows where)"
 
 
@@ -96,7 +98,7 @@ def main() -> NoReturn:
         sys.exit(_call())
     try:
         sys.exit(_call())
-    except TyperException as error:
+    except PARSER_ERROR as error:
         fail(_with_hint(error), WRONG_INPUT)
     except LimberError as error:
         fail(str(error), error.exit_code)
@@ -116,7 +118,7 @@ def _call() -> int:
     return result if isinstance(result, int) else 0
 
 
-def _with_hint(error: TyperException) -> str:
+def _with_hint(error: Any) -> str:
     """The parser's complaint on one line, and the command that shows the help."""
     context = getattr(error, "ctx", None)
     path = context.command_path if context else "limber"

@@ -49,6 +49,9 @@ Plain = Annotated[
 
 @app.command(epilog="Example: limber demo --page")
 def demo(
+    what: Annotated[
+        str, typer.Argument(help="pushes; or policy: one picks and places, and is killed.")
+    ] = "pushes",
     out: Out = None,
     seconds: Annotated[
         float | None, typer.Option(min=1.0, max=600.0, help="Stop after this much arm time.")
@@ -78,6 +81,12 @@ def demo(
         page=page,
         leave_when_behind=not one_process,
     )
+    if what not in ("pushes", "policy"):
+        raise InputError(f"{what}: there are the demos pushes and policy")
+    if what == "policy":
+        from limber.run import policy_demo
+
+        raise typer.Exit(policy_demo.demo(options, console))
     raise typer.Exit(module.demo(seconds, sensors, options, console))
 
 

@@ -18,11 +18,12 @@ from limber.live import network
 WANTED_BUFFER_BYTES = 2 << 20
 RECORDER_BUFFER_BYTES = 64 << 20
 WANTED_PRIORITY = 80
+LIMITS_FILE = paths.ASSETS / "service" / "limber.limits.conf"
 LIMITS = (
-    r"printf '@limber - rtprio 80\n@limber - memlock unlimited\n' | "
-    "sudo tee /etc/security/limits.d/limber.conf; sudo groupadd -f limber; "
+    f"sudo cp {LIMITS_FILE} /etc/security/limits.d/limber.conf; sudo groupadd -f limber; "
     "sudo usermod -aG limber $USER, and log in again"
 )
+MEMBER = "sudo usermod -aG limber $USER, and log in again"  # of the Debian package's group
 ARPHRD_CAN = "280"  # linux/if_arp.h
 SMALL_DISK_BYTES = 1 << 30
 PROGRAMS = tuple(
@@ -98,7 +99,7 @@ def _permission() -> str:
     if paths.IN_A_CLONE:
         driver = paths.programs_folder() / "limber-driver"
         return f"sudo setcap cap_sys_nice,cap_ipc_lock+ep {driver}, or {LIMITS}"
-    return LIMITS
+    return MEMBER if paths.FROM_DEBIAN else LIMITS
 
 
 def _real_time() -> Iterator[Finding]:
@@ -177,8 +178,8 @@ def _programs() -> Iterator[Finding]:
         yield Finding("fail", "programs", f"missing: {', '.join(missing)}", paths.REPAIR)
     else:
         yield Finding("ok", "programs", f"all {len(PROGRAMS)} in {folder}")
-    others = [f"{name} {metadata.version(name)}" for name in ("lcm", "numpy")]
-    versions = [f"limber {__version__}", f"Python {platform.python_version()}", *others]
+    others = f"Python {platform.python_version()}", f"numpy {metadata.version('numpy')}"
+    versions = [f"limber {__version__}", *others]
     yield Finding("ok", "versions", ", ".join(versions))
 
 

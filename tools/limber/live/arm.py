@@ -12,6 +12,7 @@ from limber.live.arm_motions import Motions
 from limber.live.arm_streams import Streams
 from limber.live.arm_world import World
 from limber.live.gains_message import gains as gains_message
+from limber.live.hand import Hand
 
 
 class Arm(Modes, Motions, Streams, World, AbstractContextManager["Arm", None]):
@@ -37,7 +38,13 @@ class Arm(Modes, Motions, Streams, World, AbstractContextManager["Arm", None]):
         self, robot: str | None = None, client: int | None = None, url: str | None = None
     ) -> None:
         super().__init__(robot, client, url)
+        self._hand = Hand(self._link, self._send)
         atexit.register(self.close)
+
+    @property
+    def hand(self) -> Hand:
+        """Requests to the hand, if there is one, and its state."""
+        return self._hand
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:
         """Changes law, numbers, choices and settings that are named; all else stays.

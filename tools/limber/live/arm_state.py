@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.errors import InputError
-from limber.messages import bit_names, constants
+from limber.messages import HAND, bit_names, constants
 from limber.model.gains_table import law_names
 from limber.model.rotations import between, matrix_of
 from limber.problems import problem, problems_of_bits, sentence
@@ -32,11 +32,11 @@ class Pose:
         return float(np.linalg.norm(self.p - other.p)), float(angle)
 
 
-STREAM_COUNTS = ("taken", "late", "stale", "refused", "starved")
+TARGET_COUNTS = ("taken", "late", "stale", "refused", "starved")
 
 
 @dataclass(frozen=True)
-class StreamState:
+class Targets:
     """`state`: none, running, or waiting (at rest, or coming to it, until more targets come);
     `delay_s` of its newest message, `margin_s` from now to its last target, negative if that has
     passed. Messages since the controller's start: taken, of these those whose targets had all
@@ -173,13 +173,13 @@ class Quantities:
         return bit_names("controller_status_t", "LIMIT_", int(self._records()[1]["limits"]))
 
     @property
-    def stream(self) -> StreamState:
-        """Of the targets with times that have come, see StreamState."""
+    def targets(self) -> Targets:
+        """Of the targets with times that have come, see Targets."""
         status = self._records()[1]
         state = constants("controller_status_t", "STREAM_")[int(status["stream"])].lower()
-        times = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
-        counts = (int(status[f"stream_{name}"]) for name in STREAM_COUNTS)
-        return StreamState(state, *times, *counts)
+        delay_s, margin_s = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
+        counts = {name: int(status[f"stream_{name}"]) for name in TARGET_COUNTS}
+        return Targets(state, delay_s, margin_s, **counts)
 
     @property
     def faults(self) -> list[str]:
@@ -201,7 +201,7 @@ class Quantities:
         flags, names = self._records()[0]["joint_flags"], self._joint_names()
         return [
             f"{found.code} ({name})"
-            for name, bits in zip(names, flags, strict=False)
+            for name, bits in zip((*names, HAND), flags, strict=False)
             for found in problems_of_bits("joint", int(bits))
         ]
 
@@ -209,7 +209,7 @@ class Quantities:
         found = problem(group, int(value))
         if found is None:
             return ""
-        names = self._joint_names()
+        names = (*self._joint_names(), HAND)
         where = f" ({names[joint]})" if 0 <= joint < len(names) else ""
         return f"{found.code}{where}: {sentence(found.what)} To do: {found.remedy}."
 

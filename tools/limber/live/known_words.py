@@ -3,7 +3,7 @@
 from limber.live.meant import check_entry
 from limber.model.gains_table import listing
 
-ENTRIES = ("mode", "gains", "goal", "push", "wall", "payload", "fault")
+ENTRIES = ("mode", "gains", "goal", "hand", "push", "wall", "payload", "fault")
 
 
 def check_entries(entries: list[str]) -> None:

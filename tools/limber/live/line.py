@@ -1,11 +1,12 @@
-"""One LCM plane for one process: heard by limber's own receiver, sent to by LCM's library."""
+"""One LCM plane for one process, in LCM's wire format, without its library."""
 
+import socket
+import struct
 from collections.abc import Callable
-from typing import Any
-from urllib.parse import urlsplit
+from itertools import count
+from urllib.parse import parse_qs, urlsplit
 
 from limber.errors import RunError
-from limber.lcm_package import lcm_package
 from limber.live.network import CURE
 from limber.live.plane_receiver import PlaneReceiver
 
@@ -17,14 +18,13 @@ Handler = Callable[[str, bytes], None]
 class Line:
     """`url`: udpm://[GROUP[:PORT]]?ttl=0. For one thread, publish() apart, which any may call.
 
-    Hears nothing before the first subscribe(), and loads LCM at the first publish(): who only
-    listens needs none. RunError at another address.
+    Hears nothing before the first subscribe(). RunError at another address.
     """
 
     def __init__(self, url: str) -> None:
-        self._group, self._port = _place(url)
-        self._url = url
-        self._sender: Any = None
+        self._group, self._port, self._ttl = _place(url)
+        self._sender: socket.socket | None = None
+        self._numbers = count()
         self._receiver: PlaneReceiver | None = None
         self._handlers: dict[str, list[Handler]] = {}
 
@@ -59,14 +59,18 @@ class Line:
         return 0 if self._receiver is None else self._receiver.malformed()
 
     def publish(self, channel: str, data: bytes) -> None:
-        """Raises RunError without a multicast route, or without LCM."""
+        """One datagram of LCM's: magic, number, channel, 0, message. Raises RunError without a
+        multicast route, or for more than a datagram holds.
+        """
         if self._sender is None:
-            try:
-                # Without a subscription it opens no socket to receive.
-                self._sender = lcm_package().LCM(self._url)
-            except RuntimeError as error:
-                raise RunError(f"LCM finds no multicast route: {CURE}") from error
-        self._sender.publish(channel, data)
+            self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._ttl)
+        header = struct.pack(">4sI", b"LC02", next(self._numbers) % 2**32)
+        datagram = header + channel.encode("ascii") + b"\0" + data
+        try:
+            self._sender.sendto(datagram, (self._group, self._port))
+        except OSError as error:
+            raise RunError(f"{channel} cannot be sent ({error.strerror}): {CURE}") from error
 
     def close(self) -> None:
         """Nothing more is heard."""
@@ -74,14 +78,18 @@ class Line:
         if self._receiver is not None:
             self._receiver.close()
             self._receiver = None
+        if self._sender is not None:
+            self._sender.close()
+            self._sender = None
 
 
-def _place(url: str) -> tuple[str, int]:
+def _place(url: str) -> tuple[str, int, int]:
+    """Group, port, and how many routers a datagram passes: none, if nothing is written."""
     parts = urlsplit(url)
     try:
-        port = parts.port
+        port, ttl = parts.port, int(parse_qs(parts.query).get("ttl", ["0"])[0])
     except ValueError:
-        port = 0
-    if parts.scheme != "udpm" or port == 0:
+        port, ttl = 0, 0
+    if parts.scheme != "udpm" or port == 0 or not 0 <= ttl <= 255:
         raise RunError(f"LCM address {url}: expected udpm://GROUP:PORT?ttl=0")
-    return parts.hostname or GROUP, PORT if port is None else port
+    return parts.hostname or GROUP, PORT if port is None else port, ttl

@@ -18,6 +18,8 @@ MEANT = {
     "hold": ("mode: hold", ""),
     "active": ("mode: active", ""),
     "acknowledge": ("mode: acknowledge", ""),
+    "grasp": ("hand: {width_m: -0.02, force_N: 20}", "without force_N as hard as allowed"),
+    "gripper": ("hand: {width_m: 0.05}", "m between the fingers"),
     "move": ("goal: {offset_m: [0, 0, 0.05]}", ""),
 }
 FARTHEST_M = 10.0  # of any goal; more are millimetres

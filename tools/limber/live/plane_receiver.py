@@ -12,7 +12,7 @@ from typing import Any
 
 from limber.errors import RunError
 from limber.live.network import CURE
-from limber.paths import REPAIR, programs_folder
+from limber.paths import REPAIR, private_library
 
 _HEAD = struct.Struct("=iI")  # number of the channel, size
 
@@ -85,7 +85,7 @@ class PlaneReceiver:
 
 @cache
 def _library() -> Any:
-    path = programs_folder().parent / "lib" / "liblimber_receiver.so"
+    path = private_library("liblimber_receiver.so")
     try:
         library = ctypes.CDLL(str(path))
     except OSError as error:

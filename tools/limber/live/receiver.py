@@ -131,12 +131,11 @@ class Receiver:
     """Subscribes to channels and receives in a thread of its own; close() ends it.
 
     `interval_s`: what has arrived is taken over this often, at most. Short: newer values; long:
-    less load. `url`: LCM address, by default that of this machine's stack. Raises RunError if the machine has no multicast route.
+    less load. `url`: LCM address, by default that of this machine's stack. Raises RunError if the
+    machine has no multicast route.
     """
 
-    def __init__(
-        self, *channels: str, interval_s: float = 1 / 60, url: str | None = None
-    ) -> None:
+    def __init__(self, *channels: str, interval_s: float = 1 / 60, url: str | None = None) -> None:
         self._line = Line(url or messages.user_plane_url())
         table = messages.channels()
         self.channels = {

@@ -19,6 +19,7 @@ CHANNELS = {
     "compliance_gains_t": "COMPLIANCE_GAINS",
     "target_stream_t": "TARGET_STREAM",
     "torque_overlay_t": "TORQUE_OVERLAY",
+    "hand_goal_t": "HAND_GOAL",
     "push_t": "PUSH",
     "scenario_event_t": "SCENARIO_EVENT",
 }

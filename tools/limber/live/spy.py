@@ -11,7 +11,7 @@ from limber import messages
 from limber.errors import RunError
 from limber.lcm_package import lcm_package
 from limber.live.network import require_multicast
-from limber.paths import MESSAGE_FILES, REPAIR, cache_folder, captured
+from limber.paths import MESSAGE_FILES, REPAIR, cache_folder, captured, command_for
 
 JDK = "sudo apt-get install default-jdk"
 
@@ -67,7 +67,8 @@ def lcm_jar() -> Path:
 def _beside_python(name: str) -> str:
     path = Path(sys.executable).parent / name
     if not path.is_file():
-        raise RunError(f"{path} is missing: it comes with the Python package `lcm`; {REPAIR}")
+        cure = command_for("lcm") or REPAIR
+        raise RunError(f"{path} is missing: it comes with the Python package `lcm`; {cure}")
     return str(path)
 
 

@@ -10,7 +10,7 @@ from limber.live.arm_errors import NoStackError, StackLostError, WaitTimeoutErro
 from limber.live.arm_state import State
 from limber.live.receiver import Receiver
 
-CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO", "REQUEST_ANSWER")
+CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO", "REQUEST_ANSWER", "HAND_STATE")
 SENDERS = {
     "JOINT_STATE": "limber-driver",
     "CONTROLLER_STATUS": "limber-controller",

@@ -26,8 +26,6 @@ def targets(joints: int, dt_s: Floats, given: dict[str, Any]) -> Iterator[Any]:
     width_m = given.pop("hand_width_m", None)
     if width_m is not None:
         width_m = numbers("hand_width_m", width_m, (len(dt_s),), one_for_all=True)
-        if (width_m < 0.0).any():
-            raise InputError(f"hand_width_m: {width_m.min():g} is less than 0")
     common = _common(given)
     for first in range(0, len(dt_s), MOST_KNOTS):
         part = slice(first, min(first + MOST_KNOTS, len(dt_s)))

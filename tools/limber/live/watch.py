@@ -13,6 +13,7 @@ from rich.text import Text
 
 from limber import messages, problems, tables
 from limber.errors import LimberError
+from limber.live.hand import hand_text
 from limber.live.receiver import Receiver
 from limber.model.robot import JointInfo, load_robot
 from limber.model.rotations import rotation_error
@@ -25,7 +26,9 @@ PERIODIC = (
     "DRIVER_STATUS",
     "SIM_TRUTH",
     "ROBOT_INFO",
+    "HAND_STATE",
 )
+OF_HAND = ("HAND_STATE",)  # shown once there is one
 BAR_WIDTH = 16
 STATE_WIDTH, TIP_WIDTH = 36, 43  # beside each other in 80 columns, with all words whole
 JOINTS_WIDTH = 66  # of the joints' table, without their names
@@ -92,8 +95,10 @@ class View:
         title = Text(self.robot or "arm")
         panels = [Panel(self._state(state, status), title=title, padding=0, width=STATE_WIDTH)]
         panels.append(Panel(self._tip(status), title="tip", padding=0, width=TIP_WIDTH))
+        hand = self.receiver.newest("HAND_STATE")
         return Group(
             Columns(panels),
+            *([] if hand is None else [Text(hand_text(hand), style=WARN if hand["warm"] else "")]),
             *self._problems(state, status),
             self._joints(state, width)
             if state is not None
@@ -123,7 +128,7 @@ class View:
     def _joint_problems(self, state: np.void) -> list[tuple[Problem | None, str]]:
         """One of each kind, with the joints that have it."""
         found: dict[str, tuple[Problem, list[str]]] = {}
-        for i in range(int(state["num_joints"])):
+        for i in range(messages.driven_joints(state)):
             for problem in problems.problems_of_bits("joint", state["joint_flags"][i]):
                 found.setdefault(problem.code, (problem, []))[1].append(self._joint_name(i))
         return [(problem, ", ".join(names)) for problem, names in found.values()]
@@ -206,12 +211,12 @@ class View:
         return table
 
     def _joint_name(self, index: int) -> str:
-        return self.joints[index].name if index < len(self.joints) else f"joint {index + 1}"
+        return messages.joint_name([joint.name for joint in self.joints], index)
 
     def _joints(self, state: np.void, width: int) -> Table:
         """Without the bars where names are too long for them."""
         numbers = (">speed", ">torque", ">applied", ">°C", ">age")
-        names = [self._joint_name(i) for i in range(int(state["num_joints"]))]
+        names = [self._joint_name(i) for i in range(messages.driven_joints(state))]
         bars = JOINTS_WIDTH + max(map(len, names), default=0) <= width
         place = ("<",) if bars else ()
         table = tables.table("~joint", ">position", *place, *numbers, padding=(0, 1))
@@ -265,6 +270,8 @@ class View:
     def _channels(self) -> Table:
         table = tables.table("<channel", ">Hz", ">age", ">lost", "<", padding=(0, 2))
         for name, state in self.receiver.channels.items():
+            if name in OF_HAND and not state.count:
+                continue
             age = f"{time.monotonic() - state.last_s:.2f} s" if state.count else "-"
             stale = Text("STALE" if self._stale(name) else "", style=BAD)
             lost = Text(str(state.lost), style=WARN if state.lost else "")

@@ -8,7 +8,7 @@ import numpy as np
 from limber.arrays import Floats
 from limber.log.reader import Log, time_s
 from limber.log.rows import stretches
-from limber.messages import CLIENTS, constants, message_class
+from limber.messages import CLIENTS, constants, driven_joints, joint_name, message_class
 from limber.problems import Problem, groups, problem
 
 # What of the messages tells of events: a long log fits into memory
@@ -36,7 +36,7 @@ class Names:
     laws: list[str]
 
     def joint(self, index: int) -> str:
-        return self.joints[index] if 0 <= index < len(self.joints) else f"joint {index + 1}"
+        return joint_name(self.joints, index)
 
     def law(self, index: int) -> str:
         return self.laws[index] if 0 <= index < len(self.laws) else f"law number {index}"
@@ -60,8 +60,16 @@ def events(log: Log, names: Names) -> list[Event]:
         *_pushes(truth),
         *_contacts(truth),
         *_streams(status),
+        *_grasps(log.fields("HAND_STATE", "time_ns", "grasped", "width_m")),
     ]
     return sorted(found, key=lambda event: event.time_s)
+
+
+def _grasps(hand: np.ndarray) -> Iterator[Event]:
+    for rows, length_s in _stretches(time_s(hand), hand["grasped"] != 0):
+        width_mm = float(hand["width_m"][rows.stop - 1]) * 1e3
+        text = f"hand: grasped for {length_s:.3g} s, {width_mm:.1f} mm wide"
+        yield Event(float(time_s(hand)[rows.start]), "controller", text)
 
 
 def _changes(records: np.ndarray, *fields: str) -> Iterator[int]:
@@ -82,7 +90,8 @@ def _stretches(t: np.ndarray, acts: np.ndarray) -> Iterator[tuple[slice, float]]
 
 
 WHAT = {
-    "MODE": ("mode_request_t", "REQUEST_"), "GOAL": ("compliance_goal_t", "GOAL_"),
+    "MODE": ("mode_request_t", "REQUEST_"),
+    "GOAL": ("compliance_goal_t", "GOAL_"),
     "STREAM": ("target_stream_t", "KIND_"),
 }
 
@@ -139,7 +148,7 @@ def _flags(state: np.ndarray, names: Names) -> Iterator[Event]:
     t, group = time_s(state), groups()["joint"]
     bits = {name: bit for bit, name in constants(group.message, group.prefix).items()}
     for name, cause in group.problems.items():
-        for joint in range(int(state["num_joints"][0])):
+        for joint in range(driven_joints(state[0])):
             for rows, length_s in _stretches(t, state["joint_flags"][:, joint] & bits[name] != 0):
                 text = f"{cause.code} ({names.joint(joint)}) for {length_s:.3g} s: {cause.what}"
                 yield Event(float(t[rows.start]), "driver", text, bad=True)

@@ -3,13 +3,13 @@
 import os
 import platform
 from hashlib import sha256
-from importlib import metadata
 from pathlib import Path
 
 from limber import __version__
 from limber.log.reader import Log
 from limber.measure.contact import contact_results
 from limber.measure.faults import find_faults
+from limber.measure.grasp import grasp_results
 from limber.measure.health import health_results, stopped_s
 from limber.measure.pushes import MeasuredPush, matrix_results, measure_pushes, push_results
 from limber.measure.results import Result, Summary
@@ -36,6 +36,7 @@ def measure(
     results += push_results(pushes, tolerances.stiffness)
     results += matrix_results(pushes, tolerances.stiffness, scenario.friction)
     results += contact_results(truth, scenario, tolerances.contact_force)
+    results += grasp_results(log, scenario)
     summary = Summary(_header(log, scenario, mode), results, faults)
     summary.leave_out_disturbed()
     return summary, pushes
@@ -50,7 +51,6 @@ def _header(log: Log, scenario: Scenario, mode: str) -> dict:
         "friction": scenario.friction,
         "versions": {
             "limber": __version__,
-            "lcm": metadata.version("lcm"),
             "python": platform.python_version(),
             "machine": platform.machine(),
         },

@@ -47,6 +47,20 @@ class JointInfo:
 
 
 @dataclass(frozen=True)
+class HandInfo:
+    """`hand:` of robot.yaml, in SI units. `width_m` over `angle_rad`: its travel table."""
+
+    width_m: Floats
+    angle_rad: Floats
+    stiffness_N_per_m: float
+    damping_Ns_per_m: float
+    force_limit_N: float
+    hold_force_N: float
+    speed_limit_m_per_s: float
+    continuous_torque_Nm: float
+
+
+@dataclass(frozen=True)
 class Robot:
     """`K_q`, N m/rad, and `K_x`, 6x6 [linear; angular], are what a law starts with.
 
@@ -67,6 +81,7 @@ class Robot:
     K_q: Floats
     K_x: Floats
     resolved: dict[str, Any] = field(repr=False, compare=False)
+    hand: HandInfo | None = None
 
     @cached_property
     def frames(self) -> dict[str, Joint]:
@@ -151,6 +166,7 @@ def robot_of(found: dict[str, Any]) -> Robot:
         K_q=np.array(gains["K_q_Nm_per_rad"], float),
         K_x=np.diag([float(K_t)] * 3 + [float(K_r)] * 3),
         resolved=found,
+        hand=_hand(found.get("hand")),
     )
 
 
@@ -180,6 +196,14 @@ def _joint(found: dict[str, Any]) -> JointInfo:
         _limit(found["velocity_limit"], np.inf),
         _limit(found["torque_limit_Nm"], np.inf),
     )
+
+
+def _hand(found: dict[str, Any] | None) -> HandInfo | None:
+    if found is None:
+        return None
+    given = {name: found[name] for name in HandInfo.__dataclass_fields__}
+    table = {key: np.array(given[key], float) for key in ("width_m", "angle_rad")}
+    return HandInfo(**{**given, **table})
 
 
 def _pair(found: dict[str, Any]) -> SpringPair | None:

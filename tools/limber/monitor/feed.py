@@ -7,7 +7,14 @@ import numpy as np
 
 from limber import messages
 
-NUMERIC = ("JOINT_STATE", "CONTROLLER_STATUS", "DRIVER_STATUS", "SIM_TRUTH", "SCENARIO_EVENT")
+NUMERIC = (
+    "JOINT_STATE",
+    "CONTROLLER_STATUS",
+    "DRIVER_STATUS",
+    "SIM_TRUTH",
+    "SCENARIO_EVENT",
+    "HAND_STATE",
+)
 WITH_STRINGS = ("REQUEST_ANSWER", "COMPLIANCE_GAINS", "ROBOT_INFO")
 NEVER_S = float("inf")
 

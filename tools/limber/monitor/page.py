@@ -5,6 +5,7 @@ import time
 import numpy as np
 import viser
 
+from limber.live.hand import hand_text
 from limber.messages import constants
 from limber.model.robot import Robot
 from limber.monitor.answers import Answers
@@ -159,6 +160,8 @@ class Page:
             drive = constants("joint_state_t", "DRIVE_").get(int(state["drive_state"]), "UNKNOWN")
             facts.append(f"drives {drive.replace('HOLD', 'FALLBACK')}")
             facts.append(f"{float(state['time_ns']) * 1e-9:.0f} s")
+        if (hand := self.feed.newest.get("HAND_STATE")) is not None:
+            facts.append(hand_text(hand))
         return facts
 
     def _law_name(self, status: np.void) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from limber import problems
-from limber.messages import constants, message_class
+from limber.messages import constants, driven_joints, joint_name, message_class
 from limber.monitor.feed import NEVER_S, Feed
 from limber.problems import Problem, sentence
 
@@ -138,7 +138,7 @@ def _notes(feed: Feed, joints: list[str]) -> list[Note]:
 def _joint_notes(state: np.void, joints: list[str]) -> list[Note]:
     """One of each kind, with the joints that have it."""
     found: dict[str, tuple[Note, list[str]]] = {}
-    for i in range(int(state["num_joints"])):
+    for i in range(driven_joints(state)):
         for problem in problems.problems_of_bits("joint", state["joint_flags"][i]):
             (note,) = _note(WARN, problem)
             found.setdefault(note.code, (note, []))[1].append(_joint(joints, i))
@@ -168,4 +168,4 @@ def _note(level: str, problem: Problem | None, where: str = "") -> list[Note]:
 def _joint(names: list[str], index: int) -> str:
     if index < 0:
         return ""
-    return names[index] if index < len(names) else f"joint {index + 1}"
+    return joint_name(names, index)

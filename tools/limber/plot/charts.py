@@ -103,7 +103,8 @@ def _overview_charts(log: Messages, names: list[str]) -> list[Chart]:
         stiffness.append(Chart("K_q in effect", "N m/rad", t, of_joints, zero=True))
     sent = _columns(status["tau_sent"], _labels(n, names))
     torque = Chart("torque sent to the joints", "N m", t, sent, least=0.5)
-    return [*moved, *stiffness, torque, *compliance_charts(log)]
+    hand = _hand_charts(log, names)[:2] if len(log.read("HAND_STATE")) else []
+    return [*moved, *stiffness, torque, *compliance_charts(log), *hand]
 
 
 def _cartesian_charts(log: Messages, _names: list[str]) -> list[Chart]:
@@ -285,6 +286,32 @@ def _bus_charts(log: Messages, _names: list[str]) -> list[Chart]:
     ]
 
 
+def _hand_charts(log: Messages, _names: list[str]) -> list[Chart]:
+    """Nothing for an arm without a hand."""
+    hand, truth = log.read("HAND_STATE"), log.read("HAND_TRUTH")
+    t = time_s(hand)
+    width = {"width": hand["width_m"] * 1e3, "aimed at": hand["target_m"] * 1e3}
+    width["goal"] = hand["goal_width_m"] * 1e3
+    force = {"by the motor": hand["force_N"], "allowed": hand["force_bound_N"]}
+    flags = {word: hand[word].astype(float) for word in ("grasped", "moving", "warm")}
+    charts = [
+        Chart("width of the hand", "mm", t, width, dashed={"aimed at", "goal"}, zero=True),
+        Chart("force of each finger", "N", t, force, dashed={"allowed"}, least=1.0),
+        Chart(
+            "heat of the hand's motor", "1", t, {"of the rated torque's": hand["heat"]}, zero=True
+        ),
+        Chart("the hand", "1", t, flags, zero=True),
+    ]
+    count = int(truth["num_objects"].max(initial=0))
+    if count:
+        lifted = (truth["p_BO"][:, :count, 2] - truth["p_BO"][:1, :count, 2]) * 1e3
+        objects = _columns(lifted, [f"object {i + 1}" for i in range(count)])
+        charts.append(
+            Chart("objects above where they lay (z)", "mm", time_s(truth), objects, least=1.0)
+        )
+    return charts
+
+
 SOURCES = {
     "overview": ("CONTROLLER_STATUS", "SIM_TRUTH"),
     "joint": ("JOINT_STATE",),
@@ -293,6 +320,7 @@ SOURCES = {
     "spring": ("JOINT_STATE of arms with link encoders, torque sensors or two motors a joint",),
     "timing": ("JOINT_STATE, DRIVER_STATUS and CONTROLLER_STATUS of a run that had a clock",),
     "bus": ("DRIVER_STATUS",),
+    "hand": ("HAND_STATE of an arm with a hand",),
 }
 TOPICS: dict[str, Callable[[Messages, list[str]], list[Chart]]] = {
     "overview": _overview_charts,
@@ -302,4 +330,5 @@ TOPICS: dict[str, Callable[[Messages, list[str]], list[Chart]]] = {
     "spring": _spring_charts,
     "timing": _timing_charts,
     "bus": _bus_charts,
+    "hand": _hand_charts,
 }

@@ -139,11 +139,14 @@ def _places(
         for row, column in product(range(6), repeat=2):
             unit = MATRICES[field][row // 3 + column // 3]
             yield (field, f"{_axis(row)}_{_axis(column)}_{unit}"), (row, column)
+    elif field == "p_BO":
+        for i, axis in product(range(shape[0]), range(3)):
+            yield (field, f"object{i + 1}", POSITION[axis]), (i, axis)
     elif field in INDEXED:
         for i, word in messages.constants(*INDEXED[field]).items():
             yield (field, word.lower()), (i,)
     else:
-        single = "output" if field == "law_outputs" else "bus"
+        single = {"law_outputs": "output", "object_flags": "object"}.get(field, "bus")
         labels = VECTORS.get(field) or [f"{single}{i + 1}" for i in range(shape[0])]
         for i, label in enumerate(labels):
             yield (field, label), (i,)

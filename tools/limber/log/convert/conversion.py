@@ -34,6 +34,7 @@ FORMATS = {
     "mcap": Format(".mcap", "mcap_file", "McapFile"),
     "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False),
     "npz": Format(".npz", "npz_file", "NpzFile", text=False),
+    "lerobot": Format("_lerobot", "lerobot_dataset", "LeRobotDataset", folder=True, text=False),
     "lcm": Format(".lcmlog", "", ""),
 }
 
