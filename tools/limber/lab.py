@@ -21,11 +21,12 @@ import yaml
 
 from limber.errors import InputError, LimberError, RunError
 from limber.messages import SCENARIO_CLIENT, channels, view
-from limber.paths import REPAIR, programs_folder, scenario_file
+from limber.paths import REPAIR, private_library, programs_folder, scenario_file
 
 FORMAT = "limber-scenario/1"
 IN_MEMORY = "scenario"  # what stands for the file in errors
 LONGEST_S = 3600.0  # of a scenario that names no duration
+WHOLE = "liblimber.so.0"  # of this major version
 _LOCKSTEP_RUN = 1  # common/run_id.h
 _LARGEST = 1400  # bytes of a message
 _REFUSED, _MALFORMED, _CHANNEL, _NONE = -1, -2, -3, -4
@@ -69,9 +70,9 @@ class Lab:
 
     def send(self, message: Any) -> None:
         """A request such as mode_request_t, compliance_goal_t, compliance_gains_t,
-        target_stream_t, hand_goal_t, push_t, scenario_event_t or workpiece_t; it acts from the next cycle on.
-        Number, time, sender and run of the controller are filled in. RefusedByLabError with the
-        reason.
+        target_stream_t, hand_goal_t, push_t, scenario_event_t or workpiece_t; it acts from the next
+        cycle on. Number, time, sender and run of the controller are filled in. RefusedByLabError
+        with the reason.
         """
         channel = _channel_of(type(message).__name__)
         message.seq, message.time_ns = next(self._seq), self.time_ns
@@ -87,7 +88,8 @@ class Lab:
 
     def message(self, channel: str) -> np.void:
         """Newest message of a channel of fixed size, by field: JOINT_STATE, JOINT_TORQUE,
-        CONTROLLER_STATUS, DRIVER_STATUS, SIM_TRUTH, BLOCK_TRUTH, HAND_STATE, HAND_TRUTH. SI units, as in lcmtypes/.
+        CONTROLLER_STATUS, DRIVER_STATUS, SIM_TRUTH, BLOCK_TRUTH, HAND_STATE, HAND_TRUTH. SI units,
+        as in lcmtypes/.
         """
         data = self.message_bytes(channel)
         return view(channels()[channel].type_name, data)
@@ -151,14 +153,11 @@ def _channel_of(type_name: str) -> str:
 
 @cache
 def _library() -> Any:
-    """A clone has the lab by itself; a package all of limber in one."""
-    folder = programs_folder().parent / "lib"
-    whole = sorted(folder.glob("liblimber.so.*"), key=lambda path: len(path.name))
-    path = next((path for path in (folder / "liblimber_lab.so", *whole) if path.exists()), None)
-    if path is None:
-        raise RunError(f"{folder} has no library of limber's: {REPAIR}")
+    """A clone has the lab by itself; a package all of limber in one, or the system's loader has."""
+    places = (private_library("liblimber_lab.so"), programs_folder().parent / "lib" / WHOLE)
+    path = next((str(place) for place in places if place.exists()), WHOLE)
     try:
-        library = ctypes.CDLL(str(path))
+        library = ctypes.CDLL(path)
     except OSError as error:
         raise RunError(f"{path} cannot be loaded: {REPAIR} ({error})") from error
     handle, text, size = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t

@@ -6,12 +6,12 @@ limber/Reach-v0, limber/Push-v0, limber/Peg-v0; what they have in common: ArmEnv
 """
 
 from limber.errors import RunError
-from limber.paths import command_for_extra
+from limber.paths import command_for
 
 try:
     import gymnasium
 except ImportError as error:
-    raise RunError(f"limber.gym needs gymnasium: {command_for_extra('gym')}") from error
+    raise RunError(f"limber.gym needs gymnasium: {command_for('gymnasium')}") from error
 
 from limber.gym.arm_env import ArmEnv
 from limber.gym.peg import Peg
