@@ -5,7 +5,8 @@
 //
 // F_most: of the goal; once something is grasped at most hold_force_N; of the heat (hand_heat.h).
 // w_d goes to the goal with the goal's speed, and stops kLead_m beyond the width at which the
-// spring has the force that it may have: fingers that come free close with that speed, too.
+// spring has the force that it may have: fingers that come free close with that speed, too, after
+// the way by which w_d leads, over which spring and damper alone bound it, |w'| < K (w_d - w) / D.
 //
 // Grasped: for 0.1 s |w'| < 2 mm/s, |F| >= 0.8 F_most, and w is more than 2 mm from w_d and more
 // than 0.5 mm from closed and open. Lost: w comes within 1 mm of w_d.
@@ -53,7 +54,10 @@ class HandLaw {
   double target_m() const noexcept { return target_m_; }
   double bound_N() const noexcept { return bound_N_; }
   bool grasped() const noexcept { return grasped_; }
-  bool moving() const noexcept { return still_s_ < kStill_s || travelling_; }
+  /// On its way, or not yet sure whether it grasps.
+  bool moving() const noexcept {
+    return still_s_ < kStill_s || travelling_ || (pressed_s_ > 0.0 && !grasped_);
+  }
 
  private:
   static constexpr double kStill_s = 0.1;

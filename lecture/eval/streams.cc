@@ -1,5 +1,6 @@
 // The goal of one joint along a target stream, sample by sample.
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "common/config_error.h"
@@ -24,17 +25,30 @@ struct Arriving {
 
 std::int64_t nanoseconds(double s) { return std::llround(1e9 * s); }
 
-/// [arrival, [knot times], [positions]], s and rad.
-Arriving read_message(const Json& row) {
-  if (!row.is_array() || row.size() != 3 || !row[1].is_array() || row[1].empty())
-    refuse("messages", "[arrival, [times], [positions]]", row);
-  const auto size = static_cast<Eigen::Index>(row[1].size());
-  const Eigen::VectorXd times = read_vector("messages: times", row[1], size);
-  const Eigen::VectorXd x = read_vector("messages: positions", row[2], size);
-  Arriving message{nanoseconds(read_number("messages: arrival", row[0])), {}};
-  for (Eigen::Index i = 0; i < size; ++i)
-    message.knots.push_back({nanoseconds(times[i]), one(x[i])});
-  return message;
+const Json& list_in(const Json& object, const char* key) {
+  if (!object.contains(key) || !object[key].is_array())
+    refuse("messages", std::string("a list ") + key, object);
+  return object[key];
+}
+
+/// "arrivals": s; "times", "positions": a list a message, s and rad.
+std::vector<Arriving> read_messages(const Json& object) {
+  const Json& arrivals = list_in(object, "arrivals");
+  const Json& times = list_in(object, "times");
+  const Json& positions = list_in(object, "positions");
+  if (times.size() != arrivals.size() || positions.size() != arrivals.size())
+    refuse("messages", "three lists of one length", object);
+  std::vector<Arriving> messages;
+  for (std::size_t m = 0; m < arrivals.size(); ++m) {
+    if (!times[m].is_array() || times[m].empty()) refuse("messages: times", "a list", times[m]);
+    const auto size = static_cast<Eigen::Index>(times[m].size());
+    const Eigen::VectorXd t = read_vector("messages: times", times[m], size);
+    const Eigen::VectorXd x = read_vector("messages: positions", positions[m], size);
+    messages.push_back({nanoseconds(read_number("messages: arrivals", arrivals[m])), {}});
+    for (Eigen::Index i = 0; i < size; ++i)
+      messages.back().knots.push_back({nanoseconds(t[i]), one(x[i])});
+  }
+  return messages;
 }
 
 }  // namespace
@@ -44,8 +58,7 @@ Json target_stream_seq(Inputs& in) {
   StreamMotion<JointSpace> motion({one(in.positive("v_fade")), one(in.positive("a_fade")),
                                    one(in.positive("v_max")), one(in.positive("a_max"))});
   motion.reset(JointSpace::at_rest(one(in.number("x0"))), -kStep_ns);
-  std::vector<Arriving> messages;
-  for (const Json& row : in.object("messages")) messages.push_back(read_message(row));
+  const std::vector<Arriving> messages = read_messages(in.object("messages"));
   Json x = Json::array(), v = Json::array(), a = Json::array();
   std::size_t next = 0;
   for (int i = 0; i < samples; ++i) {

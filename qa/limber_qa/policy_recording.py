@@ -26,8 +26,16 @@ WAY = (
     (7.2, (0.0, 0.07, 0.0), OPEN_M),
     (8.2, (0.0, 0.07, 0.06), OPEN_M),
 )
-HEAD = f"""# A policy at {RATE_HZ} Hz takes an object, carries it and puts it down: written by limber_qa/policy_recording.py. Each target comes
-# {TRANSPORT_S * 1e3:.0f} to {(TRANSPORT_S + JITTER_S) * 1e3:.0f} ms late, {LOSS:.0%} do not come; at {PAUSE_S[0]} s the policy thinks for {PAUSE_S[1] - PAUSE_S[0]:.1f} s; at {KILLED_S} s it is killed, and started again at {AGAIN_S} s.
+EARLY_MS, LATE_MS = round(TRANSPORT_S * 1e3), round((TRANSPORT_S + JITTER_S) * 1e3)
+THINKS = f"at {PAUSE_S[0]} s the policy thinks for {PAUSE_S[1] - PAUSE_S[0]:.1f} s"
+BLOCK = (
+    "name: block, position_m: [0.452, -0.258, 0.557], width_m: 0.05, stiffness_N_per_m: 100000, "
+    "damping_Ns_per_m: 50, mass_kg: 0.4, friction: 0.6"
+)
+HEAD = f"""# A policy at {RATE_HZ} Hz takes a block, carries it and puts it down. Written by
+# limber_qa/policy_recording.py. Each target comes {EARLY_MS} to {LATE_MS} ms late, {LOSS:.0%} do
+# not come; {THINKS};
+# at {KILLED_S} s it is killed, and started again at {AGAIN_S} s.
 format: limber-scenario/1
 name: policy
 description: a policy picks and places with pauses, jitter, loss, and an end in the middle
@@ -35,7 +43,7 @@ robot: openarm_right
 duration_s: 15
 
 objects:
-  - {{name: block, position_m: [0.452, -0.258, 0.557], width_m: 0.05, stiffness_N_per_m: 100000, damping_Ns_per_m: 50, mass_kg: 0.4, friction: 0.6}}
+  - {{{BLOCK}}}
 
 timeline:
   - {{at_s: 0.3, mode: hold}}

@@ -107,7 +107,7 @@ const Mutation kSlips[] = {
     {"VelocityBeyondTheDrive", "velocity_limit_rad_per_s: 4\n", "velocity_limit_rad_per_s: 5\n",
      "5 is more than the 4 that the drive reports"},
     {"DampingUnstable", "damping_Ns_per_m: 40", "damping_Ns_per_m: 900",
-     "900 with 1.65 kg of motor and fingers is unstable at 500 Hz"},
+     "900 with 1.64 kg of motor and fingers is unstable at 500 Hz"},
     {"StiffnessUnstable", "stiffness_N_per_m: 2000", "stiffness_N_per_m: 11000",
      "11000 with a damping of 40 is unstable at 500 Hz; at most 1e+04"},
     {"HeatTimeZero", "heat_time_constant_s: 20", "heat_time_constant_s: 0", "out of range"},

@@ -16,7 +16,7 @@ namespace {
 const std::string kRobots = LIMBER_SOURCE_DIR "/robots/";
 
 /// One of each protocol.
-const char* const kNames[] = {"desktop2r", "planar2r", "iiwa14"};
+const char* const kNames[] = {"desktop2r", "planar2r", "iiwa14", "openarm_right"};
 
 /// The mappings that a section stands for: "motors.*.mit_range" is that of every motor.
 std::vector<YAML::Node> mappings(const YAML::Node& yaml, const std::string& section) {

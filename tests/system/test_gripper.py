@@ -43,6 +43,7 @@ def test_grasps_something_and_nothing(handy):
             arm.hand.grasp(30)
         arm.activate()
         assert arm.hand.grasp(40) is True
+        arm.wait(for_s=0.3)
         held = arm.hand.state
         assert held.grasped and not held.moving and not held.warm
         assert held.width_m == pytest.approx(0.05, abs=1e-3)

@@ -45,10 +45,10 @@ int run(const std::string& robot, std::int64_t client, const std::vector<std::st
 }  // namespace
 
 LIMBER_MAIN(send) {
-  limber::CommandLine line(
-      "limber-send",
-      "Sends a request of a scenario to a running stack: mode, gains, goal, hand, push, wall, payload, "
-      "fault.");
+  limber::CommandLine line("limber-send",
+                           "Sends a request of a scenario to a running stack: mode, gains, goal, "
+                           "hand, push, wall, payload, "
+                           "fault.");
   std::string robot;
   std::vector<std::string> entries;
   std::int64_t client = kClient;

@@ -6,7 +6,7 @@
 #include "controller/hand/hand_law.h"
 #include "controller/output/torque_limiter.h"
 
-namespace limber::controller {
+namespace limber::controller::test_hand_law {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -163,7 +163,9 @@ TEST(HandLaw, FingersThatComeFreeCloseWithTheGoalsSpeed) {
     fastest = std::max(fastest, -v);
     if (i > 400) after = std::max(after, -v);
   }
-  EXPECT_LT(fastest, 20.0 / 40.0 + 0.05) << "a hold force over the damper";
+  const double lead = 40.0 / config.stiffness_N_per_m + 4e-3;
+  EXPECT_LT(fastest, config.stiffness_N_per_m * lead / config.damping_Ns_per_m)
+      << "over the way by which the target leads, spring against damper";
   EXPECT_NEAR(after, 0.05, 0.005);
 }
 
@@ -201,4 +203,4 @@ TEST(HandLaw, TakesOverTheTorquePresent) {
 }
 
 }  // namespace
-}  // namespace limber::controller
+}  // namespace limber::controller::test_hand_law

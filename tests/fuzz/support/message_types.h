@@ -48,22 +48,14 @@ MessageType message_type() {
 /// Type `number` (counted round) in alphabetical order.
 inline const MessageType& message_type_of(std::uint8_t number) {
   static const MessageType kTypes[] = {
-      message_type<compliance_gains_t>(),
-      message_type<compliance_goal_t>(),
-      message_type<controller_status_t>(),
-      message_type<driver_status_t>(),
-      message_type<hand_goal_t>(),
-      message_type<hand_state_t>(),
-      message_type<hand_truth_t>(),
-      message_type<joint_command_t>(),
-      message_type<joint_state_t>(),
-      message_type<law_parameter_t>(),
-      message_type<mode_request_t>(),
-      message_type<push_t>(),
-      message_type<request_answer_t>(),
-      message_type<robot_info_t>(),
-      message_type<scenario_event_t>(),
-      message_type<sim_truth_t>(),
+      message_type<compliance_gains_t>(),  message_type<compliance_goal_t>(),
+      message_type<controller_status_t>(), message_type<driver_status_t>(),
+      message_type<hand_goal_t>(),         message_type<hand_state_t>(),
+      message_type<hand_truth_t>(),        message_type<joint_command_t>(),
+      message_type<joint_state_t>(),       message_type<law_parameter_t>(),
+      message_type<mode_request_t>(),      message_type<push_t>(),
+      message_type<request_answer_t>(),    message_type<robot_info_t>(),
+      message_type<scenario_event_t>(),    message_type<sim_truth_t>(),
   };
   return kTypes[number % std::size(kTypes)];
 }

@@ -6,7 +6,7 @@
 #include "robots/loader/load_robot.h"
 #include "sim/hand/fingers.h"
 
-namespace limber::sim {
+namespace limber::sim::test_fingers {
 namespace {
 
 constexpr double kStep_s = 250e-6;
@@ -77,4 +77,4 @@ TEST(Fingers, AnObjectDoesNotPull) {
 }
 
 }  // namespace
-}  // namespace limber::sim
+}  // namespace limber::sim::test_fingers

@@ -7,7 +7,7 @@
 #include "sim/hand/objects.h"
 #include "sim/model/arm_model.h"
 
-namespace limber::sim {
+namespace limber::sim::test_objects {
 namespace {
 
 constexpr double kStep_s = 250e-6;
@@ -126,4 +126,4 @@ TEST_F(ObjectsTest, SlidesWithWhatFrictionLeavesOfGravity) {
 }
 
 }  // namespace
-}  // namespace limber::sim
+}  // namespace limber::sim::test_objects

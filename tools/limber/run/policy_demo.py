@@ -1,6 +1,5 @@
 """`limber demo policy`: a recorded policy picks and places, and is killed in the middle."""
 
-
 import numpy as np
 from rich.console import Console
 
