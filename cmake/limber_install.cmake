@@ -1,7 +1,7 @@
 # What is installed, below one prefix that may be moved:
 #
 #   bin/         limber-NAME: launchers of a few lines over
-#   lib/         liblimber.so, in which all programs are; liblimber_receiver.so, for Python
+#   lib/         liblimber.so, in which all programs and the lab for others (lab/lab_interface.h) are; liblimber_receiver.so, for Python
 #   share/limber robots, scenarios, message files: common/shared_folder.h
 #   lcmtypes/    component python: the messages in Python and the tables it shares with C++
 #
@@ -67,6 +67,7 @@ function(limber_install_files)
     install(DIRECTORY ${folder}/ DESTINATION ${headers}/${folder} COMPONENT dev FILES_MATCHING PATTERN *.h)
   endforeach()
   foreach(file common/config_error.h common/joints.h common/public.h common/types.h controller/laws/law.h controller/laws/law_plugin.h drivers/can/can_bus.h
+      lab/lab_interface.h
       drivers/can/can_filter.h drivers/can/can_frame.h
       lcmtypes/gains_table.h robots/loader/emergency_stop_config.h robots/loader/joint_chain.h robots/loader/robot.h
       robots/loader/tip_sensor_config.h robots/loader/protocols/tip_sensor_protocol.h)

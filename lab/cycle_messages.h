@@ -19,6 +19,8 @@ class CycleMessages {
     const std::int64_t seq = lab.state().seq;
     put(channels::kJointState, lab.state());
     put(channels::kSimTruth, lab.truth());
+    const block_truth_t* block = lab.simulator().block_truth();
+    if (block != nullptr) put(channels::kBlockTruth, *block);
     put(channels::kJointTorque, lab.torque());
     if (lab.simulator().hand_truth() != nullptr)
       put(channels::kHandTruth, *lab.simulator().hand_truth());

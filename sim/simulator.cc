@@ -200,6 +200,10 @@ bool Simulator::event(const scenario_event_t& message) noexcept {
   }
 }
 
+bool Simulator::workpiece(const workpiece_t& message) noexcept {
+  return sim::read_workpiece(message, arm_.body().model().gravity, &arm_.environment().workpiece);
+}
+
 void Simulator::set_payload(double mass, const Eigen::Vector3d& p_TL) noexcept {
   arm_.set_payload(mass, p_TL);
   load_nodes();
@@ -216,6 +220,15 @@ const sim_truth_t& Simulator::truth() noexcept {
   truth_.time_ns = clock_.arm_time_known() ? clock_.arm_time_ns() : 0;
   arm_.fill(truth_.sim_time_ns, &truth_);
   return truth_;
+}
+
+const block_truth_t* Simulator::block_truth() noexcept {
+  const sim::Block* block = arm_.environment().workpiece.block();
+  if (block == nullptr) return nullptr;
+  block_truth_.seq = clock_.periods();
+  block_truth_.time_ns = clock_.arm_time_known() ? clock_.arm_time_ns() : 0;
+  block->fill(&block_truth_);
+  return &block_truth_;
 }
 
 const hand_truth_t* Simulator::hand_truth() noexcept {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limber/block_truth_t.hpp>
 #include <limber/hand_truth_t.hpp>
 #include <limber/push_t.hpp>
 #include <limber/scenario_event_t.hpp>
 #include <limber/sim_truth_t.hpp>
+#include <limber/workpiece_t.hpp>
 #include <vector>
 
 #include "drivers/can/can_bus.h"
@@ -92,6 +94,7 @@ class Simulator {
   /// unknown link, or all 8 slots for pushes are taken.
   bool push(const push_t& push) noexcept;
   bool event(const scenario_event_t& event) noexcept;
+  bool workpiece(const workpiece_t& workpiece) noexcept;
   /// The drives of a joint get a frame over another wire than the bus, such as from their maker's
   /// tool; nobody hears what they answer.
   void tell_past_the_bus(int joint, const CanFrame& frame) noexcept {
@@ -105,6 +108,8 @@ class Simulator {
   /// The arm now. time_ns is the arm time of this very state: after TICK(k) has been advanced,
   /// (k+1) T, as in JOINT_STATE(k+1). seq is periods().
   const sim_truth_t& truth() noexcept;
+  /// Likewise the block on a table; nullptr without one.
+  const block_truth_t* block_truth() noexcept;
   /// The same of the hand; nullptr without one.
   const hand_truth_t* hand_truth() noexcept;
   /// Steps that were not taken because they would have ended in a state that is not finite; the arm
@@ -133,6 +138,7 @@ class Simulator {
   bool has_timeline_ = false;
   std::int64_t refused_ = 0;
   sim_truth_t truth_{};
+  block_truth_t block_truth_{};
   hand_truth_t hand_truth_{};
 };
 

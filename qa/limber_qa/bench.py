@@ -20,7 +20,7 @@ from limber_qa import bench_loop_parts, bench_round_trips
 from limber_qa.bench_command import released, run
 from limber_qa.bench_figure import Figure, table
 
-MODULES = ("limber_qa.bench_page", "limber_qa.bench_viewer")
+MODULES = ("limber_qa.bench_page", "limber_qa.bench_viewer", "limber_qa.bench_gym")
 READ_SCENARIO = Path("scenarios") / "quick.yaml"
 CYCLES = 1_000_000  # watched for calls
 LOADED_s = 10.0  # of the recorder

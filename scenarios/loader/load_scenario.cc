@@ -9,7 +9,7 @@
 #include "scenarios/loader/entry_yaml.h"
 #include "scenarios/loader/hand_yaml.h"
 #include "scenarios/loader/plant_overrides.h"
-#include "scenarios/loader/scenario.h"
+#include "scenarios/loader/scenario_yaml.h"
 #include "scenarios/loader/values_yaml.h"
 
 namespace limber {
@@ -110,17 +110,23 @@ std::vector<TimedMessage> read_timeline(const YamlMap& yaml, const LoadedRobot& 
   return timeline;
 }
 
-/// Relative to the scenario.
-std::vector<std::string> read_laws(const YamlMap& yaml, const std::string& path) {
-  if (!yaml.has("law_file")) return {};
-  return {(std::filesystem::path(path).parent_path() / yaml.text("law_file")).string()};
-}
-
 }  // namespace
 
 std::string scenario_robot(const std::string& path, std::string* note) {
+  return scenario_robot(YamlMap::from_file(path), note);
+}
+
+std::vector<std::string> scenario_laws(const std::string& path) {
+  return path.empty() ? std::vector<std::string>() : scenario_laws(YamlMap::from_file(path));
+}
+
+Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
+  return load_scenario(YamlMap::from_file(path), robot, laws);
+}
+
+std::string scenario_robot(const YamlMap& yaml, std::string* note) {
   namespace fs = std::filesystem;
-  const YamlMap yaml = YamlMap::from_file(path);
+  const std::string& path = yaml.file();
   yaml.word("format", {kFormat});
   std::string robot = yaml.text("robot");
   const bool is_name = robot.find('/') == std::string::npos && !robot.starts_with('.');
@@ -139,13 +145,14 @@ std::string scenario_robot(const std::string& path, std::string* note) {
   return beside.has_parent_path() ? beside.string() : "./" + beside.string();
 }
 
-std::vector<std::string> scenario_laws(const std::string& path) {
-  return path.empty() ? std::vector<std::string>() : read_laws(YamlMap::from_file(path), path);
+std::vector<std::string> scenario_laws(const YamlMap& yaml) {
+  if (!yaml.has("law_file")) return {};
+  return {(std::filesystem::path(yaml.file()).parent_path() / yaml.text("law_file")).string()};
 }
 
-Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const LawCatalog* laws) {
-  const YamlMap yaml = YamlMap::from_file(path);
+Scenario load_scenario(const YamlMap& yaml, const LoadedRobot& robot, const LawCatalog* laws) {
   yaml.word("format", {kFormat});
+  const std::string& path = yaml.file();
   Scenario scenario;
   scenario.path = path;
   scenario.name =
@@ -169,7 +176,7 @@ Scenario load_scenario(const std::string& path, const LoadedRobot& robot, const 
   scenario.objects = read_objects(yaml, robot.robot);
   scenario.measure = read_measure(yaml);
   scenario.record = yaml.boolean_or("record", true);
-  scenario.law_files = read_laws(yaml, path);
+  scenario.law_files = scenario_laws(yaml);
   yaml.has("timeline");
   yaml.finish();
   scenario.timeline = read_timeline(yaml, robot, laws, scenario.duration_s);

@@ -37,7 +37,13 @@ void ForceModel::set_stands_left(double left) noexcept {
   for (Motor& motor : motors_) motor.stand.set_left(left);
 }
 
-void ForceModel::soften_wall(LinkDynamics* arm, double h) noexcept {
+void ForceModel::soften_contacts(LinkDynamics* arm, double h) noexcept {
+  if (environment.workpiece.there()) {  // the trace is at least the largest of all directions
+    environment.workpiece.limit_to(arm->tip_mobility(Eigen::Vector3d::UnitX()) +
+                                       arm->tip_mobility(Eigen::Vector3d::UnitY()) +
+                                       arm->tip_mobility(Eigen::Vector3d::UnitZ()),
+                                   h);
+  }
   constexpr double kNear_m = 0.01;
   Wall& wall = environment.wall;
   if (!(wall.stiffness > 0.0) || wall.depth(arm->link_position(arm->tip())) < -kNear_m) return;
@@ -75,7 +81,7 @@ void ForceModel::couple_passive(const ArmState& x, double h) noexcept {
 void ForceModel::begin_step(LinkDynamics* arm, const ArmState& x, double h,
                             std::int64_t t_ns) noexcept {
   t_ns_ = t_ns;
-  soften_wall(arm, h);
+  soften_contacts(arm, h);
   for (int k = 0; k < motor_count_; ++k) motors_[k].begin_step(drives[k], point(x, k), h);
   const bool held_before = passive_;
   passive_ = passive(x);

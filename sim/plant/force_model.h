@@ -99,7 +99,7 @@ class ForceModel {
   }
 
  private:
-  void soften_wall(LinkDynamics* arm, double h) noexcept;
+  void soften_contacts(LinkDynamics* arm, double h) noexcept;
   /// Friction, an end stop, a stand or shorted phases act in a step from x on.
   bool passive(const ArmState& x) const noexcept;
   void settle(LinkDynamics* arm, const ArmState& x, double h) noexcept;

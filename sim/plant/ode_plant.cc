@@ -75,6 +75,9 @@ OdePlant::OdePlant(const ArmModel& model)
   require_mass(model);
   start_ode_once();
   world_ = dWorldCreate();
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_),
+                                       threading_);
   joints_ = dJointGroupCreate(0);
   dWorldSetCFM(world_,
                0.0);  // a serial chain has no redundant constraints that would need softening
@@ -88,6 +91,7 @@ OdePlant::OdePlant(const ArmModel& model)
 OdePlant::~OdePlant() {
   dJointGroupDestroy(joints_);
   dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
 }
 
 void OdePlant::create(int i) {

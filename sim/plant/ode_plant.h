@@ -33,6 +33,7 @@ class OdePlant final : public ArmPlant {
   void read_joints() noexcept;
 
   dWorldID world_;
+  dThreadingImplementationID threading_;  ///< its own: ODE's default is one for all worlds
   dJointGroupID joints_;
   std::array<dBodyID, kMaxJoints> body_{};
   std::array<dJointID, kMaxJoints> joint_{};

@@ -27,6 +27,8 @@ void SimulatedArm::step(double h, std::int64_t now_ns, std::int64_t next_ns, boo
   forces_.environment.pushes.drop_finished(now_ns);
   // Pushes change slowly against a step: their value in its middle stands for all of it.
   plant_->step(&forces_, h, now_ns + (next_ns - now_ns) / 2);
+  Workpiece& workpiece = forces_.environment.workpiece;
+  if (workpiece.block() != nullptr) workpiece.advance(tip_motion(plant_->arm()), h);
   if (!hand_) return;
   const double carried_kg = hand_->held().mass_kg;
   hand_->step(hand_law, plant_->arm(), h);

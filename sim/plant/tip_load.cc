@@ -5,9 +5,9 @@
 namespace limber::sim {
 namespace {
 
-Vector6 contact_wrench(const LinkDynamics& arm, const Environment& environment,
-                       std::int64_t t_ns) noexcept {
-  Vector6 F = environment.wall_wrench(arm);
+Vector6 tip_wrench(const LinkDynamics& arm, const Environment& environment,
+                   std::int64_t t_ns) noexcept {
+  Vector6 F = environment.contact_wrench(arm);
   for (int i = 0; i < environment.pushes.count(); ++i) {
     if (environment.pushes[i].link == arm.tip()) F += environment.pushes[i].at(t_ns);
   }
@@ -45,7 +45,7 @@ void TipLoad::step(const LinkDynamics& arm, const Environment& environment, doub
                    std::int64_t t_ns) noexcept {
   const Eigen::Matrix3d R_BT = arm.link_rotation(arm.tip());
   const Eigen::Vector3d p_S = arm.link_position(arm.tip()) + R_BT * p_TS_;
-  const Vector6 contact = contact_wrench(arm, environment, t_ns);
+  const Vector6 contact = tip_wrench(arm, environment, t_ns);
   Eigen::Vector3d f = contact.head<3>();
   Eigen::Vector3d n = contact.tail<3>() - (R_BT * p_TS_).cross(f);
   for (PointMass& mass : masses_) {

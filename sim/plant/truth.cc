@@ -67,7 +67,7 @@ void fill_truth(const ForceModel& forces, std::int64_t t_ns, ArmPlant* at,
                 sim_truth_t* truth) noexcept {
   const ArmPlant& plant = *at;
   const Environment& environment = forces.environment;
-  const Vector6 contact = environment.wall_wrench(plant.arm());
+  const Vector6 contact = environment.contact_wrench(plant.arm());
   const VectorJ& external = at->external_torque(environment, t_ns);
   truth->num_joints = static_cast<std::int8_t>(plant.arm().size());
   truth->contact = contact.isZero(0.0) ? 0 : 1;

@@ -50,15 +50,17 @@ void SimPort::handle_messages() noexcept {
   if (user_.undecodable() == undecodable_told_ || !may_complain()) return;
   undecodable_told_ = user_.undecodable();
   tell([this] {
-    complain(
-        fmt::format("{} messages to the simulator (PUSH, SCENARIO_EVENT) were dropped: no such "
-                    "message, or of another version of limber",
-                    undecodable_told_));
+    complain(fmt::format(
+        "{} messages to the simulator (PUSH, SCENARIO_EVENT, WORKPIECE) were dropped: no such "
+        "message, or of another version of limber",
+        undecodable_told_));
   });
 }
 
 void SimPort::publish_truth() noexcept {
   user_.publish(channels::kSimTruth, simulator_.truth());
+  const block_truth_t* block = simulator_.block_truth();
+  if (block != nullptr) user_.publish(channels::kBlockTruth, *block);
   if (const hand_truth_t* hand = simulator_.hand_truth())
     user_.publish(channels::kHandTruth, *hand);
 }

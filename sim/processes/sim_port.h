@@ -17,7 +17,7 @@
 
 namespace limber::sim {
 
-/// Publishes SIM_TRUTH; hands PUSH and SCENARIO_EVENT to the simulator.
+/// Publishes SIM_TRUTH and BLOCK_TRUTH; hands PUSH, SCENARIO_EVENT and WORKPIECE to the simulator.
 class SimPort {
  public:
   /// Opens the buses as they are named in `robot`. `timeline` outlives the port. Throws

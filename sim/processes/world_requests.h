@@ -1,4 +1,4 @@
-// Live requests to the simulated world: pushes, walls, payloads, faults of drives.
+// Live requests to the simulated world: pushes, walls, workpieces, payloads, faults of drives.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,9 @@
 
 namespace limber::sim {
 
-/// PUSH and SCENARIO_EVENT are handed to the simulator while `user` handles what waits; `complain`
-/// gets the reason for one that is refused. All outlive the port. Set-up only; throws ConfigError.
+/// PUSH, SCENARIO_EVENT and WORKPIECE are handed to the simulator while `user` handles what waits;
+/// `complain` gets the reason for one that is refused. All outlive the port. Set-up only; throws
+/// ConfigError.
 inline void take_world_requests(LcmPort* user, Simulator* simulator,
                                 const std::function<void(const char*)>& complain) {
   constexpr int kQueue = 100;  // one now and then
@@ -22,6 +23,11 @@ inline void take_world_requests(LcmPort* user, Simulator* simulator,
         if (!simulator->event(event))
           complain("a SCENARIO_EVENT was refused (values out of range)");
       });
+  user->subscribe<workpiece_t>(channels::kWorkpiece, kQueue,
+                               [simulator, complain](const workpiece_t& workpiece) {
+                                 if (!simulator->workpiece(workpiece))
+                                   complain("a WORKPIECE was refused (values out of range)");
+                               });
 }
 
 }  // namespace limber::sim

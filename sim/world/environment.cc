@@ -4,6 +4,12 @@
 
 namespace limber::sim {
 
+TipMotion tip_motion(const LinkDynamics& arm) noexcept {
+  const int tip = arm.tip();
+  return {arm.link_position(tip), arm.link_velocity(tip), arm.link_angular_velocity(tip),
+          arm.link_rotation(tip)};
+}
+
 double Environment::apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept {
   arm->clear_wrenches();
   double power = 0.0;
@@ -15,6 +21,12 @@ double Environment::apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept {
     arm->add_wrench(arm->body_of(tip), p_tip, contact, Eigen::Vector3d::Zero());
     power += contact.dot(v_tip);
   }
+  if (workpiece.there()) {
+    const TipMotion tip = tip_motion(*arm);
+    const Vector6 F = workpiece.wrench(tip);
+    arm->add_wrench(arm->body_of(arm->tip()), tip.p, F.head<3>(), F.tail<3>());
+    power += F.head<3>().dot(tip.v) + F.tail<3>().dot(tip.w);
+  }
   for (int i = 0; i < pushes.count(); ++i) {
     const int link = pushes[i].link;
     const Vector6 F = pushes[i].at(t_ns);
@@ -25,9 +37,9 @@ double Environment::apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept {
   return power;
 }
 
-Vector6 Environment::wall_wrench(const LinkDynamics& arm) const noexcept {
-  Vector6 F = Vector6::Zero();
-  F.head<3>() = wall.force(arm.link_position(arm.tip()), arm.link_velocity(arm.tip()));
+Vector6 Environment::contact_wrench(const LinkDynamics& arm) const noexcept {
+  Vector6 F = workpiece.wrench(tip_motion(arm));
+  F.head<3>() += wall.force(arm.link_position(arm.tip()), arm.link_velocity(arm.tip()));
   return F;
 }
 

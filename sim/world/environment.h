@@ -1,4 +1,4 @@
-// What touches the arm from outside: a wall at the tip and hands on the links.
+// What touches the arm from outside: a wall or a workpiece at the tip, and hands on the links.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,14 @@
 #include "sim/model/link_dynamics.h"
 #include "sim/world/push.h"
 #include "sim/world/wall.h"
+#include "sim/world/workpiece.h"
 
 namespace limber::sim {
 
 /// Allowed in the cycle throughout.
 struct Environment {
   Wall wall;
+  Workpiece workpiece;
   PushSlots pushes;
 
   /// Adds all wrenches at the arm's present state and simulated time t to the arm; returns their
@@ -19,8 +21,10 @@ struct Environment {
   double apply(LinkDynamics* arm, std::int64_t t_ns) const noexcept;
 
   // Base axes, reduced to the tip origin.
-  Vector6 wall_wrench(const LinkDynamics& arm) const noexcept;
+  Vector6 contact_wrench(const LinkDynamics& arm) const noexcept;  ///< of wall and workpiece
   Vector6 push_wrench(const LinkDynamics& arm, std::int64_t t_ns) const noexcept;
 };
+
+TipMotion tip_motion(const LinkDynamics& arm) noexcept;
 
 }  // namespace limber::sim

@@ -26,7 +26,10 @@ def test_the_script_builds_and_doctor_knows_every_program():
         set(re.search(rf"^{name}=\((.*?)\)", script, re.MULTILINE)[1].split())
         for name in ("programs", "of_a_clone")
     )
-    assert users | of_a_clone == {*programs(), "limber_messages", "limber_receiver"}
+    assert users | of_a_clone == {
+        *programs(),
+        *("limber_messages", "limber_receiver", "limber_lab_library"),
+    }
     assert of_a_clone == programs() - programs(without=("qa", "lecture"))
     assert set(machine.PROGRAMS) == programs(without=("qa", "lecture"))
 

@@ -203,7 +203,7 @@ TEST_P(BothIntegrators, WallCarriesStiffnessTimesDepth) {
   run(4.0);
   const Eigen::Vector3d now = plant_->arm().link_position(plant_->arm().tip());
   const double depth = now.y() - wall.point.y();
-  const Vector6 F = forces_->environment.wall_wrench(plant_->arm());
+  const Vector6 F = forces_->environment.contact_wrench(plant_->arm());
   EXPECT_GT(depth, 1e-5);
   EXPECT_NEAR(F[1], -2e4 * depth, 1e-6);
   EXPECT_EQ(F[0], 0.0);

@@ -37,10 +37,15 @@ def quaternion_of(R: Floats) -> Floats:
 
 def product(a: Floats, b: Floats) -> Floats:
     """Of two quaternions: the rotation b, then a."""
-    w, v = a[..., :1], a[..., 1:]
-    s, u = b[..., :1], b[..., 1:]
-    scalar = w * s - np.sum(v * u, axis=-1, keepdims=True)
-    return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=-1)
+    w, x, y, z = (a[..., i] for i in range(4))
+    W, X, Y, Z = (b[..., i] for i in range(4))
+    parts = (
+        w * W - x * X - y * Y - z * Z,
+        w * X + x * W + y * Z - z * Y,
+        w * Y + y * W + z * X - x * Z,
+        w * Z + z * W + x * Y - y * X,
+    )
+    return np.stack(parts, axis=-1)
 
 
 def between(a: Floats, b: Floats) -> Floats:
