@@ -41,7 +41,7 @@ class ArmEnv(gymnasium.Env):
     bytes.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012  Gymnasium's
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012  Gymnasium's
 
     def __init__(
         self,
@@ -227,7 +227,8 @@ class ArmEnv(gymnasium.Env):
         n = len(self.robot.joints)
         low, high = (np.clip(end, -_FAST, _FAST) for end in self.actions.ends)
         low, high = low - BEYOND_END_RAD, high + BEYOND_END_RAD
-        boxes = {"agent_pos": spaces.Box(low.astype(np.float32), high.astype(np.float32))}
+        boxes: dict[str, spaces.Box] = {}
+        boxes["agent_pos"] = spaces.Box(low.astype(np.float32), high.astype(np.float32))
         for key, most, size in (
             ("qvel", _FAST, n),
             ("tau", _LARGE, n),
