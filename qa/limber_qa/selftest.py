@@ -130,6 +130,8 @@ PARTS: dict[str, Part] = {
     "browser": Part(lambda: _system("browser"), Lane.LAST),
     # The wheel in bare Debian 12 and 13; as root
     "bare": Part(lambda: [*PYTEST, "tests/bare"], Lane.LAST, by_name=True),
+    # LeRobot's own commands with the plug-in: an environment of 5 GB
+    "lerobot": Part(lambda: [*PYTEST, "tests/lerobot"], Lane.LAST, by_name=True),
 }
 
 

@@ -84,14 +84,11 @@ class Motions(ArmBase):
         horizon_s: float = 0.1,
         **keys: Any,
     ) -> None:
-        """One goal of a stream of them, 10 to 50 a second, such as a policy makes; does not wait.
+        """A goal for the next `horizon_s`, to rest; does not wait for the motion. stream() follows
+        sooner, and more smoothly.
 
-        The goal moves without a jump in position, velocity or acceleration to rest at the new one
-        in `horizon_s`; the next one comes before that. It follows 0.6 horizons and up to half a
-        period behind, and comes to rest when the stream ends. With `valid_for_s`, such as five
-        periods, the controller holds the arm if the stream stops.
-        `horizon_s`: three periods of the stream or more, at least 0.1 s; less is jerky. Further
-        keys as in set_goal().
+        It goes on from the motion under way, and follows 0.6 horizons and half a period behind.
+        `horizon_s`: three periods or more, at least 0.1 s. Further keys as in set_goal().
         """
         self.set_goal(
             position_m=position_m,
