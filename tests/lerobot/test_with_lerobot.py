@@ -9,13 +9,14 @@ import ctypes
 import os
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from processes import started
 
-from limber import Arm
+from limber import Arm, NoStackError
 from limber.live import private_network
 from limber.paths import ROOT
 
@@ -71,6 +72,17 @@ def stack(folder, **address):
         yield
 
 
+def wait_until_ready(url=None):
+    for _ in range(60):
+        try:
+            with Arm(url=url) as arm:
+                arm.wait(until=lambda now: now.mode in ("hold", "active"), timeout_s=60)
+                return
+        except NoStackError:
+            time.sleep(1.0)
+    raise AssertionError("no stack")
+
+
 def lerobot(python, home, command, *options):
     env = {**os.environ, "HF_HUB_OFFLINE": "1", "HF_LEROBOT_HOME": str(home)}
     env["PYTHONPATH"] = str(ROOT / "tools")
@@ -110,8 +122,8 @@ def made(tmp_path):
 def test_replay_teleoperate_record(python, made, tmp_path):
     home, recorded = tmp_path / "home", tmp_path / "recorded"
     with stack(tmp_path / "follower"), stack(tmp_path / "leader", **OTHER):
-        with Arm() as arm:
-            arm.wait(mode="hold", timeout_s=60)
+        wait_until_ready()
+        wait_until_ready(OTHER["LCM_DEFAULT_URL"])
         dataset = ["--dataset.repo_id=limber/made", f"--dataset.root={made}"]
         lerobot(python, home, "lerobot-replay", *FOLLOWER, *dataset, "--dataset.episode=0")
         with Arm() as arm:  # the last target, as far as gear friction lets a soft arm come
