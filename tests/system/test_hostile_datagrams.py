@@ -178,8 +178,8 @@ def test_watch_survives(stack, neighbour):
 def test_the_simulator_counts_what_it_cannot_read(stack, neighbour):
     stack.start_all()
     stack.until(lambda: stack.mode is not None, 20, "the controller answers")
-    for channel in (b"PUSH", b"SCENARIO_EVENT"):
+    for channel in (b"PUSH", b"SCENARIO_EVENT", b"WORKPIECE"):
         neighbour(short(channel + b"\0", b"no message"))
         neighbour(short(channel + b"\0"))
-    told = "messages to the simulator (PUSH, SCENARIO_EVENT) were dropped"
-    stack.until(lambda: f"4 {told}" in stack.log("sim"), 20, "all four are told")
+    told = "messages to the simulator (PUSH, SCENARIO_EVENT, WORKPIECE) were dropped"
+    stack.until(lambda: f"6 {told}" in stack.log("sim"), 20, "all six are told")
