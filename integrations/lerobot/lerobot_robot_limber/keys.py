@@ -29,8 +29,7 @@ class Keys:
         rotary = np.array([joint["type"] != "prismatic" for joint in robot.resolved["joints"]])
         degrees = units == "degrees"
         scale = np.where(rotary & degrees, math.radians(1.0), 1.0)
-        hand = getattr(robot, "hand", None)
-        width_m = None if hand is None else hand.max_width_m
+        width_m = None if robot.hand is None else float(robot.hand.width_m.max())
         names = tuple(f"joint_{i + 1}" for i in range(len(robot.joints)))
         return cls(names, scale, width_m, not degrees)
 
