@@ -173,7 +173,8 @@ def test_a_number_that_is_no_word_stays_one():
 
 
 UNITLESS = ("quat_", "normal.", "law_outputs.", "bus_load_", "damping_ratio", "friction_share")
-UNITLESS += ("opening", "heat")
+UNITLESS += ("opening", "heat", "friction", "table_friction", "stiffness_scale")
+UNITLESS += ("knots.",)  # of joints, poses or twists, as the message's kind has it
 
 
 NUMBERS = {row.type_name for row in messages.channels().values()}

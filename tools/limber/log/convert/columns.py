@@ -32,15 +32,18 @@ DISPLACEMENT = (*POSITION, "rx_rad", "ry_rad", "rz_rad")
 TWIST = ("x_m_per_s", "y_m_per_s", "z_m_per_s", "rx_rad_per_s", "ry_rad_per_s", "rz_rad_per_s")
 WRENCH = ("fx_N", "fy_N", "fz_N", "mx_Nm", "my_Nm", "mz_Nm")
 VECTORS = {
-    **dict.fromkeys(("p_BT", "p_BD", "point", "payload_position"), POSITION),
+    **dict.fromkeys(("p_BT", "p_BD", "p_BO", "point", "peg", "size", "payload_position"), POSITION),
     **dict.fromkeys(("quat_BT", "quat_BD"), QUATERNION),
     **dict.fromkeys(("e", "offset"), DISPLACEMENT),
     **dict.fromkeys(
         ("F_law", "F_ext", "F_sensor", "F_contact", "F_push", "F_ff", "wrench"), WRENCH
     ),
     "V_BT": TWIST,
+    "v_BO": TWIST,
     "normal": DIRECTION,
 }
+# Their unit is not in the field's name
+SCALARS = {"yaw": "yaw_rad", "yaw_rate": "yaw_rate_rad_per_s"}
 # Units of a six-by-six matrix: translation, coupling, rotation
 MATRICES = {
     "K_x": ("N_per_m", "N_per_rad", "Nm_per_rad"),
@@ -126,7 +129,7 @@ def _places(
 ) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
     """Path and index of every number in a field."""
     if not shape:
-        yield (field,), ()
+        yield (SCALARS.get(field, field),), ()
     elif field in KNOTS:
         for index in product(*map(range, shape)):
             yield ("knots", *(str(i + 1) for i in index), field), index
@@ -139,7 +142,7 @@ def _places(
         for row, column in product(range(6), repeat=2):
             unit = MATRICES[field][row // 3 + column // 3]
             yield (field, f"{_axis(row)}_{_axis(column)}_{unit}"), (row, column)
-    elif field == "p_BO":
+    elif field == "p_BO" and len(shape) == 2:
         for i, axis in product(range(shape[0]), range(3)):
             yield (field, f"object{i + 1}", POSITION[axis]), (i, axis)
     elif field in INDEXED:
@@ -147,7 +150,7 @@ def _places(
             yield (field, word.lower()), (i,)
     else:
         single = {"law_outputs": "output", "object_flags": "object"}.get(field, "bus")
-        labels = VECTORS.get(field) or [f"{single}{i + 1}" for i in range(shape[0])]
+        labels = VECTORS.get(field, ())[: shape[0]] or [f"{single}{i + 1}" for i in range(shape[0])]
         for i, label in enumerate(labels):
             yield (field, label), (i,)
 
