@@ -59,6 +59,19 @@ class TorqueGateTest : public ::testing::Test {
 
 TEST_F(TorqueGateTest, AcceptsWhatIsInOrder) { EXPECT_EQ(check(good_), kAccepted); }
 
+// The hand is the last entry: num_joints leaves it out, its torque is limited, its power is not.
+TEST_F(TorqueGateTest, AHandIsLimitedButNotCounted) {
+  limits_.hand = 1;
+  EXPECT_EQ(check(good_), +Status::VERDICT_SIZE);
+  good_.num_joints = 2;
+  EXPECT_EQ(check(good_), kAccepted);
+  limits_.power_W = 1.0;
+  situation_.velocity = {0.0, 0.0, 100.0};  // of the hand: 0.25 N m * 100 rad/s
+  EXPECT_EQ(check(good_), kAccepted);
+  situation_.velocity = {0.0, -2.0, 0.0};  // of the joint before it: -1 N m * -2 rad/s
+  EXPECT_EQ(check(good_), +Status::VERDICT_POWER);
+}
+
 // Two motors of 6 N m each at joint 1, whose limit is 20 N m; one at the others.
 TEST_F(TorqueGateTest, PreloadUpToWhatEachOfTwoMotorsMayDo) {
   limits_.preload_Nm[1] = 12.0;
