@@ -46,6 +46,35 @@ TEST(StateJudgeFields, TheFirstGoodStateIsAllItShallBe) {
   EXPECT_FALSE(judge.judge(good_state(1)).first);
 }
 
+// The hand is the entry after the joints: its answers count, for an arm that has one.
+TEST(StateJudgeFields, AHandIsJudgedAfterTheJoints) {
+  Robot robot;
+  robot.joints.resize(kJoints);
+  robot.hand.emplace();
+  const JointFlags flags = equipment_of(robot);
+  EXPECT_EQ(flags[kJoints], +joint_state_t::JOINT_HAND);
+  joint_state_t state = good_state();
+  state.joint_flags[kJoints] = joint_state_t::JOINT_HAND | joint_state_t::JOINT_FRESH;
+  EXPECT_TRUE(StateJudge(kJoints, kBridged, flags).judge(state).fresh);
+  state.age_cycles[kJoints] = kBridged + 1;
+  EXPECT_TRUE(StateJudge(kJoints, kBridged, flags).judge(state).silent);
+  EXPECT_FALSE(StateJudge(kJoints, kBridged).judge(good_state()).silent);
+  state.age_cycles[kJoints] = 0;
+  state.age_cycles[kJoints + 1] = kBridged + 1;  // there is nothing
+  EXPECT_FALSE(StateJudge(kJoints, kBridged, flags).judge(state).silent);
+  // Sixteen joints, fifteen and a hand.
+  JointFlags all{};
+  all[kMaxJoints - 1] = joint_state_t::JOINT_HAND;
+  joint_state_t full{};
+  full.session = 5;
+  full.period_ns = 1'000'000;
+  full.num_joints = kMaxJoints - 1;
+  for (int i = 0; i < kMaxJoints; ++i) full.joint_flags[i] = joint_state_t::JOINT_FRESH;
+  full.joint_flags[kMaxJoints - 1] |= joint_state_t::JOINT_HAND;
+  full.age_cycles[kMaxJoints - 1] = kBridged + 1;
+  EXPECT_TRUE(StateJudge(kMaxJoints - 1, kBridged, all).judge(full).silent);
+}
+
 TEST(StateJudgeFields, WithoutASessionOrANumberItIsNoState) {
   for (const auto& [session, seq] :
        std::vector<std::pair<std::int64_t, std::int64_t>>{{0, 0}, {5, -1}}) {
