@@ -54,7 +54,7 @@ TEST(StateJudgeFields, AHandIsJudgedAfterTheJoints) {
   const JointFlags flags = equipment_of(robot);
   EXPECT_EQ(flags[kJoints], +joint_state_t::JOINT_HAND);
   joint_state_t state = good_state();
-  state.joint_flags[kJoints] = joint_state_t::JOINT_HAND | joint_state_t::JOINT_FRESH;
+  state.joint_flags[kJoints] = +joint_state_t::JOINT_HAND | +joint_state_t::JOINT_FRESH;
   EXPECT_TRUE(StateJudge(kJoints, kBridged, flags).judge(state).fresh);
   state.age_cycles[kJoints] = kBridged + 1;
   EXPECT_TRUE(StateJudge(kJoints, kBridged, flags).judge(state).silent);
