@@ -34,7 +34,7 @@ Refusal GainsRequest::check(const compliance_gains_t& message,
   const CycleParts& p = parts_;
   if (const char* reason = gains_check_.check(message, fields))
     return {request_answer_t::REFUSED_GAINS_RANGE, reason};
-  if (law_ < 0) return {request_answer_t::REFUSED_MALFORMED, "no control law has this name"};
+  if (law_ < 0) return malformed("no control law has this name");
   const LawEntry& wanted = LawBank::entry(law_);
   candidate_ = accepted_;
   read_gains(fields, &candidate_);

@@ -16,25 +16,6 @@ constexpr int kRequestQueue = 32;
 constexpr int kStreamQueue = 8;
 constexpr std::int64_t kLogInterval_ns = 200'000'000;
 
-Refusal decide(ArmController* controller, const mode_request_t& request) noexcept {
-  return controller->on_mode(request);
-}
-Refusal decide(ArmController* controller, const compliance_goal_t& goal) noexcept {
-  return controller->on_goal(goal);
-}
-Refusal decide(ArmController* controller, const compliance_gains_t& gains) noexcept {
-  return controller->on_gains(gains);
-}
-Refusal decide(ArmController* controller, const hand_goal_t& goal) noexcept {
-  return controller->on_hand(goal);
-}
-Refusal decide(ArmController* controller, const target_stream_t& stream) noexcept {
-  return controller->on_stream(stream);
-}
-Refusal decide(ArmController* controller, const torque_overlay_t& overlay) noexcept {
-  return controller->on_overlay(overlay);
-}
-
 // Many a second: only refusals are worth an answer.
 template <typename Request>
 constexpr bool kStreamed =
@@ -52,26 +33,26 @@ bool is_stop(const Request&) noexcept {
 
 RequestDesk::RequestDesk(ArmController* controller, LcmPort* user)
     : controller_(controller), user_(user), guard_(controller->status().controller) {
-  subscribe<mode_request_t>(channels::kModeRequest);
-  subscribe<compliance_goal_t>(channels::kComplianceGoal);
-  subscribe<compliance_gains_t>(channels::kComplianceGains);
-  subscribe<target_stream_t>(channels::kTargetStream);
-  subscribe<torque_overlay_t>(channels::kTorqueOverlay);
-  subscribe<hand_goal_t>(channels::kHandGoal);
+  subscribe(channels::kModeRequest, &ArmController::on_mode);
+  subscribe(channels::kComplianceGoal, &ArmController::on_goal);
+  subscribe(channels::kComplianceGains, &ArmController::on_gains);
+  subscribe(channels::kTargetStream, &ArmController::on_stream);
+  subscribe(channels::kTorqueOverlay, &ArmController::on_overlay);
+  subscribe(channels::kHandGoal, &ArmController::on_hand);
 }
 
 template <typename Request>
-void RequestDesk::subscribe(const char* channel) {
+void RequestDesk::subscribe(const char* channel, Decide<Request> decide) {
   const int queue = kStreamed<Request> ? kStreamQueue : kRequestQueue;
-  user_->subscribe<Request>(channel, queue, [this](const Request& request) {
-    const RequestOutcome outcome = outcome_of(request, judge(request));
+  user_->subscribe<Request>(channel, queue, [this, decide](const Request& request) {
+    const RequestOutcome outcome = outcome_of(request, judge(request, decide));
     if (kStreamed<Request> && !worth_an_answer(outcome)) return;
     answer(outcome, controller_->status().time_ns);
   });
 }
 
 template <typename Request>
-Refusal RequestDesk::judge(const Request& request) noexcept {
+Refusal RequestDesk::judge(const Request& request, Decide<Request> decide) noexcept {
   if (!is_stop(request)) {
     const Refusal refusal = guard_.check(request.controller, request.client, request.seq);
     if constexpr (std::is_same_v<Request, target_stream_t>) {
@@ -88,7 +69,7 @@ Refusal RequestDesk::judge(const Request& request) noexcept {
   if (const std::int64_t lease = controller_->lease();
       request.client != lease && client_gone(lease))
     controller_->free_lease();
-  return decide(controller_, request);
+  return (controller_->*decide)(request);
 }
 
 bool RequestDesk::worth_an_answer(const RequestOutcome& outcome) noexcept {

@@ -22,10 +22,12 @@ class RequestDesk {
 
  private:
   template <typename Request>
-  void subscribe(const char* channel);
+  using Decide = Refusal (ArmController::*)(const Request&) noexcept;
+  template <typename Request>
+  void subscribe(const char* channel, Decide<Request> decide);
   /// Guard first, then the controller.
   template <typename Request>
-  Refusal judge(const Request& request) noexcept;
+  Refusal judge(const Request& request, Decide<Request> decide) noexcept;
 
   /// A refusal, of which few a second are answered.
   bool worth_an_answer(const RequestOutcome& outcome) noexcept;

@@ -66,7 +66,7 @@ const Gains& GainScheduler::update(const Goal& goal, const LawEntry& law, bool h
                                    const ArmView& arm, double period_s) noexcept {
   take_ramped();
   if (holding) effective_.settings = default_settings();
-  if (!holding) {
+  if (!holding && scale_ != 1.0) {
     effective_.K_x *= scale_;
     effective_.K_q *= scale_;
   }

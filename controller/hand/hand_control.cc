@@ -25,7 +25,7 @@ HandControl::HandControl(const Robot& robot, std::int64_t controller)
 Refusal HandControl::check(const hand_goal_t& goal) const noexcept {
   if (!(std::isfinite(goal.width_m) && std::isfinite(goal.force_N) &&
         std::isfinite(goal.speed_m_per_s)))
-    return {request_answer_t::REFUSED_MALFORMED, "the goal of the hand is not finite"};
+    return malformed("the goal of the hand is not finite");
   const auto beyond = [](const char* reason) {
     return Refusal{request_answer_t::REFUSED_HAND_LIMIT, reason};
   };

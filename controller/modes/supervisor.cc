@@ -89,8 +89,7 @@ Refusal Supervisor::on_mode(const mode_request_t& request) noexcept {
   if (const Refusal refusal = check_client(request.client)) return refusal;
   const std::optional<Event> event = event_of(request.request);
   if (!event)
-    return {request_answer_t::REFUSED_MALFORMED,
-            "the request is none of idle, hold, active, stop, acknowledge, release"};
+    return malformed("the request is none of idle, hold, active, stop, acknowledge, release");
   if (event == Event::kRequestAcknowledge && steady_ < kSteadyStates) {
     return {request_answer_t::REFUSED_CAUSE_REMAINS,
             "the cause is not gone: the states are not steady yet"};

@@ -15,19 +15,19 @@ namespace limber::sim {
 inline void take_world_requests(LcmPort* user, Simulator* simulator,
                                 const std::function<void(const char*)>& complain) {
   constexpr int kQueue = 100;  // one now and then
-  user->subscribe<push_t>(channels::kPush, kQueue, [simulator, complain](const push_t& push) {
-    if (!simulator->push(push)) complain("a PUSH was refused (values, link, or no free slot)");
-  });
-  user->subscribe<scenario_event_t>(
-      channels::kScenarioEvent, kQueue, [simulator, complain](const scenario_event_t& event) {
-        if (!simulator->event(event))
-          complain("a SCENARIO_EVENT was refused (values out of range)");
-      });
-  user->subscribe<workpiece_t>(channels::kWorkpiece, kQueue,
-                               [simulator, complain](const workpiece_t& workpiece) {
-                                 if (!simulator->workpiece(workpiece))
-                                   complain("a WORKPIECE was refused (values out of range)");
-                               });
+  const auto take = [&]<typename Request>(const char* channel,
+                                          bool (Simulator::*change)(const Request&) noexcept,
+                                          const char* refused) {
+    user->subscribe<Request>(channel, kQueue,
+                             [simulator, complain, change, refused](const Request& request) {
+                               if (!(simulator->*change)(request)) complain(refused);
+                             });
+  };
+  take(channels::kPush, &Simulator::push, "a PUSH was refused (values, link, or no free slot)");
+  take(channels::kScenarioEvent, &Simulator::event,
+       "a SCENARIO_EVENT was refused (values out of range)");
+  take(channels::kWorkpiece, &Simulator::workpiece,
+       "a WORKPIECE was refused (values out of range)");
 }
 
 }  // namespace limber::sim

@@ -1,29 +1,18 @@
 // The `hand:` section: what a good one means, and one slip in it each.
 #include <cmath>
 
-#include "robots/loader/load_robot.h"
-#include "tests/support/mutation.h"
+#include "tests/robots/arm_folder.h"
 
 namespace limber::test_hand_yaml {
 namespace {
 
 using testing::Mutation;
 
-const std::string kData = LIMBER_SOURCE_DIR "/tests/robots/data/";
+const std::string& kData = testing::kArmData;
 
-std::string good_yaml() {
-  return testing::read_text(kData + "arm/robot.yaml") + testing::read_text(kData + "hand.yaml");
-}
+std::string good_yaml() { return testing::arm_yaml_with("hand.yaml"); }
 
-/// A robot.yaml beside the test arm's URDF.
-struct Folder {
-  explicit Folder(const std::string& yaml) {
-    folder.write("robot.urdf", testing::read_text(kData + "arm/robot.urdf"));
-    file = folder.write("robot.yaml", yaml);
-  }
-  testing::TemporaryFolder folder;
-  std::string file;
-};
+using Folder = testing::ArmFolder;
 
 TEST(HandYaml, Absent) {
   const Robot robot = load_robot(kData + "arm/").robot;
@@ -69,12 +58,7 @@ TEST(HandYaml, HoldsWithTheContinuousTorqueUnlessLess) {
 
 class HandRefusal : public ::testing::TestWithParam<Mutation> {};
 
-TEST_P(HandRefusal, NamesPlaceAndProblem) {
-  const testing::Mutated bad = testing::apply(good_yaml(), GetParam());
-  const Folder folder(bad.text);
-  const std::string complaint = testing::complaint_of([&] { load_robot(folder.folder.path()); });
-  testing::expect_complaint(complaint, folder.file, bad.line, GetParam().expect);
-}
+TEST_P(HandRefusal, NamesPlaceAndProblem) { testing::expect_refused(good_yaml(), GetParam()); }
 
 const Mutation kSlips[] = {
     {"UnknownKey", "  id: 8\n", "  id: 8\n  width: 3\n", "unknown key 'width'", 1},

@@ -1,30 +1,18 @@
 // The `tip_sensor:` section: what a good one means, and one slip in it each.
 #include <cmath>
 
-#include "robots/loader/load_robot.h"
-#include "tests/support/mutation.h"
+#include "tests/robots/arm_folder.h"
 
 namespace limber::test_tip_sensor_yaml {
 namespace {
 
 using testing::Mutation;
 
-const std::string kData = LIMBER_SOURCE_DIR "/tests/robots/data/";
+const std::string& kData = testing::kArmData;
 
-std::string good_yaml() {
-  return testing::read_text(kData + "arm/robot.yaml") +
-         testing::read_text(kData + "tip_sensor.yaml");
-}
+std::string good_yaml() { return testing::arm_yaml_with("tip_sensor.yaml"); }
 
-/// A robot.yaml beside the test arm's URDF.
-struct Folder {
-  explicit Folder(const std::string& yaml) {
-    folder.write("robot.urdf", testing::read_text(kData + "arm/robot.urdf"));
-    file = folder.write("robot.yaml", yaml);
-  }
-  testing::TemporaryFolder folder;
-  std::string file;
-};
+using Folder = testing::ArmFolder;
 
 TEST(TipSensorYaml, Absent) { EXPECT_FALSE(load_robot(kData + "arm/").robot.has_tip_sensor); }
 
@@ -76,12 +64,7 @@ TEST(TipSensorYaml, LimberFtOnTheFdBusWithAQuaternion) {
 
 class TipSensorRefusal : public ::testing::TestWithParam<Mutation> {};
 
-TEST_P(TipSensorRefusal, NamesPlaceAndProblem) {
-  const testing::Mutated bad = testing::apply(good_yaml(), GetParam());
-  const Folder folder(bad.text);
-  const std::string complaint = testing::complaint_of([&] { load_robot(folder.folder.path()); });
-  testing::expect_complaint(complaint, folder.file, bad.line, GetParam().expect);
-}
+TEST_P(TipSensorRefusal, NamesPlaceAndProblem) { testing::expect_refused(good_yaml(), GetParam()); }
 
 const Mutation kSlips[] = {
     {"UnknownKey", "  model: FT-1", "  model: FT-1\n  speed: 3", "unknown key 'speed'", 1},
@@ -136,10 +119,7 @@ TEST(TipSensorYaml, LivesBesideMoteusDrives) {
 }
 
 TEST_P(MoteusSensorRefusal, NamesTheDriveThatListens) {
-  const testing::Mutated bad = testing::apply(beside_moteus(), GetParam());
-  const Folder folder(bad.text);
-  const std::string complaint = testing::complaint_of([&] { load_robot(folder.folder.path()); });
-  testing::expect_complaint(complaint, folder.file, bad.line, GetParam().expect);
+  testing::expect_refused(beside_moteus(), GetParam());
 }
 
 const Mutation kListeners[] = {

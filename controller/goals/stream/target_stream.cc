@@ -59,12 +59,6 @@ int columns(const target_stream_t& message) noexcept {
   }
 }
 
-std::int64_t time_of(const target_stream_t& message, int knot, std::int64_t now_ns) noexcept {
-  const std::int64_t t0_ns = message.t0_ns == target_stream_t::NOW ? now_ns : message.t0_ns;
-  const double after_s = static_cast<double>(message.dt_s[knot]) + message.delay_s;
-  return t0_ns + std::llround(1e9 * after_s);
-}
-
 Eigen::Map<const Eigen::Matrix<float, 16, 1>> row(const target_stream_t& message, int knot) {
   return Eigen::Map<const Eigen::Matrix<float, 16, 1>>(message.value[knot]);
 }
@@ -92,7 +86,7 @@ Refusal check_times(const target_stream_t& message, std::int64_t now_ns) noexcep
   const std::int64_t ahead_ns =
       message.t0_ns == target_stream_t::NOW ? 0 : message.t0_ns - std::max<std::int64_t>(now_ns, 0);
   if (ahead_ns > TargetStream::kFarthest_ns ||
-      time_of(message, message.num_knots - 1, now_ns) - now_ns > TargetStream::kFarthest_ns)
+      TargetStream::end_ns(message, now_ns) - now_ns > TargetStream::kFarthest_ns)
     return beyond_goal_limit("knots are more than 5 s ahead: t0_ns counts arm time");
   return {};
 }
@@ -139,8 +133,7 @@ VectorJ braking_speed(const VectorJ& way) noexcept {
 }  // namespace
 
 TargetStream::TargetStream(const Robot& robot)
-    : limits_(robot),
-      position_min_(robot.size()),
+    : position_min_(robot.size()),
       position_max_(robot.size()),
       tip_(tip_bounds()),
       joints_(joint_bounds(robot)) {
@@ -169,7 +162,7 @@ Refusal TargetStream::check(const target_stream_t& message, GoalType type,
       scale != 0.0F && !(scale >= static_cast<float>(kSoftest) && scale <= 1.0F))
     return beyond_goal_limit("stiffness_scale must be 0, or within 0.05..1");
   const Vector6 F = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(message.F_ff).cast<double>();
-  if (const Refusal refusal = limits_.check_common(seconds_of(message.valid_for_s), F, type))
+  if (const Refusal refusal = GoalLimits::check_common(seconds_of(message.valid_for_s), F, type))
     return refusal;
   switch (message.kind) {
     case target_stream_t::KIND_POSE:
@@ -183,11 +176,13 @@ Refusal TargetStream::check(const target_stream_t& message, GoalType type,
 
 std::int64_t TargetStream::knot_ns(const target_stream_t& message, int knot,
                                    std::int64_t now_ns) noexcept {
-  return time_of(message, knot, now_ns);
+  const std::int64_t t0_ns = message.t0_ns == target_stream_t::NOW ? now_ns : message.t0_ns;
+  const double after_s = static_cast<double>(message.dt_s[knot]) + message.delay_s;
+  return t0_ns + std::llround(1e9 * after_s);
 }
 
 std::int64_t TargetStream::end_ns(const target_stream_t& message, std::int64_t now_ns) noexcept {
-  return time_of(message, message.num_knots - 1, now_ns);
+  return knot_ns(message, message.num_knots - 1, now_ns);
 }
 
 VectorJ TargetStream::joints_of(const target_stream_t& message, int knot) const noexcept {
@@ -223,7 +218,7 @@ bool TargetStream::take_joints(const target_stream_t& message, std::int64_t now_
     const VectorJ q = joints_of(message, i);
     const VectorJ wanted = row(message, i).head(q.size()).cast<double>();
     clipped_ = clipped_ || !(q - wanted).isZero(kClipped);
-    knots[static_cast<std::size_t>(i)] = {time_of(message, i, now_ns), q};
+    knots[static_cast<std::size_t>(i)] = {knot_ns(message, i, now_ns), q};
   }
   return joints_.take(std::span(knots).first(static_cast<std::size_t>(message.num_knots)));
 }
@@ -232,7 +227,7 @@ bool TargetStream::take_tip(const target_stream_t& message, const Pose* poses,
                             std::int64_t now_ns) noexcept {
   std::array<Knot<TipSpace>, kMostKnots> knots;
   for (int i = 0; i < message.num_knots; ++i) {
-    knots[static_cast<std::size_t>(i)] = {time_of(message, i, now_ns),
+    knots[static_cast<std::size_t>(i)] = {knot_ns(message, i, now_ns),
                                           poses != nullptr ? poses[i] : pose_of(message, i)};
   }
   return tip_.take(std::span(knots).first(static_cast<std::size_t>(message.num_knots)));
@@ -242,7 +237,7 @@ bool TargetStream::take_tip(const target_stream_t& message, const Pose* poses,
 bool TargetStream::take_twist(const target_stream_t& message, std::int64_t now_ns) noexcept {
   std::array<Knot<TipSpace>, kMostKnots + 1> knots;
   const int n = message.num_knots;
-  Knot<TipSpace> knot{time_of(message, 0, now_ns), {}};
+  Knot<TipSpace> knot{knot_ns(message, 0, now_ns), {}};
   knot.x = tip_.path_at(std::max(knot.time_ns, cycle_ns_)).x;
   Vector6 V = row(message, 0).head<6>().cast<double>();
   for (int i = 0; i < n; ++i) {
@@ -250,7 +245,7 @@ bool TargetStream::take_twist(const target_stream_t& message, std::int64_t now_n
     const bool last = i + 1 == n;
     const Vector6 next = row(message, last ? i : i + 1).head<6>().cast<double>();
     const std::int64_t then_ns =
-        last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s) : time_of(message, i + 1, now_ns);
+        last ? knot.time_ns + std::llround(1e9 * kTwistLasts_s) : knot_ns(message, i + 1, now_ns);
     const double dt_s = 1e-9 * static_cast<double>(then_ns - knot.time_ns);
     const Rates<Vector6> way{0.5 * dt_s * (V + next), Vector6::Zero(), Vector6::Zero()};
     knot = {then_ns, TipSpace::compose(way, TipSpace::at_rest(knot.x)).x};

@@ -74,7 +74,6 @@ class TargetStream {
   bool take_tip(const target_stream_t& message, const Pose* poses, std::int64_t now_ns) noexcept;
   bool take_twist(const target_stream_t& message, std::int64_t now_ns) noexcept;
 
-  GoalLimits limits_;
   VectorJ position_min_, position_max_;
   StreamMotion<TipSpace> tip_;
   StreamMotion<JointSpace> joints_;

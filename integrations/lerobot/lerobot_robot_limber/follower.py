@@ -8,7 +8,7 @@ from lerobot.robots.robot import Robot
 
 from limber import Arm
 from limber.live.arm_state import State
-from limber.model.rotations import between, quaternion_of, turned_about
+from limber.model.rotations import between, quaternion_about
 
 from .config import LimberFollowerConfig
 from .keys import FORCE, GRIPPER, POSE, STIFFNESS, TIP, Keys
@@ -97,7 +97,7 @@ class LimberFollower(Robot):
         if self.config.action == "pose":
             values = np.array([sent[key] for key in POSE])
             target["position_m"] = values[:3]
-            target["quaternion_wxyz"] = quaternion_of(turned_about(values[3:]))
+            target["quaternion_wxyz"] = quaternion_about(values[3:])
         else:
             pos = np.array([sent[key] for key in self._keys.of_joints("pos")])
             target["joints_rad"] = pos * self._keys.scale

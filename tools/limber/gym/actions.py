@@ -28,7 +28,7 @@ from limber.live import gains_message
 from limber.live.values import one_of
 from limber.messages import message_class
 from limber.model.robot import Robot
-from limber.model.rotations import between, product
+from limber.model.rotations import between, product, quaternion_about
 
 CONTROL_MODES = (
     "pd_joint_pos",
@@ -100,8 +100,8 @@ class Actions:
             q = np.clip(start.q + change, at.q - LEASH_JOINT, at.q + LEASH_JOINT)
             return Where(np.clip(q, *self.ends), at.p, at.quat)
         p = at.p + _shortened(start.p + change[:3] - at.p, LEASH_M)
-        turn = between(at.quat, product(_turn(change[3:]), start.quat))
-        quat = product(_turn(_shortened(turn, LEASH_RAD)), at.quat)
+        turn = between(at.quat, product(quaternion_about(change[3:]), start.quat))
+        quat = product(quaternion_about(_shortened(turn, LEASH_RAD)), at.quat)
         return Where(at.q, p, quat / np.linalg.norm(quat))
 
     def target(self, goal: Where, delay_s: float) -> Any:
@@ -134,9 +134,3 @@ class Actions:
 
 def _shortened(vector: Floats, longest: float) -> Floats:
     return vector * min(1.0, longest / max(float(np.linalg.norm(vector)), 1e-12))
-
-
-def _turn(vector: Floats) -> Floats:
-    """The quaternion of a rotation vector."""
-    half = 0.5 * float(np.linalg.norm(vector))
-    return np.concatenate([[np.cos(half)], 0.5 * vector * np.sinc(half / np.pi)])

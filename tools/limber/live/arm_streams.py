@@ -12,6 +12,7 @@ from limber.live.values import number, numbers
 
 TRANSPORT_S = 0.01
 VALID_S = 5.0
+ROWS = ("joints_rad", "position_m", "quaternion_wxyz", "twist")  # of a target: one row a knot
 
 
 class Stream:
@@ -41,9 +42,6 @@ class Stream:
         self._arm.chunk(
             np.zeros(1), start_s=time_s, delay_s=self.delay_s, valid_for_s=self.valid_for_s, **rows
         )
-
-
-ROWS = ("joints_rad", "position_m", "quaternion_wxyz", "twist")
 
 
 class Streams(ArmBase):

@@ -46,7 +46,7 @@ def goal(joints: int, **given: Any) -> Any:
     message.valid_for_s = number("valid_for_s", given.get("valid_for_s", 0.0), 0.0, LONGEST_S)
     message.quat_BD = [1.0, 0.0, 0.0, 0.0]
     if "GOAL_OFFSET" in ways:
-        message.offset = _six(given, "offset_m", "offset_rad")
+        message.offset = six(given, "offset_m", "offset_rad")
     if "GOAL_POSE" in ways:
         _both(given, "position_m", "quaternion_wxyz")
         message.p_BD = numbers("position_m", given["position_m"], (3,)).tolist()
@@ -59,7 +59,7 @@ def goal(joints: int, **given: Any) -> Any:
     if posture in given:
         message.q[:joints] = numbers(posture, given[posture], (joints,)).tolist()
         message.use_posture = int(posture == "posture_rad")
-    message.F_ff = _six(given, "force_N", "torque_Nm")
+    message.F_ff = six(given, "force_N", "torque_Nm")
     return message
 
 
@@ -76,7 +76,7 @@ def push(
     message = message_class("push_t")()
     message.id = number_
     message.link = link
-    message.wrench = _six({"force_N": force_N, "torque_Nm": torque_Nm}, "force_N", "torque_Nm")
+    message.wrench = six({"force_N": force_N, "torque_Nm": torque_Nm}, "force_N", "torque_Nm")
     message.duration_s = number("for_s", for_s, SHORTEST_PUSH_S, 60.0)
     message.ramp_s = number("ramp_s", ramp_s, 0.0, 0.5 * message.duration_s)
     return message
@@ -111,7 +111,8 @@ def _event(kind: str) -> Any:
     return message
 
 
-def _six(given: dict[str, Any], linear: str, angular: str) -> list[float]:
+def six(given: dict[str, Any], linear: str, angular: str) -> list[float]:
+    """Both halves of a six-vector; zero where one is not given."""
     halves = [given.get(key) for key in (linear, angular)]
     return [
         x

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from limber.arrays import Floats
 from limber.errors import InputError
+from limber.live.request_messages import LONGEST_S, six
 from limber.live.values import number, numbers
 from limber.messages import message_class
 
 MOST_KNOTS = 16
-LONGEST_S = 600.0
 
 
 def targets(joints: int, dt_s: Floats, given: dict[str, Any]) -> Iterator[Any]:
@@ -82,12 +82,8 @@ def _common(given: dict[str, Any]) -> dict[str, Any]:
     scale = given.pop("stiffness_scale", None)
     if scale is not None:
         fields["stiffness_scale"] = number("stiffness_scale", scale, 0.05, 1.0)
-    halves = [given.pop(key, None) for key in ("force_N", "torque_Nm")]
-    fields["F_ff"] = [
-        x
-        for key, half in zip(("force_N", "torque_Nm"), halves, strict=True)
-        for x in numbers(key, np.zeros(3) if half is None else half, (3,)).tolist()
-    ]
+    wrench = {key: given.pop(key, None) for key in ("force_N", "torque_Nm")}
+    fields["F_ff"] = six(wrench, "force_N", "torque_Nm")
     if given:
         raise InputError(f"{next(iter(given))!r} is no key of a target")
     return fields

@@ -59,11 +59,17 @@ def between(a: Floats, b: Floats) -> Floats:
     return turn[..., 1:] * np.where(size > 0, angle / np.where(size > 0, size, 1.0), 2.0)
 
 
-def turned_about(vector: Floats) -> Floats:
-    """R of rotation vectors."""
+def quaternion_about(vector: Floats) -> Floats:
+    """Quaternions of rotation vectors."""
     r = np.asarray(vector, float)
     half = 0.5 * np.linalg.norm(r, axis=-1, keepdims=True)
-    return matrix_of(np.concatenate([np.cos(half), 0.5 * r * np.sinc(half / np.pi)], axis=-1))
+    quats: Floats = np.concatenate([np.cos(half), 0.5 * r * np.sinc(half / np.pi)], axis=-1)
+    return quats
+
+
+def turned_about(vector: Floats) -> Floats:
+    """R of rotation vectors."""
+    return matrix_of(quaternion_about(vector))
 
 
 def mean(quats: Floats) -> Floats:

@@ -8,6 +8,7 @@ from limber.arrays import Floats
 from limber.errors import OK, OUT_OF_TOLERANCE
 from limber.live import network
 from limber.log.reader import Log, time_s
+from limber.messages import message_class
 from limber.model.scenario import Scenario, load_scenario
 from limber.paths import SCENARIOS, run_folder
 from limber.run import commands, runner
@@ -16,7 +17,6 @@ from limber.run.options import RunOptions
 SCENARIO = SCENARIOS / "policy.yaml"
 REST_M_PER_S = 1e-3
 MOST_PLACED_MM = 5.0
-ACTIVE = 4  # controller_status_t MODE_ACTIVE
 
 
 def demo(options: RunOptions, console: Console) -> int:
@@ -32,7 +32,7 @@ def demo(options: RunOptions, console: Console) -> int:
     finished = runner.run(scenario, folder, options, console)
     summary, _ = commands.summarize(finished, scenario)
     log = Log(finished.log)
-    found = measure(log, scenario)
+    found = Found(log, scenario)
     table = tables.table("<", ">", title="A policy with a soft arm", padding=(0, 1, 0, 0))
     for name, value in found.rows():
         table.add_row(name, value)
@@ -55,7 +55,7 @@ class Found:
         truth = log.read("HAND_TRUTH")
         self.t, self.goal = time_s(status), status["p_BD"].astype(float)
         self.tip = status["p_BT"].astype(float)
-        self.active = status["mode"] == ACTIVE
+        self.active = status["mode"] == message_class("controller_status_t").MODE_ACTIVE
         self.status = status
         self.hand_t, self.hand = time_s(hand), hand
         self.truth_t, self.block = time_s(truth), truth["p_BO"][:, 0].astype(float)
@@ -130,7 +130,3 @@ class Found:
             ("started again after", f"{self.again_s - self.killed_s:.1f} s, without a stop"),
             ("the block lies beside its place by", f"{self.placed_mm:.1f} mm"),
         ]
-
-
-def measure(log: Log, scenario: Scenario) -> Found:
-    return Found(log, scenario)

@@ -22,6 +22,7 @@ from limber.log.events import Event
 from limber.messages import message_class
 
 FPS = 30
+EVERY_US = 10_000  # of the log a row is kept
 SHORTEST_S = 1.0
 TASK = "limber"
 CHUNK = "chunk-000/file-000.parquet"
@@ -37,10 +38,10 @@ class Samples:
     rows: list[Floats] = field(default_factory=list)
 
     def add(self, stamps_us: np.ndarray, rows: np.ndarray) -> None:
-        for stamp, row in zip(stamps_us.tolist(), rows, strict=True):
-            if not self.stamps_us or stamp >= self.stamps_us[-1] + 10_000:
-                self.stamps_us.append(stamp)
-                self.rows.append(row)
+        before_us = self.stamps_us[-1] if self.stamps_us else -EVERY_US
+        chosen = np.diff(stamps_us // EVERY_US, prepend=before_us // EVERY_US) > 0
+        self.stamps_us += stamps_us[chosen].tolist()
+        self.rows += list(rows[chosen])
 
     def at(self, times_us: np.ndarray) -> Floats:
         """The newest row at each time."""
