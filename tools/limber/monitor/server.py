@@ -18,6 +18,7 @@ from websockets.http11 import Response
 
 from limber.errors import RunError
 from limber.monitor.field_values import keep_possible
+from limber.monitor.message_buffer import use_own_buffer
 from limber.monitor.page_link import PROTOCOL, PageLink
 from limber.paths import ASSETS
 
@@ -34,6 +35,7 @@ class Server(viser.ViserServer):
 
     def __init__(self, port: int) -> None:
         self.link = PageLink()
+        use_own_buffer()
         with _closed(self.link), redirect_stdout(io.StringIO()):
             super().__init__(host=HOST, port=port, label="limber", verbose=False)
         keep_possible(self.gui)
