@@ -137,7 +137,7 @@ def test_one_wrong_case_of_a_list_is_named_and_nothing_is_printed():
 def test_an_unknown_law_lists_all():
     done = run(json.dumps(case("impedance", {})))
     names = run("", "--list").stdout.split()
-    assert len(names) == 31
+    assert len(names) == 32
     assert all(f"{name}" in done.stderr for name in names)
 
 
