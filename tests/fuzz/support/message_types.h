@@ -2,27 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limber/compliance_gains_t.hpp>
-#include <limber/compliance_goal_t.hpp>
-#include <limber/controller_status_t.hpp>
-#include <limber/driver_status_t.hpp>
-#include <limber/hand_goal_t.hpp>
-#include <limber/hand_state_t.hpp>
-#include <limber/hand_truth_t.hpp>
-#include <limber/joint_command_t.hpp>
-#include <limber/joint_state_t.hpp>
-#include <limber/law_parameter_t.hpp>
-#include <limber/mode_request_t.hpp>
-#include <limber/push_t.hpp>
-#include <limber/request_answer_t.hpp>
-#include <limber/robot_info_t.hpp>
-#include <limber/scenario_event_t.hpp>
-#include <limber/sim_truth_t.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "common/decode_message.h"
+#include "fuzz/message_list.h"
 
 namespace limber::fuzz {
 
@@ -47,16 +32,9 @@ MessageType message_type() {
 
 /// Type `number` (counted round) in alphabetical order.
 inline const MessageType& message_type_of(std::uint8_t number) {
-  static const MessageType kTypes[] = {
-      message_type<compliance_gains_t>(),  message_type<compliance_goal_t>(),
-      message_type<controller_status_t>(), message_type<driver_status_t>(),
-      message_type<hand_goal_t>(),         message_type<hand_state_t>(),
-      message_type<hand_truth_t>(),        message_type<joint_command_t>(),
-      message_type<joint_state_t>(),       message_type<law_parameter_t>(),
-      message_type<mode_request_t>(),      message_type<push_t>(),
-      message_type<request_answer_t>(),    message_type<robot_info_t>(),
-      message_type<scenario_event_t>(),    message_type<sim_truth_t>(),
-  };
+#define LIMBER_MESSAGE_TYPE(name) message_type<name>(),
+  static const MessageType kTypes[] = {LIMBER_MESSAGES(LIMBER_MESSAGE_TYPE)};
+#undef LIMBER_MESSAGE_TYPE
   return kTypes[number % std::size(kTypes)];
 }
 
