@@ -14,6 +14,7 @@
 #include "qa/faults/fault_table.h"
 #include "robots/loader/required_keys.h"
 #include "scenarios/loader/scenario.h"
+#include "tests/support/source_path.h"
 #include "tools/can/bus_decoder.h"
 #include "tools/can/dbc_messages.h"
 
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 class AddedFamily : public ::testing::Test {
  protected:
   AddedFamily() : folder_(fs::path(::testing::TempDir()) / "toy2r") {
-    const fs::path planar = fs::path(LIMBER_SOURCE_DIR) / "robots" / "planar2r";
+    const fs::path planar = source_path("robots/planar2r");
     fs::create_directories(folder_);
     fs::copy_file(planar / "robot.urdf", folder_ / "robot.urdf",
                   fs::copy_options::overwrite_existing);

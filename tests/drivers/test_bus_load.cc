@@ -13,6 +13,7 @@
 #include "drivers/protocols/robotous_rft.h"
 #include "robots/loader/load_robot.h"
 #include "robots/loader/protocols/drive_protocol.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_bus_load {
 namespace {
@@ -216,7 +217,7 @@ TEST(BusLoad, BytesOfTheTraitsAreThoseOfTheFrames) {
 // With every frame at its longest, and the usual load is less.
 TEST(BusLoad, EveryBusOfEveryShippedRobotIsUsedToFourFifthsAtMost) {
   int buses = 0;
-  for (const auto& folder : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/robots")) {
+  for (const auto& folder : std::filesystem::directory_iterator(source_path("robots"))) {
     if (!exists(folder.path() / "robot.yaml")) continue;
     const Robot robot = load_robot(folder.path()).robot;
     for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus, ++buses)

@@ -3,11 +3,12 @@
 #include "lecture/eval/evaluate.h"
 #include "tests/fuzz/support/fuzz_input.h"
 #include "tests/fuzz/support/require.h"
+#include "tests/support/source_path.h"
 
 using namespace limber;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static eval::Arms arms(LIMBER_SOURCE_DIR "/robots/planar2r");
+  static eval::Arms arms(source_path("robots/planar2r"));
   try {
     const eval::Json outputs =
         eval::evaluate(eval::parse(std::string(fuzz::text_of(data, size))), &arms);

@@ -7,6 +7,7 @@
 #include "tests/fuzz/support/fuzz_input.h"
 #include "tests/fuzz/support/input_file.h"
 #include "tests/fuzz/support/require.h"
+#include "tests/support/source_path.h"
 
 using namespace limber;
 
@@ -16,7 +17,7 @@ namespace {
 struct Folder {
   fuzz::InputFile file{"robot.yaml"};
   Folder() {
-    std::filesystem::copy_file(LIMBER_SOURCE_DIR "/tests/robots/data/arm/robot.urdf",
+    std::filesystem::copy_file(source_path("tests/robots/data/arm/robot.urdf"),
                                file.folder() + "/robot.urdf");
   }
 };

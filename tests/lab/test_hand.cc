@@ -9,6 +9,7 @@
 #include "drivers/protocols/mit.h"
 #include "lab/lab.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
 namespace limber::test_hand {
@@ -92,7 +93,7 @@ class HandStage {
   int mode() { return lab->controller_status().mode; }
 
   LoadedRobot load(const Family& family) {
-    const std::string from = std::string(LIMBER_SOURCE_DIR "/robots/") + family.robot + "/";
+    const std::string from = source_path("robots/") + family.robot + "/";
     folder.write("robot.urdf", testing::read_text(from + "robot.urdf"));
     const Mutation motor = {"", "\njoints:", std::string(family.motor) + "\njoints:", ""};
     folder.write("robot.yaml", testing::apply(testing::read_text(from + "robot.yaml"), motor).text +

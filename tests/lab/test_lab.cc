@@ -10,12 +10,13 @@
 #include "common/config_error.h"
 #include "controller/laws/registry.h"
 #include "lab/lab.h"
+#include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
 namespace limber::test_lab {
 namespace {
 
-const std::string kScenarios = std::string(LIMBER_SOURCE_DIR) + "/scenarios/";
+const std::string kScenarios = source_path("scenarios/");
 
 struct Stage {
   explicit Stage(const std::string& name)

@@ -11,6 +11,7 @@
 #include "controller/observers/tip_force.h"
 #include "lab/lab.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
 namespace limber::test_tip_sensor {
@@ -18,7 +19,7 @@ namespace {
 
 using testing::Mutation;
 
-const std::string kOpenArm = LIMBER_SOURCE_DIR "/robots/openarm/";
+const std::string kOpenArm = source_path("robots/openarm/");
 
 /// Half the hand's 0.386 kg is tool. The seven motors leave no room for a sensor on their bus: it
 /// has one of its own.

@@ -5,10 +5,11 @@
 
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::testing {
 
-inline const std::string kArmData = LIMBER_SOURCE_DIR "/tests/robots/data/";
+inline const std::string kArmData = source_path("tests/robots/data/");
 
 /// Its robot.yaml, and a file of `data/` behind it.
 inline std::string arm_yaml_with(const std::string& section) {

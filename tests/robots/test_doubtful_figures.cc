@@ -5,13 +5,14 @@
 
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_doubtful_figures {
 namespace {
 
 using testing::Mutation;
 
-const std::string kArm = LIMBER_SOURCE_DIR "/robots/desktop2r";
+const std::string kArm = source_path("robots/desktop2r");
 
 std::vector<std::string> notes(const std::string& yaml, const std::string& urdf) {
   const testing::TemporaryFolder folder;

@@ -6,6 +6,7 @@
 
 #include "robots/loader/load_robot.h"
 #include "tests/robots/arm_terms.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_elastic_robots {
 namespace {
@@ -77,7 +78,7 @@ TEST(ElasticRobots, MoveAsAnotherLibrarySays) {
 }
 
 TEST(ElasticRobots, TestbenchIsAPendulumWithRoundFigures) {
-  const std::string folder = LIMBER_SOURCE_DIR "/robots/testbench/";
+  const std::string folder = source_path("robots/testbench/");
   const double gravity[3] = {0.0, -7.0, 0.0};
   const LoadedRobot bench = load_urdf(folder + "robot.urdf", "base", "tip", gravity);
   for (const double q : {0.0, 0.7, -2.0}) {

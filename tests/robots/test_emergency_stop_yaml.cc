@@ -1,11 +1,12 @@
 // The `emergency_stop:` section: what a good one means, and one slip in it each.
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_emergency_stop_yaml {
 namespace {
 
-const std::string kData = LIMBER_SOURCE_DIR "/tests/robots/data/";
+const std::string kData = source_path("tests/robots/data/");
 
 /// A robot.yaml beside the test arm's URDF, with this section.
 struct Folder {

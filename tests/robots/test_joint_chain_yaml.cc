@@ -4,13 +4,14 @@
 #include "robots/loader/load_robot.h"
 #include "robots/loader/protocols/drive_protocol.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_joint_chain_yaml {
 namespace {
 
 using testing::Mutation;
 
-const std::string kData = LIMBER_SOURCE_DIR "/tests/robots/data/";
+const std::string kData = source_path("tests/robots/data/");
 
 std::string good_yaml() {
   const std::string yaml = testing::read_text(kData + "chain/robot.yaml");

@@ -7,6 +7,7 @@
 #include "robots/loader/protocols/drive_protocol.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_load_robot {
 namespace {
@@ -98,7 +99,7 @@ TEST(LoadRobot, Ideal7IsTheArmOfItsTables) {
 TEST(LoadRobot, TextbookArmHasItsClosedForm) {
   const double gravity[3] = {0.0, -9.81, 0.0};
   const LoadedRobot arm =
-      load_urdf(LIMBER_SOURCE_DIR "/tests/robots/data/siciliano.urdf", "base", "tip", gravity);
+      load_urdf(source_path("tests/robots/data/siciliano.urdf"), "base", "tip", gravity);
   expect_planar(arm, {1, 1, 0.5, 0.5, 50, 50, 10, 10, 5});
   EXPECT_NEAR(terms_at(arm, {0, 0}).g[0], 1030.05, 1e-10);
 }
@@ -142,7 +143,7 @@ TEST(LoadRobot, ShippedHomesAreEasyToHold) {
 }
 
 TEST(LoadRobot, MoteusDrivesAreRead) {
-  const Robot robot = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/moteus").robot;
+  const Robot robot = load_robot(source_path("tests/robots/data/moteus")).robot;
   const DriveConfig& turn = robot.joints[0].drive;
   EXPECT_EQ(turn.protocol, &protocol_named("moteus"));
   EXPECT_EQ(turn.command_id, 0x8003U);
@@ -165,7 +166,7 @@ TEST(LoadRobot, MoteusDrivesAreRead) {
 
 class ArmOfTheTests : public ::testing::Test {
  protected:
-  const Robot robot_ = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/arm").robot;
+  const Robot robot_ = load_robot(source_path("tests/robots/data/arm")).robot;
 };
 
 TEST_F(ArmOfTheTests, TightestLimitHolds) {

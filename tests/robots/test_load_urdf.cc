@@ -12,6 +12,7 @@
 #include "robots/loader/sample_pose.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_load_urdf {
 namespace {
@@ -322,7 +323,7 @@ TEST(LoadUrdf, SixteenJoints) {
 
 TEST(LoadUrdf, BareUrdfHasNoDrivesAndAHomeInside) {
   const LoadedRobot arm =
-      load_urdf(LIMBER_SOURCE_DIR "/tests/robots/data/arm/robot.urdf", "world", "hand", kDown);
+      load_urdf(source_path("tests/robots/data/arm/robot.urdf"), "world", "hand", kDown);
   EXPECT_FALSE(arm.robot.has_drives);
   EXPECT_EQ(arm.robot.joints[0].home, 0.0);
   EXPECT_EQ(arm.robot.joints[0].torque_limit_Nm, 20.0);

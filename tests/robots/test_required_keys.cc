@@ -9,11 +9,12 @@
 #include "robots/loader/load_robot.h"
 #include "robots/loader/required_keys.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_required_keys {
 namespace {
 
-const std::string kRobots = LIMBER_SOURCE_DIR "/robots/";
+const std::string kRobots = source_path("robots/");
 
 /// One of each protocol.
 const char* const kNames[] = {"desktop2r", "planar2r", "iiwa14", "openarm_right"};

@@ -9,6 +9,7 @@
 #include "robots/loader/sample_pose.h"
 #include "tests/robots/arm_terms.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_urdf_notes {
 namespace {
@@ -17,7 +18,7 @@ using testing::Mutation;
 using testing::terms_at;
 
 const double kGravity[3] = {0.0, 0.0, -9.81};
-const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm";
+const std::string kArm = source_path("tests/robots/data/arm");
 
 std::string good_urdf() { return testing::read_text(kArm + "/robot.urdf"); }
 

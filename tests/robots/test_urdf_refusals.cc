@@ -3,6 +3,7 @@
 
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_urdf_refusals {
 namespace {
@@ -12,7 +13,7 @@ using testing::Mutation;
 const double kGravity[3] = {0.0, 0.0, -9.81};
 
 std::string good_urdf() {
-  return testing::read_text(LIMBER_SOURCE_DIR "/tests/robots/data/arm/robot.urdf");
+  return testing::read_text(source_path("tests/robots/data/arm/robot.urdf"));
 }
 
 class UrdfRefusal : public ::testing::TestWithParam<Mutation> {};
@@ -181,7 +182,7 @@ TEST(UrdfRefusals, BaseAndTip) {
 }
 
 TEST(UrdfRefusals, GravityOfAnotherPlanet) {
-  const std::string file = LIMBER_SOURCE_DIR "/tests/robots/data/arm/robot.urdf";
+  const std::string file = source_path("tests/robots/data/arm/robot.urdf");
   for (const double g : {-981.0, std::nan(""), HUGE_VAL}) {
     const double gravity[3] = {0.0, 0.0, g};
     EXPECT_TRUE(contains(testing::complaint_of([&] { load_urdf(file, "base", "hand", gravity); }),

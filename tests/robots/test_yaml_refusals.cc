@@ -1,13 +1,14 @@
 // One slip in a good robot.yaml each: the complaint names file, line and key.
 #include "robots/loader/load_robot.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_yaml_refusals {
 namespace {
 
 using testing::Mutation;
 
-const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm/";
+const std::string kArm = source_path("tests/robots/data/arm/");
 
 std::string good_yaml() { return testing::read_text(kArm + "robot.yaml"); }
 
@@ -147,8 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Joints, RobotYamlRefusal, ::testing::ValuesIn(kJoints),
 
 /// An arm with two moteus drives and a Damiao on a slide.
 std::string good_moteus_yaml() {
-  const std::string text =
-      testing::read_text(LIMBER_SOURCE_DIR "/tests/robots/data/moteus/robot.yaml");
+  const std::string text = testing::read_text(source_path("tests/robots/data/moteus/robot.yaml"));
   return testing::apply(text, {"", "../arm/robot.urdf", kArm + "robot.urdf", ""}).text;
 }
 

@@ -10,6 +10,7 @@
 #include "robots/loader/load_robot.h"
 #include "scenarios/loader/gains_yaml.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_gains_merge {
 namespace {
@@ -124,7 +125,7 @@ TEST(GainsMerge, UnknownNamesAreFound) {
 }
 
 TEST(GainsMerge, AnEntryNamesWhatItHolds) {
-  const LoadedRobot arm = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/arm");
+  const LoadedRobot arm = load_robot(source_path("tests/robots/data/arm"));
   const auto read = [&](const std::string& text) {
     return read_gains_entry(YamlMap::from_text(text, "entry"), arm.robot,
                             controller::law_catalog());

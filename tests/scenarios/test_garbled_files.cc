@@ -4,6 +4,7 @@
 #include "controller/laws/registry.h"
 #include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_garbled_files {
 namespace {
@@ -11,8 +12,8 @@ namespace {
 constexpr int kRounds = 1000;
 constexpr std::uint64_t kSeed = 20240229;
 
-const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm/";
-const std::string kScenario = LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml";
+const std::string kArm = source_path("tests/robots/data/arm/");
+const std::string kScenario = source_path("tests/scenarios/data/good.yaml");
 
 /// Pieces that readers stumble over.
 const std::string kPieces[] = {

@@ -12,6 +12,7 @@
 #include "scenarios/loader/gains_yaml.h"
 #include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_law_keys {
 namespace {
@@ -20,10 +21,10 @@ using controller::law_catalog;
 using testing::Mutation;
 using Gains = compliance_gains_t;
 
-const std::string kGood = LIMBER_SOURCE_DIR "/tests/scenarios/data/laws.yaml";
+const std::string kGood = source_path("tests/scenarios/data/laws.yaml");
 
 const LoadedRobot& arm() {
-  static const LoadedRobot robot = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/arm");
+  static const LoadedRobot robot = load_robot(source_path("tests/robots/data/arm"));
   return robot;
 }
 
@@ -192,7 +193,7 @@ TEST(GainTable, EveryFieldHasARow) {
   std::vector<GainField> fields;
   for (const GainRow& row : gain_table()) fields.push_back(row.field);
   fields.push_back(ramp_row().field);
-  const std::string lcm = testing::read_text(LIMBER_SOURCE_DIR "/lcmtypes/compliance_gains_t.lcm");
+  const std::string lcm = testing::read_text(source_path("lcmtypes/compliance_gains_t.lcm"));
   int declared = 0;
   for (std::size_t at = 0; (at = lcm.find(";\n", at)) != std::string::npos; ++at) {
     const std::size_t start = lcm.rfind('\n', at) + 1;

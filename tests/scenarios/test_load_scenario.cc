@@ -9,12 +9,13 @@
 #include "lcmtypes/gains_merge.h"
 #include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
 namespace limber::test_load_scenario {
 namespace {
 
-const std::string kGood = LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml";
+const std::string kGood = source_path("tests/scenarios/data/good.yaml");
 
 class GoodScenario : public ::testing::Test {
  protected:
@@ -258,7 +259,7 @@ TEST(LoadScenario, EntriesMayStandInAnyOrder) {
 
 TEST(LoadScenario, ShippedScenariosLoad) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/scenarios")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_path("scenarios"))) {
     if (entry.path().extension() != ".yaml") continue;
     const LoadedRobot robot = load_robot(scenario_robot(entry.path()));
     const Scenario scenario = load_scenario(entry.path(), robot, &controller::law_catalog());

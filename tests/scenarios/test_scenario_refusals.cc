@@ -2,6 +2,7 @@
 #include "controller/laws/registry.h"
 #include "scenarios/loader/scenario.h"
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_scenario_refusals {
 namespace {
@@ -9,11 +10,11 @@ namespace {
 using testing::Mutation;
 
 std::string good_scenario() {
-  return testing::read_text(LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml");
+  return testing::read_text(source_path("tests/scenarios/data/good.yaml"));
 }
 
 const LoadedRobot& arm() {
-  static const LoadedRobot robot = load_robot(LIMBER_SOURCE_DIR "/tests/robots/data/arm");
+  static const LoadedRobot robot = load_robot(source_path("tests/robots/data/arm"));
   return robot;
 }
 

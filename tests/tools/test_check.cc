@@ -9,13 +9,14 @@
 #include <filesystem>
 
 #include "tests/support/mutation.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_check {
 namespace {
 
-const std::string kArm = LIMBER_SOURCE_DIR "/tests/robots/data/arm";
+const std::string kArm = source_path("tests/robots/data/arm");
 const std::string kUrdf = kArm + "/robot.urdf";
-const std::string kScenario = LIMBER_SOURCE_DIR "/tests/scenarios/data/good.yaml";
+const std::string kScenario = source_path("tests/scenarios/data/good.yaml");
 
 struct Outcome {
   int status = -1;  ///< exit status; 1000 + signal if it crashed
@@ -69,11 +70,11 @@ TEST(Check, NotesAStartInASoftWallOrAtItsEdge) {
 
 TEST(Check, TellsWhichWayAContinuousJointTurns) {
   const testing::TemporaryFolder folder;
-  std::string urdf = testing::read_text(LIMBER_SOURCE_DIR "/robots/desktop2r/robot.urdf");
+  std::string urdf = testing::read_text(source_path("robots/desktop2r/robot.urdf"));
   const std::string type = "type=\"revolute\"";
   for (std::size_t at; (at = urdf.find(type)) != std::string::npos;)
     urdf.replace(at, type.size(), "type=\"continuous\"");
-  std::string yaml = testing::read_text(LIMBER_SOURCE_DIR "/robots/desktop2r/robot.yaml");
+  std::string yaml = testing::read_text(source_path("robots/desktop2r/robot.yaml"));
   for (const char* home : {"    home_rad: -1.2", "    home_rad: 1.4"})
     yaml.replace(yaml.find(home), 4, "    position_min_rad: -6\n    position_max_rad: 6\n    ");
   folder.write("robot.urdf", urdf);
@@ -102,7 +103,7 @@ TEST(Check, TellsOfAShippedRobot) {
 }
 
 TEST(Check, TellsOfSpringsSensorsAndLoops) {
-  const Outcome outcome = check("robot " LIMBER_SOURCE_DIR "/tests/robots/data/chain");
+  const Outcome outcome = check("robot " + source_path("tests/robots/data/chain"));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(contains(outcome.output, "4000 d + 900 d^3")) << outcome.output;
   EXPECT_TRUE(contains(outcome.output, "400 d^2/2"));
@@ -119,7 +120,7 @@ TEST(Check, RigidArmHasNoTableOfSprings) {
 TEST(Check, FindsRobotsByFolderAndByEnvironment) {
   EXPECT_EQ(check("robot " + kArm).status, 0);
   EXPECT_EQ(check("robot " + kArm + "/").status, 0);
-  ::setenv("LIMBER_ROBOTS", LIMBER_SOURCE_DIR "/tests/robots/data", 1);
+  ::setenv("LIMBER_ROBOTS", source_path("tests/robots/data").c_str(), 1);
   EXPECT_EQ(check("robot arm").status, 0);
   EXPECT_TRUE(contains(check("robot openarm").output, "one of: arm"));
   ::unsetenv("LIMBER_ROBOTS");
@@ -137,7 +138,7 @@ TEST(Check, WarnsOfARateLimitThatLimitsNothing) {
                                           {"3400", "socketcan:can0", false},
                                           {"3600", "virtual:desktop2r", false}}) {
     const testing::TemporaryFolder folder;
-    const std::string robot = LIMBER_SOURCE_DIR "/robots/desktop2r/";
+    const std::string robot = source_path("robots/desktop2r/");
     folder.write("robot.urdf", testing::read_text(robot + "robot.urdf"));
     std::string yaml = testing::read_text(robot + "robot.yaml");
     yaml = testing::apply(yaml, {"", "virtual:desktop2r", can, ""}).text;
@@ -158,7 +159,7 @@ TEST(Check, RefusesABusThatCannotCarryTheArm) {
   // Seven joints on a classic bus at 1 kHz: 14 frames of 135 bits are 189 % of 1 Mbit/s, two more
   // every 20 cycles, for a setting, 1.35 %.
   const testing::TemporaryFolder folder;
-  const std::string openarm = LIMBER_SOURCE_DIR "/robots/openarm/";
+  const std::string openarm = source_path("robots/openarm/");
   folder.write("robot.urdf", testing::read_text(openarm + "robot.urdf"));
   folder.write("robot.yaml",
                testing::apply(testing::read_text(openarm + "robot.yaml"),
@@ -347,8 +348,7 @@ TEST(Check, ForetellsEveryRequestThatIsRefused) {
 }
 
 TEST(Check, NoShippedScenarioIsRefused) {
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(LIMBER_SOURCE_DIR) + "/scenarios")) {
+  for (const auto& file : std::filesystem::directory_iterator(source_path("scenarios"))) {
     if (file.path().extension() != ".yaml") continue;
     const Outcome outcome = check("scenario " + file.path().string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;

@@ -22,6 +22,7 @@
 #include "drivers/can/virtual_frame.h"
 #include "tests/drivers/can/private_network.h"
 #include "tests/support/bus_frames.h"
+#include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
 namespace limber::test_virtual_bus {
@@ -290,7 +291,7 @@ TEST(PythonCan, HearsUsAndWeHearIt) {
   constexpr std::uint32_t kGoodbye = 0x700;
   const auto bus = open_can_bus("virtual:python", true);
   const std::string command = std::string(LIMBER_PYTHON) + " " +
-                              LIMBER_SOURCE_DIR "/tests/drivers/can/python_can_peer.py " +
+                              source_path("tests/drivers/can/python_can_peer.py") + " " +
                               virtual_bus_group("python") + " " + kPort;
   const std::unique_ptr<FILE, int (*)(FILE*)> peer(popen(command.c_str(), "r"), pclose);
   ASSERT_NE(peer, nullptr);

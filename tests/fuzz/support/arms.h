@@ -4,13 +4,14 @@
 #include <string>
 
 #include "robots/loader/load_robot.h"
+#include "tests/support/source_path.h"
 
 namespace limber::fuzz {
 
 /// A robot of tests/robots/data, or a shipped one. The first call loads it.
 inline LoadedRobot load(const std::string& name) {
   const bool shipped = name.find('/') == std::string::npos;
-  return load_robot(shipped ? LIMBER_SOURCE_DIR "/robots/" + name : LIMBER_SOURCE_DIR "/" + name);
+  return load_robot(source_path(shipped ? "robots/" + name : name));
 }
 
 inline const JointConfig& joint_of(const Robot& robot, std::size_t joint) {

@@ -5,12 +5,13 @@
 
 #include "qa/soak/soak.h"
 #include "qa/soak/soak_report.h"
+#include "tests/support/source_path.h"
 
 namespace limber::test_soak {
 namespace {
 
 const LoadedRobot& planar2r() {
-  static const LoadedRobot robot = load_robot(LIMBER_SOURCE_DIR "/robots/planar2r");
+  static const LoadedRobot robot = load_robot(source_path("robots/planar2r"));
   return robot;
 }
 
@@ -45,7 +46,7 @@ TEST(Soak, AcceptedRequestsCarryNoJointPastItsLimits) {
   };
   for (const auto& [name, seed, arm_s] :
        {Case{"baxter", 1, 25.0}, {"antagonist2r", 31, 6.0}, {"openarm", 11, 103.0}}) {
-    const LoadedRobot robot = load_robot(std::string(LIMBER_SOURCE_DIR "/robots/") + name);
+    const LoadedRobot robot = load_robot(source_path("robots/") + name);
     soak::Soak soak(robot, seed, soak::Habit::kAnything);
     const soak::SoakResult result = soak.run(arm_s, [] { return true; });
     EXPECT_TRUE(result.violations.empty()) << name << ": " << result.violations.front();
