@@ -17,8 +17,9 @@ constexpr double kWallTorqueAtLimit = 0.5;  // share of the torque limit
 constexpr double kWallDampingRatio = 0.7;
 // Its natural frequency times the period: an answer that is two cycles old still damps.
 constexpr double kWallTurnPerCycle_rad = 0.15;
-constexpr double kLeadsOut = 0.1;   // rad/s or m/s
-constexpr double kFadesFrom = 0.5;  // of the wall
+constexpr double kLeadsOut = 0.1;    // rad/s or m/s
+constexpr double kLeadsAhead = 0.1;  // of the wall
+constexpr double kFadesFrom = 0.5;   // of the wall
 
 template <typename Member>
 VectorJ collect(const Robot& robot, Member member) {
@@ -96,9 +97,15 @@ void JointLimits::rest(const VectorJ& q) noexcept {
   now_.high = place_.high.cwiseMax(q);
 }
 
-void JointLimits::lead_out(double period_s) noexcept {
-  now_.low = place_.low.cwiseMin((now_.low.array() + kLeadsOut * period_s).matrix());
-  now_.high = place_.high.cwiseMax((now_.high.array() - kLeadsOut * period_s).matrix());
+void JointLimits::lead_out(const VectorJ& q, double period_s) noexcept {
+  const double step = kLeadsOut * period_s;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double ahead = kLeadsAhead * wall_[i];
+    const double low = std::min(now_.low[i] + step, std::max(q[i] + ahead, now_.low[i]));
+    const double high = std::max(now_.high[i] - step, std::min(q[i] - ahead, now_.high[i]));
+    now_.low[i] = std::min(low, place_.low[i]);
+    now_.high[i] = std::max(high, place_.high[i]);
+  }
 }
 
 VectorJ JointLimits::walls(const ArmState& state, const MatrixJ& M) const noexcept {

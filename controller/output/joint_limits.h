@@ -20,7 +20,8 @@ namespace limber::controller {
 ///             that it would swing by more than 0.15 rad of phase a cycle), and a damper against
 ///             motion into the wall (of the motor where it has a spring before it). A joint that
 ///             the torque finds in its wall is led out: there the wall begins where it is, and
-///             moves back to its place at 0.1 rad/s (m/s);
+///             moves back to its place at 0.1 rad/s (m/s), a tenth of its width before the joint
+///             at most: what holds the joint against it, a bench or a hand, may let go at once;
 ///   power     where the net power of all joints would exceed the arm's limit, the torque beyond
 ///             what carries the weight is scaled down to it, by one factor for all joints;
 ///   position  in the inner half of the wall what else pushes outwards fades, to zero at the end:
@@ -43,8 +44,8 @@ class JointLimits {
 
   /// The arm is without a law: walls begin where joints are in them. In the cycle.
   void rest(const VectorJ& q) noexcept;
-  /// Such walls move on to their place. Once a cycle, in it.
-  void lead_out(double period_s) noexcept;
+  /// Such walls move on to their place, and no further before joints at q. Once a cycle, in it.
+  void lead_out(const VectorJ& q, double period_s) noexcept;
   /// Torque of the walls alone, n, N m. In the cycle.
   VectorJ walls(const ArmState& state, const MatrixJ& M) const noexcept;
   /// Power and position: changes `tau`, of which `walls` is a part, returns the LIMIT_* bits that

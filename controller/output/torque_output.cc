@@ -8,7 +8,7 @@ bool TorqueOutput::shape(VectorJ tau, const VectorJ* preload, const ArmState& st
                          const ArmTerms& terms, const VectorJ& deflection, double dt_s,
                          std::int32_t* limits) noexcept {
   blend_.advance(dt_s, state.v_reported);
-  limits_.lead_out(state.period_s);
+  limits_.lead_out(state.q, state.period_s);
   walls_ = limits_.walls(state, terms.M_total);
   tau += walls_;
   *limits |= limits_.shape(state, terms, walls_, &tau);

@@ -81,9 +81,9 @@ bool EncoderWatch::Rest::stretched(double sensor_Nm, double most_Nm, double dt_s
   return contradicts_s >= kStood_s;
 }
 
-bool EncoderWatch::held_by_push(const joint_state_t& state, int i, double load_Nm,
-                                const MatrixJ& M) const noexcept {
+double EncoderWatch::held_Nm(const joint_state_t& state, int i, const MatrixJ& M) const noexcept {
   const Rest& rest = *joints_[static_cast<std::size_t>(i)].rest;
+  double held = 0.0;
   for (int k = 0; k < state.num_joints; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const double way = state.theta[k] - rest.thetas[at];
@@ -91,11 +91,10 @@ bool EncoderWatch::held_by_push(const joint_state_t& state, int i, double load_N
     const double along = std::copysign(1.0, way);
     const double residual = observer_.residual()[k];
     const double push_Nm = std::min(along * residual, along * (residual - rest.residual[k]));
-    if (push_Nm > kFeltShare * joints_[at].friction_Nm &&
-        push_Nm * std::sqrt(M(i, i)) >= std::abs(load_Nm) * std::sqrt(M(k, k)))
-      return true;
+    if (push_Nm > kFeltShare * joints_[at].friction_Nm)
+      held = std::max(held, kHeldShare * push_Nm * std::sqrt(M(i, i) / M(k, k)));
   }
-  return false;
+  return held;
 }
 
 int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept {
@@ -121,13 +120,14 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
-    rest->move(tau / M_ii, rest->sudden ? 0.0 : friction_Nm / M_ii, dt_s);
+    const double braking_Nm = rest->sudden ? 0.0 : friction_Nm + held_Nm(state, i, model.M);
+    rest->move(tau / M_ii, braking_Nm / M_ii, dt_s);
     if (rest->stretched(state.tau[i], stretch_Nm, dt_s)) return i;
     const double angle = std::abs(rest->expected_angle);
     if (rest->sudden) {
       if (rest->stood_s >= kStood_s && angle >= kCoasted) return i;
     } else if (angle >= kExpected && rest->arm_moved(state)) {
-      if (angle >= kPushed || !held_by_push(state, i, tau, model.M)) return i;
+      return i;
     }
   }
   return -1;

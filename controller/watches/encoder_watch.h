@@ -32,16 +32,16 @@ namespace limber::controller {
 ///     does when this one swings unseen, and does not when the whole arm leans against something. A
 ///     wrist that hangs on to nothing may turn without moving another joint: not found.
 ///
-/// A hand may push joint k out of the way and hold this joint to a single count meanwhile, so that
-/// its torque grows as well. While that may be, kPushed is expected instead of kExpected. The push
-/// is what moves k on, along the way that it has gone since: of the momentum residual r_k, and of
-/// its growth since, the lesser. It may hold this joint if k has gone kOthers at least, is no
-/// faster than kYields, and
+/// A hand or a wall may push joint k along and hold this joint to a single count meanwhile, while
+/// its torque grows. Added to tau_friction is what such a contact may hold, the most over k of
 ///
-///   push > kFeltShare tau_friction_k,   push / sqrt(M_kk) >= abs(tau - g - balanced) / sqrt(M_ii)
+///   kHeldShare push sqrt(M_ii / M_kk),   push > kFeltShare tau_friction_k
 ///
-/// The swing of this joint alone drives k by less: by M_ki a_i, and M_ki^2 < M_kk M_ii. What r is
-/// kSettled_s after a reset hung on the arm before.
+/// `push`: of the momentum residual r_k, and of its growth since, the lesser, along the way that k
+/// has gone since, which is kOthers at least, no faster than kYields. The unseen swing of this
+/// joint alone drives k by M_ki a_i, and M_ki^2 < M_kk M_ii: so that it is found before it has
+/// gone kExpected / (1 - kHeldShare) = 0.1 rad. What r is kSettled_s after a reset hung on the arm
+/// before.
 ///
 /// A joint with a spring K, an encoder on either side of it and a torque sensor is found in a third
 /// way, with no regard to friction or load: while neither reading changes by a bit, the spring is
@@ -63,8 +63,8 @@ class EncoderWatch {
   static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;  ///< likewise
   static constexpr double kYields = 0.5;   ///< rad/s (m/s)
-  static constexpr double kPushed = 2.0;   ///< rad (m)
   static constexpr double kFeltShare = 0.7;
+  static constexpr double kHeldShare = 0.7;
   static constexpr double kStretchShare = 0.01;
   static constexpr double kDrift_s = 5.0;
   static constexpr double kSettled_s = 0.125;
@@ -117,9 +117,8 @@ class EncoderWatch {
     std::optional<Rest> rest;
   };
 
-  /// May a push that moves another joint hold joint i against `load_Nm`?
-  bool held_by_push(const joint_state_t& state, int i, double load_Nm,
-                    const MatrixJ& M) const noexcept;
+  /// What a contact may hold of joint i at most, N m.
+  double held_Nm(const joint_state_t& state, int i, const MatrixJ& M) const noexcept;
 
   std::vector<Joint> joints_;
   MomentumObserver observer_;

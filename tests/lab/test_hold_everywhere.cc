@@ -52,9 +52,8 @@ TEST_P(HoldEverywhere, EndsOfEachJointIncluded) {
   }
 }
 
-// Not ideal7: its drives have no inertia, and its wrist alone is too light for a wall at 1 kHz.
 INSTANTIATE_TEST_SUITE_P(Arms, HoldEverywhere,
-                         ::testing::Values("desktop2r", "openarm", "panda", "iiwa14", "planar2r",
+                         ::testing::Values("ideal7", "desktop2r", "openarm", "panda", "iiwa14", "planar2r",
                                            "baxter", "antagonist2r", "antagonist7", "testbench"),
                          [](const auto& parameter) { return parameter.param; });
 
