@@ -25,7 +25,8 @@ Course run(const std::string& robot_name, double duration_s, const std::string& 
                            "\nmode: lockstep\nduration_s: " + std::to_string(duration_s) +
                            "\nseed: 7\ntimeline:\n" + timeline);
   const LoadedRobot robot = load_robot(robot_name);
-  Lab lab(robot, load_scenario(path, robot, &controller::law_catalog()));
+  const Scenario scenario = load_scenario(path, robot, &controller::law_catalog());
+  Lab lab(robot, scenario);
   Course course{};
   while (lab.time_ns() < static_cast<std::int64_t>(duration_s * 1e9)) {
     lab.step();
