@@ -4,6 +4,7 @@
 #include "drivers/families/cia402_family.h"
 #include "drivers/families/damiao_family.h"
 #include "drivers/families/moteus_family.h"
+#include "drivers/families/robstride_family.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber {
@@ -27,6 +28,10 @@ constexpr std::array kFamilies = {
         [](const JointConfig& joint, bool fd, double period_s) -> DriveFamily {
           return {cia402_codec(joint, fd), cia402_startup(joint, fd, period_s),
                   cia402_intruders(joint)};
+        }},
+    Row{"robstride",
+        [](const JointConfig& joint, bool, double) -> DriveFamily {
+          return {robstride_codec(joint), robstride_startup(joint), robstride_intruders(joint)};
         }},
 };
 

@@ -86,6 +86,18 @@ void foreign_master(FaultStage* stage) {
   });
 }
 
+/// The drive takes its next command for a disable.
+void disabled(FaultStage* stage) {
+  const DriveConfig& drive = stage->joint().drive;
+  stage->bus().replace_sent(
+      [&drive](const CanFrame& frame) {
+        CanFrame of_kind = frame;
+        of_kind.id = kind_of_id(drive, frame.id, frame.extended);
+        return has_id(of_kind, drive.command_id);
+      },
+      stage->family().codec->disable());
+}
+
 void foreign_disable(FaultStage* stage) {
   stage->send_from_outside(stage->family().codec->disable());
 }
@@ -218,8 +230,7 @@ std::vector<Fault> bus_faults() {
        .watched_cycles = 400},
       {.name = "the drive reports an error", .begin = drive_error, .most_cycles = 2},
       {.name = "the drive disables itself",
-       .begin =
-           [](FaultStage* stage) { stage->bus().replace_sent(stage->family().codec->disable()); },
+       .begin = disabled,
        .most_cycles = 2},
       {.name = "another program disables the drive", .begin = foreign_disable, .most_cycles = 1},
       {.name = "another program commands the drive", .begin = foreign_master, .most_cycles = 1},

@@ -12,6 +12,7 @@ std::span<const Family> families() {
       Family{"damiao_mit", "desktop2r", with_motion_of_damiao},
       Family{"moteus", "planar2r", with_motion_of_moteus},
       Family{"cia402", "iiwa14", with_motion_of_cia402},
+      Family{"robstride", "edulite_a3", with_motion_of_robstride},
   };
   return kFamilies;
 }

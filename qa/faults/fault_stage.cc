@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "robots/loader/protocols/drive_protocol.h"
+
 namespace limber::faults {
 namespace {
 
@@ -96,9 +98,11 @@ const BusConfig& FaultStage::bus_config() const {
 
 bool FaultStage::is_mine(const CanFrame& frame) const {
   const DriveConfig& drive = joint().drive;
+  CanFrame of_kind = frame;
+  of_kind.id = kind_of_id(drive, frame.id, frame.extended);
   std::uint32_t id = drive.reply_id;
   for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
-    if (has_id(frame, id)) return !tells_setting(frame);
+    if (has_id(of_kind, id)) return !tells_setting(frame);
   }
   return false;
 }

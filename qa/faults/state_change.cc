@@ -8,6 +8,7 @@
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
+#include "drivers/protocols/robstride.h"
 #include "qa/faults/families.h"
 
 namespace limber::faults {
@@ -59,6 +60,15 @@ CanFrame with_motion_of_cia402(const CanFrame& reply, const JointConfig& joint, 
   state.position_counts += counts(change.angle_rad);
   state.velocity_counts_per_s += counts(change.speed_rad_per_s);
   return cia402::encode_state(state, objects, reply.id, fd);
+}
+
+CanFrame with_motion_of_robstride(const CanFrame& reply, const JointConfig& joint, bool /*fd*/,
+                                  const MotionChange& change) {
+  robstride::State state;
+  if (!robstride::decode_state(reply, joint.drive.range, &state)) return reply;
+  state.position_rad += change.angle_rad;
+  state.velocity_rad_per_s += change.speed_rad_per_s;
+  return robstride::encode_state(state, joint.drive.range, robstride::Type::kState);
 }
 
 CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,

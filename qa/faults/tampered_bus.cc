@@ -29,7 +29,7 @@ bool TamperedBus::pass_on(const CanFrame& frame) noexcept {
     const std::optional<CanFrame> changed = sent_change_(frame);
     return !changed || bus_->send(*changed) == 1;
   }
-  const bool replaced = replacement_ && has_id(frame, replacement_->id);
+  const bool replaced = replacement_ && replaced_(frame);
   if (bus_->send(replaced ? *replacement_ : frame) != 1) return false;
   if (replaced) replacement_.reset();
   return true;

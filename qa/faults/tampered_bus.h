@@ -24,7 +24,10 @@ class TamperedBus final : public CanBus {
   using SentChange = std::function<std::optional<CanFrame>(const CanFrame& frame)>;
   void set_sent_change(SentChange change) { sent_change_ = std::move(change); }
   /// The next frame sent with this identifier is replaced.
-  void replace_sent(const CanFrame& frame) { replacement_ = frame; }
+  void replace_sent(std::function<bool(const CanFrame&)> which, const CanFrame& frame) {
+    replaced_ = std::move(which);
+    replacement_ = frame;
+  }
   /// The frame arrives with the next release().
   void hold(const CanFrame& frame) { held_.push_back(frame); }
   void release();
@@ -46,6 +49,7 @@ class TamperedBus final : public CanBus {
   CanBus* bus_;
   Change change_;
   SentChange sent_change_;
+  std::function<bool(const CanFrame&)> replaced_;
   std::optional<CanFrame> replacement_;
   std::vector<CanFrame> held_;
   std::vector<CanFrame> arrived_;

@@ -5,6 +5,7 @@
 #include "sim/nodes/cia402_node.h"
 #include "sim/nodes/damiao_node.h"
 #include "sim/nodes/moteus_node.h"
+#include "sim/nodes/robstride_node.h"
 
 namespace limber::sim {
 namespace {
@@ -26,6 +27,10 @@ constexpr std::array kNodes = {
     Row{"cia402",
         [](const JointConfig& joint, bool fd) -> Node {
           return std::make_unique<Cia402Node>(joint, fd);
+        }},
+    Row{"robstride",
+        [](const JointConfig& joint, bool) -> Node {
+          return std::make_unique<RobstrideNode>(joint);
         }},
 };
 

@@ -7,6 +7,7 @@
 #include "tools/can/canopen_decoder.h"
 #include "tools/can/damiao_decoder.h"
 #include "tools/can/moteus_decoder.h"
+#include "tools/can/robstride_decoder.h"
 
 namespace limber::bus_tools {
 namespace {
@@ -40,6 +41,13 @@ constexpr std::array kDecoders = {
           return std::make_unique<CanopenNetworkDecoder>(motors);
         },
         .add_network_messages = add_canopen_network_messages,
+    },
+    DriveDecoders{
+        .protocol = "robstride",
+        .make = [](const Motor& motor, const BusFacts&) -> Decoder {
+          return std::make_unique<RobstrideDecoder>(motor);
+        },
+        .add_messages = add_robstride_messages,
     },
 };
 

@@ -7,6 +7,7 @@
 #include "drivers/bus_load.h"
 #include "drivers/can/frame_time.h"
 #include "drivers/can/lockstep_frame.h"
+#include "robots/loader/protocols/drive_protocol.h"
 
 namespace limber::bus_tools {
 namespace {
@@ -42,6 +43,10 @@ std::string row(const std::pair<std::uint32_t, bool>& id, const IdentifierCount&
 BusStatistics::BusStatistics(const Robot& robot) : robot_(robot) {
   for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus)
     buses_.emplace_back(robot, bus);
+  for (const JointConfig& joint : robot.driven()) {
+    auto& kind = buses_[static_cast<std::size_t>(joint.drive.bus)].kind;
+    if (kind == nullptr) kind = joint.drive.protocol->kind;
+  }
 }
 
 void BusStatistics::add(std::int64_t time_ns, int index, const CanFrame& frame) {
@@ -58,7 +63,9 @@ void BusStatistics::add(std::int64_t time_ns, int index, const CanFrame& frame) 
     ++bus.lockstep_frames;
     return;
   }
-  IdentifierCount& identifier = bus.identifiers[{frame.id, frame.extended}];
+  std::uint32_t id = frame.id;
+  if (bus.kind != nullptr && frame.extended) id = bus.kind(id);
+  IdentifierCount& identifier = bus.identifiers[{id, frame.extended}];
   if (identifier.frames == 0) {
     identifier.who = reading.who;
     identifier.direction = reading.direction;

@@ -36,6 +36,7 @@ class BusStatistics {
     explicit OneBus(const Robot& robot, int bus) : decoder(robot, bus) {}
     BusDecoder decoder;
     std::map<Identifier, IdentifierCount> identifiers;
+    std::uint32_t (*kind)(std::uint32_t id) = nullptr;  ///< DriveProtocol::kind of its drives
     std::int64_t error_frames = 0;
     std::int64_t lockstep_frames = 0;  ///< on no real bus
     std::int64_t first_ns = 0;

@@ -15,7 +15,8 @@ std::string key_json(const ProtocolKey& key) {
                        {"found", json::text(key.found)},
                        {"least", json::number(key.first.least)},
                        {"figure", text_of(name_of(key.first.of))},
-                       {"factor", json::number(key.first.factor)}});
+                       {"factor", json::number(key.first.factor)},
+                       {"word", json::text(key.first.word)}});
 }
 
 std::string protocol_json(const DriveProtocol& protocol) {

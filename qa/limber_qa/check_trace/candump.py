@@ -30,6 +30,18 @@ class Trace:
         """Frames of an identifier, in order of time."""
         return self.frames.get((interface, number), [])
 
+    def among(self, interface: str, value: int, mask: int) -> list[tuple[int, Frame]]:
+        """Frames of 29-bit identifiers that have `value` where `mask` has ones, and their
+        identifiers, in order of time.
+        """
+        found = [
+            (number - self.EXTENDED, frame)
+            for (where, number), frames in self.frames.items()
+            if where == interface and number >= self.EXTENDED and number & mask == value
+            for frame in frames
+        ]
+        return sorted(found, key=lambda pair: pair[1].time_ns)
+
     @property
     def span_ns(self) -> tuple[int, int]:
         """Times of the first and last frame."""

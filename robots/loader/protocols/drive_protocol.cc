@@ -58,6 +58,10 @@ bool uses_id(const DriveConfig& drive, std::uint32_t id) {
          (reserves_id != nullptr && reserves_id(drive, id));
 }
 
+std::uint32_t kind_of_id(const DriveConfig& drive, std::uint32_t id, bool extended) noexcept {
+  return extended && drive.protocol->kind != nullptr ? drive.protocol->kind(id) : id;
+}
+
 bool accepts_id(const DriveConfig& drive, std::uint32_t id) {
   if (drive.protocol == nullptr) return false;
   const auto accepts = drive.protocol->accepts_id;

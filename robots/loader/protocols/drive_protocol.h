@@ -23,11 +23,12 @@ enum class Figure : std::uint8_t { kNone, kPeakTorque, kSpeed, kHoldKp, kHoldKd 
 std::string_view name_of(Figure figure) noexcept;
 
 /// The value that `limber new` writes: factor times the figure, and at least `least`. Of a joint's
-/// key: the drive's number plus `least`.
+/// key: the drive's number plus `least`. `word`: instead of a number.
 struct FirstValue {
   double least = 0.0;
   Figure of = Figure::kNone;
   double factor = 0.0;
+  const char* word = "";
 };
 
 /// A key that every motor (section "motors.*", or "motors.*.KEY" of a mapping in it) or joint
@@ -84,6 +85,9 @@ struct DriveProtocol {
   SettingFrames (*setting)(const DriveConfig& drive) = nullptr;
   /// Whether the protocol uses an identifier besides command_id and reply_id. nullptr: none.
   bool (*reserves_id)(const DriveConfig& drive, std::uint32_t id) = nullptr;
+  /// A 29-bit identifier without what of it is data, which command_id and reply_id have as 0:
+  /// frames of one kind have the same. nullptr: the identifier itself.
+  std::uint32_t (*kind)(std::uint32_t id) = nullptr;
   /// Whether the drive acts on frames with this 11-bit identifier, too. nullptr: on none.
   bool (*accepts_id)(const DriveConfig& drive, std::uint32_t id) = nullptr;
 };
@@ -111,6 +115,8 @@ void refuse_foreign_keys(const YamlMap& yaml, const DriveProtocol& protocol);
 
 /// Whether the identifier on its bus is the drive's own or reserved by its protocol.
 bool uses_id(const DriveConfig& drive, std::uint32_t id);
+/// DriveProtocol::kind of the drive's protocol. Allowed in the cycle.
+std::uint32_t kind_of_id(const DriveConfig& drive, std::uint32_t id, bool extended) noexcept;
 /// Whether a frame of another node with this identifier would reach the drive.
 bool accepts_id(const DriveConfig& drive, std::uint32_t id);
 

@@ -8,12 +8,14 @@ namespace limber {
 extern const DriveProtocol kDamiaoMit;
 extern const DriveProtocol kMoteus;
 extern const DriveProtocol kCia402;
+extern const DriveProtocol kRobstride;
 
 std::span<const DriveProtocol* const> drive_protocols() noexcept {
   static constexpr std::array kAll = {
       &kDamiaoMit,
       &kMoteus,
       &kCia402,
+      &kRobstride,
   };
   return kAll;
 }

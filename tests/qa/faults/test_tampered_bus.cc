@@ -65,7 +65,7 @@ TEST_F(Tampered, SentFramesAreLostWithoutTheSendersKnowledge) {
 }
 
 TEST_F(Tampered, OneFrameOfAnIdentifierIsReplaced) {
-  tampered_.replace_sent(frame(1, 0xBB));
+  tampered_.replace_sent([](const CanFrame& sent) { return has_id(sent, 1); }, frame(1, 0xBB));
   for (const std::uint32_t id : {2U, 1U, 1U}) EXPECT_EQ(tampered_.send(frame(id, 7)), 1);
   const auto frames = heard();
   ASSERT_EQ(frames.size(), 3U);

@@ -12,7 +12,7 @@ from limber.paths import captured, program
 @dataclass(frozen=True)
 class Key:
     """A key of robot.yaml that motors or joints of one protocol have. Its first value is `factor`
-    times the figure, at least `least`; `found`: where an owner finds the true one.
+    times the figure, at least `least`, or `word`; `found`: where an owner finds the true one.
     """
 
     section: str
@@ -22,9 +22,10 @@ class Key:
     least: float
     figure: str
     factor: float
+    word: str
 
     def first(self, figures: dict[str, float]) -> float:
-        """`figures`: peak_torque, speed, hold_kp, hold_kd, at the joint."""
+        """`figures`: peak_torque, speed, hold_kp, hold_kd, at the joint. Not of a word."""
         return max(self.factor * figures[self.figure], self.least) if self.figure else self.least
 
 

@@ -52,4 +52,4 @@ def _first(motor: MotorGuess, key: Key) -> str:
         "hold_kp": motor.kp,
         "hold_kd": motor.kd,
     }
-    return number(three(key.first(figures)))
+    return key.word or number(three(key.first(figures)))
