@@ -148,11 +148,12 @@ readers = {
     name: DataReader(participant, Topic(participant, f"rt{name}", kind), qos=qos)
     for name, (kind, qos) in OUT.items()
 }
-over = threading.Event()
+over, printing = threading.Event(), threading.Lock()
 
 
 def say(topic: str, message) -> None:
-    print(json.dumps([topic, message]), flush=True)
+    with printing:  # from two threads
+        print(json.dumps([topic, message]), flush=True)
 
 
 def follow() -> None:

@@ -33,7 +33,7 @@ def ros2(
         str | None, typer.Option(help="Name or folder; default: the arm of the running stack.")
     ] = None,
     rate: Annotated[
-        float, typer.Option(min=0.1, max=1000.0, help="Messages a second on a topic, at most.")
+        float, typer.Option(min=0.1, max=500.0, help="Messages a second on a topic, at most.")
     ] = 100.0,
     interface: Annotated[
         str,

@@ -65,7 +65,8 @@ class Outlet:
         self._description.write(ros.String(robot.urdf.read_text(encoding="utf-8")))
         self._stamps = Stamps()
         self._sent: dict[str, tuple[int, int]] = {}
-        self._diagnosed: tuple[float, object] = (float("-inf"), None)
+        self._looked_s = self._told_s = float("-inf")
+        self._told: object = None
         self._inlet: Inlet | None = None
 
     def follow(self, inlet: "Inlet") -> None:
@@ -98,19 +99,22 @@ class Outlet:
             self._pose.write(to_ros.tip_pose(state.pose, robot.base, stamp))
             if status["contact"]:
                 self._wrench.write(to_ros.contact_wrench(state, robot.tip, stamp))
+        if time.monotonic() - self._looked_s >= CHANGED_S:
+            self._look(state)
+
+    def _look(self, state: State) -> None:
+        """Diagnostics: each second, sooner if a level, the mode or a refusal has changed."""
         outcomes = None if self._requests is None else self._requests.outcomes
-        arm = diagnostics.arm_status(state, robot.name)
-        joints = diagnostics.joint_statuses(state, self._arm.joint_names, robot.name)
-        commands = diagnostics.command_status(outcomes, robot.name)
-        levels = [each.level for each in (*joints, commands)]
-        changes = (arm.message, levels, commands.message)
-        self._diagnose([arm, *joints, commands], changes)
+        name, joints = self._robot.name, self._arm.joint_names
+        arm = diagnostics.arm_status(state, name)
+        commands = diagnostics.command_status(outcomes, name)
+        found = [arm, *diagnostics.joint_statuses(state, joints, name), commands]
+        self._diagnose(found, ([each.level for each in found], arm.message, commands.message))
 
     def _diagnose(self, found: list[ros.DiagnosticStatus], changes: object) -> None:
-        """Each second, sooner if `changes` differs from the last."""
-        now_s, (sent_s, before) = time.monotonic(), self._diagnosed
-        if now_s - sent_s >= (DIAGNOSTICS_S if changes == before else CHANGED_S):
-            self._diagnosed = now_s, changes
+        self._looked_s = time.monotonic()
+        if changes != self._told or self._looked_s - self._told_s >= DIAGNOSTICS_S:
+            self._told, self._told_s = changes, self._looked_s
             header = to_ros.header(time.time_ns())
             self._diagnostics.write(ros.DiagnosticArray(header, found))
 
