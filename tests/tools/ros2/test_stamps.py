@@ -37,7 +37,7 @@ def test_a_clock_that_is_set_is_followed():
 
 def test_a_new_session_begins_anew():
     stamps = Stamps()
-    stamps.note(SESSION, 100 * S, EPOCH)
+    stamps.note(SESSION, 300 * MS, EPOCH)
     stamps.note(SESSION + 1, 0, EPOCH + S // 2)
     assert stamps.of(0, EPOCH + S // 2) == EPOCH + S // 2
 

@@ -56,7 +56,8 @@ IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}
 for name, package in IN_A_CLONE.items():
     if find_spec(package.partition(".")[0]):
         app.add_typer(import_module(package).app, name=name, hidden=True)
-        app.info.epilog += " Of this clone: limber test, limber dev, limber lecture."
+if find_spec("limber_qa"):
+    app.info.epilog += " Of this clone: limber test, limber dev, limber lecture."
 
 
 @app.callback(invoke_without_command=True)
