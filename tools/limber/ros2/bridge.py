@@ -4,12 +4,12 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
+from typing import Any
 
 from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet
 from cyclonedds.internal import InvalidSample
-from cyclonedds.sub import DataReader
 from cyclonedds.util import duration
 from rich.console import Console
 
@@ -37,17 +37,17 @@ def run(
     domain = domain_id()
     participant = Participant(domain, interface)
     wanted = None if named is None else load_robot(named)
-    with Arm(None if wanted is None else wanted.name) as arm:
+    requests = None
+    with suppress(KeyboardInterrupt), ExitStack() as ends:
+        arm = ends.enter_context(Arm(None if wanted is None else wanted.name))
         robot = wanted or load_robot(arm.folder if Path(arm.folder).is_dir() else arm.name)
-        requests = Requests(arm, robot.base, lambda words: console.print(words, markup=False))
-        outlet = Outlet(participant, arm, robot, requests if allow_commands else None)
         told = f"{robot.name} in ROS's domain {domain} on {interface}"
-        taken = f"; takes {GOAL} in {robot.base}, {STIFFNESS}" if allow_commands else ""
-        console.print(f"{told}{taken}. Ctrl-C ends it.", soft_wrap=True, markup=False)
-        with suppress(KeyboardInterrupt), closing(outlet):
-            if allow_commands:
-                outlet.follow(Inlet(participant, requests))
-            outlet.loop(1.0 / rate_hz)
+        if allow_commands:
+            requests = Requests(arm, robot.base, lambda line: console.print(line, markup=False))
+            ends.enter_context(closing(Inlet(participant, requests)))
+            told += f"; takes {GOAL} in {robot.base}, {STIFFNESS}"
+        console.print(f"{told}. Ctrl-C ends it.", soft_wrap=True, markup=False)
+        Outlet(participant, arm, robot, requests).loop(1.0 / rate_hz)
 
 
 class Outlet:
@@ -67,40 +67,36 @@ class Outlet:
         self._sent: dict[str, tuple[int, int]] = {}
         self._looked_s = self._told_s = float("-inf")
         self._told: object = None
-        self._inlet: Inlet | None = None
-
-    def follow(self, inlet: "Inlet") -> None:
-        self._inlet = inlet
-
-    def close(self) -> None:
-        if self._inlet is not None:
-            self._inlet.close()
 
     def loop(self, period_s: float) -> None:
         due_s = time.monotonic()
         while True:
             try:
                 self._send(self._arm.state, time.time_ns())
-                pause_s = period_s
+                due_s += period_s
             except StackLostError as lost:
                 self._diagnose([diagnostics.lost_status(str(lost), self._robot.name)], "lost")
-                pause_s = max(LOST_S, period_s)
-            due_s = max(due_s + pause_s, time.monotonic())
+                due_s += max(LOST_S, period_s)
+            due_s = max(due_s, time.monotonic())
             time.sleep(max(0.0, due_s - time.monotonic()))
 
     def _send(self, state: State, now_ns: int) -> None:
         record, status, robot = state.joint_state, state.status, self._robot
-        if self._is_new("joints", int(record["session"]), int(record["seq"])):
+        if self._is_new("joints", record["session"], record["seq"]):
             self._stamps.note(int(record["session"]), int(record["time_ns"]), now_ns)
-            stamp = self._stamps.of(int(record["time_ns"]), now_ns)
-            self._joints.write(to_ros.joint_state(state, self._arm.joint_names, stamp))
-        if self._is_new("status", int(status["controller"]), int(status["seq"])):
-            stamp = self._stamps.of(int(status["time_ns"]), now_ns)
-            self._pose.write(to_ros.tip_pose(state.pose, robot.base, stamp))
+            stamp_ns = self._stamps.of(int(record["time_ns"]), now_ns)
+            self._joints.write(to_ros.joint_state(state, self._arm.joint_names, stamp_ns))
+        if self._is_new("status", status["controller"], status["seq"]):
+            stamp_ns = self._stamps.of(int(status["time_ns"]), now_ns)
+            self._pose.write(to_ros.tip_pose(state.pose, robot.base, stamp_ns))
             if status["contact"]:
-                self._wrench.write(to_ros.contact_wrench(state, robot.tip, stamp))
+                self._wrench.write(to_ros.contact_wrench(state, robot.tip, stamp_ns))
         if time.monotonic() - self._looked_s >= CHANGED_S:
             self._look(state)
+
+    def _is_new(self, what: str, sender: int, seq: int) -> bool:
+        before, self._sent[what] = self._sent.get(what), (int(sender), int(seq))
+        return before != self._sent[what]
 
     def _look(self, state: State) -> None:
         """Diagnostics: each second, sooner if a level, the mode or a refusal has changed."""
@@ -118,24 +114,19 @@ class Outlet:
             header = to_ros.header(time.time_ns())
             self._diagnostics.write(ros.DiagnosticArray(header, found))
 
-    def _is_new(self, what: str, run_: int, seq: int) -> bool:
-        new = self._sent.get(what) != (run_, seq)
-        self._sent[what] = run_, seq
-        return new
-
 
 class Inlet:
     """Commands, in a thread of their own until close()."""
 
     def __init__(self, participant: Participant, requests: Requests) -> None:
         self._requests = requests
-        self._readers: dict[DataReader, Callable] = {
-            participant.reader(GOAL, ros.PoseStamped): requests.goal,
-            participant.reader(STIFFNESS, ros.Float64MultiArray): requests.stiffness,
-        }
+        self._takers: list[tuple[Any, Callable]] = [
+            (participant.reader(GOAL, ros.PoseStamped), requests.goal),
+            (participant.reader(STIFFNESS, ros.Float64MultiArray), requests.stiffness),
+        ]
         self._news = WaitSet(participant.entity)
         every = ViewState.Any | InstanceState.Any | SampleState.Any
-        self._conditions = [ReadCondition(reader, every) for reader in self._readers]
+        self._conditions = [ReadCondition(reader, every) for reader, _ in self._takers]
         for condition in self._conditions:
             self._news.attach(condition)
         self._stop = threading.Event()
@@ -149,11 +140,11 @@ class Inlet:
     def _take(self) -> None:
         while not self._stop.is_set():
             self._news.wait(duration(milliseconds=100))
-            for reader, request in self._readers.items():
+            for reader, request in self._takers:
                 try:
                     samples = reader.take()
                 except Exception as error:  # whatever its decoder meets
-                    self._requests.unreadable(reader.topic.name[2:], error)
+                    self._requests.unreadable(reader.topic.name.removeprefix("rt"), error)
                     continue
                 for sample in samples:
                     if not isinstance(sample, InvalidSample):  # a writer has left
