@@ -14,7 +14,7 @@ from processes import started
 from limber.live.arm_errors import NoStackError
 from limber.model.rotations import matrix_of
 
-LONG_S = 60.0  # on a machine that is busy elsewhere
+LONG_S = 200.0  # on a machine that is busy elsewhere
 PUSH_N = np.array([3.0, 4.0, 0.0])
 
 
