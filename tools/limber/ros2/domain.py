@@ -2,14 +2,12 @@
 
 import os
 import socket
-from collections.abc import Iterator
 from contextlib import closing
-from typing import Any, TypeVar
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain, DomainParticipant
-from cyclonedds.idl import IdlStruct
 from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
@@ -19,6 +17,7 @@ from cyclonedds.util import duration
 from limber.errors import InputError, RunError
 
 LOOPBACK = "lo"
+FILES = "/proc/self/fd"
 HIGHEST_DOMAIN = 232  # its ports are the last below 65536
 DEPTH = 10  # rmw_qos_profile_default
 # Without multicast, which few loopbacks have: a participant is announced to the ports that others
@@ -29,7 +28,6 @@ ALONE = (
     "<ParticipantIndex>auto</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
     "<Peers><Peer address='127.0.0.1'/></Peers></Discovery>"
 )
-Message = TypeVar("Message", bound=IdlStruct)
 
 
 def domain_id() -> int:
@@ -52,29 +50,25 @@ class Participant:
         own = f"<NetworkInterface name={quoteattr(interface)}/>"
         chosen = f"<General><Interfaces>{own}</Interfaces></General>"
         chosen = ALONE if interface == LOOPBACK else chosen
-        before = set(_open_files())
+        before = set(os.listdir(FILES))
         try:
             self._domain = Domain(domain, f"<CycloneDDS><Domain>{chosen}</Domain></CycloneDDS>")
             if interface == LOOPBACK:
-                _shut_in(set(_open_files()) - before)
-            self._participant = DomainParticipant(domain)
+                _shut_in(set(os.listdir(FILES)) - before)
+            self.entity = DomainParticipant(domain)
         except DDSException as error:
             raise RunError(f"DDS does not start in domain {domain}: {error}") from error
 
-    def writer(self, topic: str, kind: type[Message], latched: bool = False) -> DataWriter[Message]:
+    def writer(self, topic: str, kind: Any, latched: bool = False) -> DataWriter:
         """As rclpy's default: reliable, the newest ten. `latched`: one, for late readers, too."""
-        return DataWriter(self._participant, self._topic(topic, kind), qos=_qos(latched, DEPTH))
+        return DataWriter(self.entity, self._topic(topic, kind), qos=_qos(latched, DEPTH))
 
-    def reader(self, topic: str, kind: type[Message]) -> DataReader[Message]:
+    def reader(self, topic: str, kind: Any) -> DataReader:
         """Keeps the newest only."""
-        return DataReader(self._participant, self._topic(topic, kind), qos=_qos(False, 1))
+        return DataReader(self.entity, self._topic(topic, kind), qos=_qos(False, 1))
 
-    @property
-    def entity(self) -> DomainParticipant:
-        return self._participant
-
-    def _topic(self, name: str, kind: type[Message]) -> Topic[Message]:
-        return Topic(self._participant, f"rt{name}", kind)  # rt: ROS's topics
+    def _topic(self, name: str, kind: Any) -> Topic:
+        return Topic(self.entity, f"rt{name}", kind)  # rt: ROS's topics
 
 
 def _qos(latched: bool, depth: int) -> Any:
@@ -84,10 +78,6 @@ def _qos(latched: bool, depth: int) -> Any:
         Policy.History.KeepLast(1 if latched else depth),
         Policy.DataRepresentation(use_cdrv0_representation=True),
     )
-
-
-def _open_files() -> Iterator[str]:
-    yield from os.listdir("/proc/self/fd")
 
 
 def _shut_in(files: set[str]) -> None:

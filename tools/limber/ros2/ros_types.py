@@ -20,14 +20,8 @@ Time = _message("builtin_interfaces/Time", sec=int32, nanosec=uint32)
 Header = _message("std_msgs/Header", stamp=Time, frame_id=str)
 String = _message("std_msgs/String", data=str)
 
-JointState = _message(
-    "sensor_msgs/JointState",
-    header=Header,
-    name=sequence[str],
-    position=Doubles,
-    velocity=Doubles,
-    effort=Doubles,
-)
+_each = {"position": Doubles, "velocity": Doubles, "effort": Doubles}
+JointState = _message("sensor_msgs/JointState", header=Header, name=sequence[str], **_each)
 
 Point = _message("geometry_msgs/Point", **xyz)
 Vector3 = _message("geometry_msgs/Vector3", **xyz)
@@ -39,13 +33,9 @@ WrenchStamped = _message("geometry_msgs/WrenchStamped", header=Header, wrench=Wr
 
 OK, WARN, ERROR, STALE = range(4)  # DiagnosticStatus.level
 KeyValue = _message("diagnostic_msgs/KeyValue", key=str, value=str)
+_words = {"name": str, "message": str, "hardware_id": str}
 DiagnosticStatus = _message(
-    "diagnostic_msgs/DiagnosticStatus",
-    level=uint8,
-    name=str,
-    message=str,
-    hardware_id=str,
-    values=sequence[KeyValue],
+    "diagnostic_msgs/DiagnosticStatus", level=uint8, **_words, values=sequence[KeyValue]
 )
 DiagnosticArray = _message(
     "diagnostic_msgs/DiagnosticArray", header=Header, status=sequence[DiagnosticStatus]
