@@ -132,6 +132,8 @@ PARTS: dict[str, Part] = {
     "bare": Part(lambda: [*PYTEST, "tests/bare"], Lane.LAST, by_name=True),
     # LeRobot's own commands with the plug-in: an environment of 5 GB
     "lerobot": Part(lambda: [*PYTEST, "tests/lerobot"], Lane.LAST, by_name=True),
+    # ROS 2's own Python client at the other end of `limber ros2`: 0.25 GB, Python 3.12
+    "ros2": Part(lambda: [*PYTEST, "tests/ros2"], Lane.LAST, by_name=True),
 }
 
 

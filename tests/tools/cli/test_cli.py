@@ -55,6 +55,8 @@ WRONG = [
     (["record"], "--out"),
     (["record", "--out", "{dir}/x.lcmlog", "--duration", "-1"], "--duration"),
     (["record", "--out", "/proc/nowhere/x.lcmlog"], "cannot be written"),
+    (["ros2", "--rate", "nan"], "--rate"),
+    (["ros2", "--interface", "eth77"], "no network interface 'eth77'"),
     (["log", "info", "{dir}/missing.lcmlog"], "does not exist"),
     (["log", "info", "{dir}/good.yaml"], "no LCM event log"),
     (["log", "info", "{dir}/empty.lcmlog"], "empty"),

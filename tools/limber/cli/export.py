@@ -1,4 +1,4 @@
-"""Commands that write a robot for other programs: `limber export ...`."""
+"""Commands that give an arm to other programs: `limber export ...`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -25,3 +25,30 @@ def mjcf(
     console.print(f"wrote {out}", soft_wrap=True)
     for what in module.left_out(arm):
         console.print(f"MuJoCo's joints do not have {what}")
+
+
+@app.command(epilog="Example: limber export ros2 --allow-commands")
+def ros2(
+    robot: Annotated[
+        str | None, typer.Option(help="Name or folder; default: the arm of the running stack.")
+    ] = None,
+    rate: Annotated[
+        float, typer.Option(min=0.1, max=500.0, help="Messages a second on a topic, at most.")
+    ] = 100.0,
+    interface: Annotated[
+        str,
+        typer.Option(
+            help="Network interface; all who reach it may listen, and command if allowed."
+        ),
+    ] = "lo",
+    allow_commands: Annotated[
+        bool,
+        typer.Option("--allow-commands", help="Take /limber/goal_pose and /limber/stiffness."),
+    ] = False,
+) -> None:
+    """Publish the running arm to ROS 2: joints, tip, contact, diagnostics, URDF."""
+    from limber.live.network import require_multicast
+    from limber.ros2 import bridge
+
+    require_multicast()
+    bridge.run(robot, rate, interface, allow_commands, console)

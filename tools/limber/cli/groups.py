@@ -7,4 +7,6 @@ identify = typer.Typer(
     help="Identify the arm: its joints by hand, its parameters from recorded runs.",
     no_args_is_help=True,
 )
-export = typer.Typer(help="Write an arm for other programs.", no_args_is_help=True)
+export = typer.Typer(
+    help="Give an arm to other programs: files, services, ROS 2.", no_args_is_help=True
+)

@@ -50,13 +50,14 @@ app.add_typer(groups.export, name="export")
 app.add_typer(can.app, name="can")
 put_in_panels(app)
 app.add_typer(law.app, name="law", hidden=True)
-app.info.epilog = "Beside these: limber law (a control law of your own)."
+app.info.epilog = "Beside these: limber law (a control law of your own), limber ros2 (for ROS 2)."
 # What proves limber and what teaches it lies beside a clone's sources, and is not installed.
 IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}
 for name, package in IN_A_CLONE.items():
     if find_spec(package.partition(".")[0]):
         app.add_typer(import_module(package).app, name=name, hidden=True)
-        app.info.epilog += " Of this clone: limber test, limber dev, limber lecture."
+if find_spec("limber_qa"):
+    app.info.epilog += " Of this clone: limber test, limber dev, limber lecture."
 
 
 @app.callback(invoke_without_command=True)

@@ -26,6 +26,7 @@ ELSEWHERE = {
     "incident": "log black-box",
     "directions": "identify joints",
     "service": "export service",
+    "ros2": "export ros2",
     "experiment": "lecture experiment",
     "eval": "lecture eval",
     "referee": "dev check-trace",

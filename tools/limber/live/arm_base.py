@@ -35,6 +35,11 @@ class ArmBase(Quantities):
         return self._link.name
 
     @property
+    def folder(self) -> str:
+        """Folder of robot.yaml, on the controller's machine."""
+        return self._link.folder
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """In the order of all joint quantities."""
         return self._link.joints

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
@@ -28,14 +29,15 @@ INTERVAL_S = 0.002  # age of the newest values, at most, beside the channel's ow
 class StackLink:
     """Finds the stack and its robot. `robot`: refuse any other.
 
-    `name`, `joints`, `simulated`: the robot's name in robot.yaml, its joints' names, and whether
-    all of its buses are simulated. Raises NoStackError.
+    `name`, `folder`, `joints`, `simulated`: the robot's name and folder, its joints' names, and
+    whether all of its buses are simulated. Raises NoStackError.
     """
 
     def __init__(self, robot: str | None = None, url: str | None = None) -> None:
         self._url = url or messages.user_plane_url()
         self.receiver = Receiver(*CHANNELS, interval_s=INTERVAL_S, url=self._url)
         self._closed = False
+        self._infos = 0
         try:
             self._find(robot)
         except BaseException:
@@ -58,6 +60,8 @@ class StackLink:
         if robot is not None and robot != info.robot:
             raise NoStackError(f"the running stack is that of {info.robot}, not of {robot}")
         self.name: str = info.robot
+        self._runs = self.name
+        self.folder: str = info.folder
         self.joints: tuple[str, ...] = tuple(info.joints)
         self.simulated = bool(info.simulated)
 
@@ -84,6 +88,17 @@ class StackLink:
                     f"{SENDERS[channel]} has been silent for {age_s:.1f} s: see whether it still "
                     "runs, and its log"
                 )
+        self._check_robot()
+
+    def _check_robot(self) -> None:
+        """Another arm's stack may have taken the place of this one's."""
+        heard = self.receiver.channels["ROBOT_INFO"]
+        if heard.count != self._infos:
+            self._infos = heard.count
+            with suppress(ValueError):
+                self._runs = messages.decode("robot_info_t", heard.data).robot
+        if self._runs != self.name:
+            raise StackLostError(f"the running stack is now that of {self._runs}, not {self.name}")
 
     def in_lockstep(self) -> bool:
         """Arm time is simulated: it waits for the machine, or outruns the clock."""
