@@ -1,8 +1,11 @@
 """Episodes of a log: from marks in every order, doubled and garbled, and dropped afterwards."""
 
+import io
+
 import pytest
 import zstandard
 from made_logs import event_bytes, records
+from rich.console import Console
 
 from limber.errors import InputError
 from limber.log import episodes
@@ -84,6 +87,14 @@ def test_a_mark_that_came_twice_counts_once(tmp_path):
         (1, 1, 3, "pick", "success", False),
         (2, 4, 6, "place", "failure", False),
     ]
+
+
+def test_a_task_cannot_command_a_terminal(tmp_path):
+    path = log_of(tmp_path / "a.lcmlog", (1, mark(1, START, "\x1b[2J\n[red]x")))
+    assert found(path)[0][3] == "?[2J?[red]x"
+    with Console(file=io.StringIO()) as console:
+        episodes.show(path, console)
+    assert "?[2J?[red]x" in console.file.getvalue()
 
 
 def test_an_end_may_be_corrected_and_stays_where_it_was(tmp_path):

@@ -55,8 +55,8 @@ class Targets:
 
     def __str__(self) -> str:
         counts = ", ".join(f"{getattr(self, name)} {name}" for name in TARGET_COUNTS)
-        ahead = "" if self.state == "none" else f", {1e3 * self.margin_s:+.0f} ms"
-        return f"targets {self.state}{ahead}: {counts}"
+        margin = "" if self.state == "none" else f", margin {1e3 * self.margin_s:+.0f} ms"
+        return f"targets {self.state}{margin}: {counts}"
 
 
 def targets_of(status: np.void) -> Targets:

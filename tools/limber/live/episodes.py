@@ -26,8 +26,8 @@ class Episodes:
 
     def start(self, task: str = "") -> None:
         """An episode begins; one that has not ended ends without success or failure."""
-        if len(task.encode()) > MARK.LONGEST_TASK or "\0" in task:
-            raise InputError(f"task: expected at most {MARK.LONGEST_TASK} bytes of text")
+        if not task.isprintable() or len(task.encode()) > MARK.LONGEST_TASK:
+            raise InputError(f"task: expected one line of at most {MARK.LONGEST_TASK} bytes")
         self._mark(MARK.MARK_START, task)
 
     def end(self, success: bool) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import zstandard
 from rich.console import Console
+from rich.text import Text
 
 from limber import tables
 from limber.errors import InputError
@@ -52,7 +53,8 @@ def episodes(log: Log) -> list[Episode]:
             if newest and not found[newest].ended:
                 found[newest] = replace(found[newest], end_us=stamp_us, ended=True)
             newest = mark.seq
-            found[newest] = Episode(len(found) + 1, newest, stamp_us, stamp_us, mark.task)
+            task = "".join(c if c.isprintable() else "?" for c in mark.task)
+            found[newest] = Episode(len(found) + 1, newest, stamp_us, stamp_us, task)
             continue
         meant = mark.episode or newest
         if meant not in found:
@@ -115,7 +117,7 @@ def show(path: Path, console: Console) -> None:
             f"{one.length_s:.2f}",
             one.outcome or "no end",
             "dropped" if one.dropped else "",
-            one.task.replace("[", "\\["),
+            Text(one.task),
         )
     console.print(table)
 

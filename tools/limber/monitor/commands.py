@@ -76,11 +76,12 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
             panel = ControlPanel(gui, robot, laws, requests, feed, typed, page.pending)
             parts.append(panel.draw)
             served.link.on("press", panel.pressed)
-            if robot.hand is not None:
-                parts.append(HandPanel(gui, robot.hand, requests, feed, typed).draw)
         with tabs.add_tab("push"):
             push = PushTool(gui, page.scene.arm, feed, requests, served.link, typed)
             parts.append(push.draw)
+        if robot.hand is not None:
+            with tabs.add_tab("hand"):
+                parts.append(HandPanel(gui, robot.hand, requests, feed, typed).draw)
         size_m = 0.35 * page.scene.figure.reach_m
         goal = GoalHandle(served.scene, size_m, feed, laws, requests)
     with tabs.add_tab("episodes"):

@@ -35,7 +35,8 @@ def possible(present: Any, options: Any, value: Any) -> bool:
     if options is not None:
         return isinstance(value, str) and value in options
     if isinstance(present, str):
-        return isinstance(value, str) and len(value.encode(errors="replace")) <= LONGEST_BYTES
+        fits = isinstance(value, str) and value.isprintable()
+        return fits and len(value.encode()) <= LONGEST_BYTES
     if isinstance(present, bool):
         return isinstance(value, bool)
     number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -35,18 +35,17 @@ class HandPanel:
             "width": ("mm", -1e3 * PRESS_M, self._goal["width"]),
             "force": ("N", 0.5, hand.force_limit_N),
         }
-        with gui.add_folder("hand"):
-            self._widgets = {
-                key: make(
-                    gui,
-                    Gain(key, WORDS[key], "number", unit, (), low, high, None),
-                    self._goal[key],
-                    [],
-                    self._asked,
-                    typed,
-                )
-                for key, (unit, low, high) in ends.items()
-            }
+        self._widgets = {
+            key: make(
+                gui,
+                Gain(key, WORDS[key], "number", unit, (), low, high, None),
+                self._goal[key],
+                [],
+                self._asked,
+                typed,
+            )
+            for key, (unit, low, high) in ends.items()
+        }
 
     def _asked(self, key: str, value: float) -> None:
         with self._lock:

@@ -110,11 +110,11 @@ class Page:
         return Shown(
             words,
             self._facts(),
-            self._lines(),
             [*self.feed.troubles(), *self._hints()],
             pending,
             self.answers.shown(words.mode),
             self.control,
+            self._lines(),
         )
 
     def tell(self, outcomes: list[Outcome]) -> None:

@@ -19,18 +19,18 @@ BUTTONS = (*WAY, *ASIDE)
 
 @dataclass
 class Shown:
-    """All that the card tells. `lines`: what is too long for the facts, below them. `control`: the
-    page may move the arm. `pending`: what of the gains will be in effect once the law runs.
-    `answers`: what became of requests.
+    """All that the card tells. `control`: the page may move the arm. `pending`: what of the gains
+    will be in effect once the law runs. `answers`: what became of requests. `lines`: what is too
+    long for the facts, below them.
     """
 
     now: Situation
     facts: list[str] = field(default_factory=list)
-    lines: list[str] = field(default_factory=list)
     hints: list[str] = field(default_factory=list)
     pending: list[str] = field(default_factory=list)
     answers: list[Note] = field(default_factory=list)
     control: bool = False
+    lines: list[str] = field(default_factory=list)
 
 
 class StatusCard:
