@@ -38,7 +38,7 @@ def test_the_hand_moves_and_an_episode_is_marked(stack, tmp_path):
     ):
         activate(page, stack)
         tab(page, "episodes")
-        page.get_by_role("textbox", name="task").fill("close the hand")
+        page.locator(".mantine-TextInput-input:visible").first.fill("close the hand")
         page.get_by_role("button", name="start", exact=True).click()
         page.get_by_text("episode (close the hand) runs").wait_for()
         tab(page, "hand")
