@@ -50,7 +50,9 @@ class Arm(Modes, Motions, Streams, World, AbstractContextManager["Arm", None]):
 
     @property
     def episodes(self) -> Episodes:
-        """Marks of episodes in what is being recorded."""
+        """Marks of episodes in what is being recorded. Each call returns when a recorder has its
+        mark in the file; RunError if none has.
+        """
         return self._episodes
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:

@@ -1,4 +1,4 @@
-"""`limber record --episodes`: a recording, and keys that mark its episodes."""
+"""`limber log record --episodes`: a recording, and keys that mark its episodes."""
 
 import time
 from collections.abc import Callable

@@ -13,7 +13,7 @@ AGAIN_S, KEPT_S = 0.2, 10.0  # a mark that is not kept is sent again; so long: a
 
 
 class Episodes:
-    """Marks the log of every limber-record (`limber record`, `Arm.record`) on this machine.
+    """Marks the log of every limber-record (`limber log record`, `Arm.record`) on this machine.
 
     Each call returns when a recorder has its mark in the log's file. RunError if none has.
     """
@@ -56,7 +56,7 @@ class Episodes:
                     return
         raise RunError(
             f"no limber-record has kept the mark within {KEPT_S:g} s: start "
-            "limber record --episodes, or arm.record()"
+            "limber log record --episodes, or arm.record()"
         )
 
     def _is_kept(self, mark: bytes) -> bool:

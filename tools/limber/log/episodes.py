@@ -107,7 +107,7 @@ def show(path: Path, console: Console) -> None:
     log = Log(path)
     found = episodes(log)
     if not found:
-        console.print(f"{log.path}: no episodes; limber record --episodes marks them")
+        console.print(f"{log.path}: no episodes; limber log record --episodes marks them")
         return
     table = tables.table(">episode", ">from s", ">length s", "<outcome", "<", "~task")
     for one in found:

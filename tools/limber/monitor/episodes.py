@@ -12,7 +12,7 @@ from limber.monitor.feed import Batch
 from limber.monitor.live_feed import LiveFeed
 
 STYLE = "font-size:0.85em;line-height:1.3;margin:2px 12px 6px 12px"
-NONE = "Marks go into the log of limber record."
+NONE = "Marks go into the log of limber log record."
 WAITS = "The mark is on its way."
 WORDS = {
     MARK.MARK_START: "runs",
