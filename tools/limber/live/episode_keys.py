@@ -9,7 +9,7 @@ from rich.console import Console
 
 from limber.errors import RunError
 from limber.keys import ENTER, Keys
-from limber.live.episodes import KEPT, Episodes
+from limber.live.episodes import KEPT, Episodes, check_task
 from limber.live.receiver import Receiver
 from limber.live.recording import Recording
 
@@ -19,6 +19,7 @@ LOOK_S = 0.02
 
 def record(out: Path, duration_s: float, task: str, console: Console) -> None:
     """Until q, Ctrl-C, the end of the input, or `duration_s` if it is not 0."""
+    check_task(task)
     end_s = time.monotonic() + duration_s if duration_s else float("inf")
     with closing(Receiver(KEPT)) as receiver, Recording(out) as recording:
         episodes = Episodes(receiver)
@@ -38,8 +39,11 @@ def record(out: Path, duration_s: float, task: str, console: Console) -> None:
                         break
                     if key in ways:
                         word, mark = ways[key]
-                        mark()
-                        console.print(word)
+                        try:
+                            mark()
+                            console.print(word)
+                        except RunError as error:  # the recording goes on
+                            console.print(str(error), style="red", markup=False, soft_wrap=True)
                     elif key not in (None, ENTER):
                         console.print(WORDS, markup=False)
                     elif key is None:

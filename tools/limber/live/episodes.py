@@ -12,6 +12,11 @@ MARK = messages.message_class("episode_mark_t")
 AGAIN_S, KEPT_S = 0.2, 10.0  # a mark that is not kept is sent again; so long: a disk may be busy
 
 
+def check_task(task: str) -> None:
+    if not task.isprintable() or len(task.encode()) > MARK.LONGEST_TASK:
+        raise InputError(f"task: expected one line of at most {MARK.LONGEST_TASK} bytes")
+
+
 class Episodes:
     """Marks the log of every limber-record (`limber log record`, `Arm.record`) on this machine.
 
@@ -26,8 +31,7 @@ class Episodes:
 
     def start(self, task: str = "") -> None:
         """An episode begins; one that has not ended ends without success or failure."""
-        if not task.isprintable() or len(task.encode()) > MARK.LONGEST_TASK:
-            raise InputError(f"task: expected one line of at most {MARK.LONGEST_TASK} bytes")
+        check_task(task)
         self._mark(MARK.MARK_START, task)
 
     def end(self, success: bool) -> None:
