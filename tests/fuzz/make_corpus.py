@@ -221,6 +221,10 @@ def message_inputs(logs: list[Path]) -> None:
             name,
             bytes([number]) + behind_fingerprint(messages.message_class(name)().encode()),
         )
+    mark = messages.message_class("episode_mark_t")()
+    mark.seq, mark.episode, mark.task = 3, 2, "pick the block"
+    number = bytes([names.index("episode_mark_t")])
+    keep("messages", "episode_mark_t-task", number + behind_fingerprint(mark.encode()))
     for log in logs:
         for channel, data in last_of_each_channel(log):
             row = messages.channels().get(channel)
