@@ -129,8 +129,22 @@ void EventLog::append(std::int64_t time_us, std::string_view channel, const void
   block.insert(block.end(), header.begin(), header.end());
   block.insert(block.end(), channel.begin(), channel.end());
   block.insert(block.end(), bytes, bytes + size);
-  waiting_bytes_ += kHeaderBytes + channel.size() + static_cast<std::size_t>(size);
+  const std::size_t bytes_taken = kHeaderBytes + channel.size() + static_cast<std::size_t>(size);
+  waiting_bytes_ += bytes_taken;
+  taken_bytes_ += static_cast<std::int64_t>(bytes_taken);
   if (block.size() >= kBlockBytes) filled_.notify_one();
+}
+
+std::int64_t EventLog::hurry() {
+  const std::scoped_lock lock(mutex_);
+  hurried_bytes_ = taken_bytes_;
+  filled_.notify_one();
+  return hurried_bytes_;
+}
+
+bool EventLog::stored(std::int64_t number) const {
+  const std::scoped_lock lock(mutex_);
+  return stored_bytes_ >= number;
 }
 
 void EventLog::close() {
@@ -159,7 +173,8 @@ void EventLog::run() {
   std::unique_lock lock(mutex_);
   const auto full = [this] { return !blocks_.empty() && blocks_.front().size() >= kBlockBytes; };
   while (failure_.empty()) {
-    filled_.wait_for(lock, kOldestBlock, [&] { return ends_ || full(); });
+    filled_.wait_for(lock, kOldestBlock,
+                     [&] { return ends_ || stored_bytes_ < hurried_bytes_ || full(); });
     if (blocks_.empty()) {
       if (ends_) break;
       continue;
@@ -169,7 +184,7 @@ void EventLog::run() {
     lock.unlock();
     std::string failure;
     try {
-      store(compressed_ ? frame_of(block) : block);
+      store(compressed_ ? frame_of(block) : block, block.size());
     } catch (const std::runtime_error& error) {
       failure = error.what();
     }
@@ -182,7 +197,7 @@ void EventLog::run() {
   sync();
 }
 
-void EventLog::store(const Block& block) {
+void EventLog::store(const Block& block, std::size_t taken_bytes) {
   check_free_space();
   for (std::size_t written = 0; written < block.size();) {
     const ssize_t size = ::write(file_.get(), block.data() + written, block.size() - written);
@@ -194,6 +209,7 @@ void EventLog::store(const Block& block) {
   {
     const std::scoped_lock lock(mutex_);
     bytes_on_disk_ += static_cast<std::int64_t>(block.size());
+    stored_bytes_ += static_cast<std::int64_t>(taken_bytes);
   }
   if (std::chrono::steady_clock::now() - synced_ > kBetweenSyncs) sync();
 }

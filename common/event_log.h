@@ -43,6 +43,10 @@ class EventLog {
   bool offer(std::int64_t time_us, std::string_view channel, const void* data, std::int32_t size);
   /// Waits for room. Throws std::runtime_error when the disk refuses (full, gone).
   void write(std::int64_t time_us, std::string_view channel, const void* data, std::int32_t size);
+  /// Brings what was taken into the file without delay, and does not wait. `stored()` of the number
+  /// it returns tells when it is there and outlives this process.
+  std::int64_t hurry();
+  bool stored(std::int64_t number) const;
   /// All events are on the disk when it returns. Throws std::runtime_error when the disk refuses.
   void close();
 
@@ -56,7 +60,8 @@ class EventLog {
   bool has_room() const { return waiting_bytes_ < kMostWaiting_bytes || !failure_.empty(); }
   void append(std::int64_t time_us, std::string_view channel, const void* data, std::int32_t size);
   void run();
-  void store(const Block& block);
+  /// `taken_bytes`: of the events in it.
+  void store(const Block& block, std::size_t taken_bytes);
   void check_free_space() const;
   void sync();
 
@@ -74,6 +79,9 @@ class EventLog {
   std::int64_t bytes_on_disk_ = 0;
   std::string failure_;
   bool ends_ = false;
+  std::int64_t taken_bytes_ = 0;
+  std::int64_t stored_bytes_ = 0;
+  std::int64_t hurried_bytes_ = 0;  // to be stored though their block is not full
 
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();  // the thread's
   std::thread thread_;

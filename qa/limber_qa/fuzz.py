@@ -29,9 +29,9 @@ OUT = ROOT / "out" / "fuzz"
 MUTATIONS = 20_000
 FILE_MUTATIONS = 2_000
 TEXTS = ("robot_yaml", "scenario", "urdf")
-SLOW = ("joint_command", "joint_state", *TEXTS)
+SLOW = ("joint_command", "joint_state", "streams", *TEXTS)
 # libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
-SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory")
+SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory", "streams")
 LONGEST = dict.fromkeys(SHORT, 256) | dict.fromkeys(TEXTS, 1024)
 
 

@@ -12,6 +12,7 @@ from limber.live.arm_motions import Motions
 from limber.live.arm_state import Pose, Quantities, State
 from limber.live.arm_streams import Stream, Streams
 from limber.live.arm_world import World
+from limber.live.episodes import Episodes
 from limber.live.hand import Hand, HandState
 from limber.live.recording import Recording
 from limber.paths import ROOT
@@ -24,6 +25,7 @@ CALLS = {
     "Targets with times": Streams,
     "Compliance, lease": Arm,
     "Hand: `arm.hand`": Hand,
+    "Recorded episodes: `arm.episodes`": Episodes,
     "Simulated world": World,
 }
 OTHERS = (Pose, State, Stream, HandState, Recording)

@@ -95,6 +95,23 @@ TEST_F(EventLogTest, WhatWaitsIsWrittenWithinASecond) {
   EXPECT_EQ(fs::file_size(path("a.lcmlog")), 28 + 1 + 1);
 }
 
+/// Far less than a block, again and again within the time that one may wait.
+TEST_F(EventLogTest, WhatIsHurriedIsInTheFileAsSoonAsItIsSaidToBe) {
+  EventLog plain(path("a.lcmlog")), compressed(path("a.lcmlog.zst"));
+  for (int i = 0; i < 20; ++i) {
+    for (EventLog* log : {&plain, &compressed}) {
+      log->write(i, "A", "x", 1);
+      const std::int64_t number = log->hurry();
+      EXPECT_EQ(number, 30 * (i + 1));
+      EXPECT_FALSE(log->stored(number + 1));
+      while (!log->stored(number)) usleep(100);
+    }
+    EXPECT_EQ(fs::file_size(path("a.lcmlog")), 30U * (i + 1));
+    EXPECT_EQ(static_cast<std::int64_t>(fs::file_size(path("a.lcmlog.zst"))),
+              compressed.bytes_on_disk());
+  }
+}
+
 TEST_F(EventLogTest, NothingIsOverwritten) {
   EventLog(path("a.lcmlog")).write(0, "A", "x", 1);
   EXPECT_THROW(EventLog{path("a.lcmlog")}, ConfigError);

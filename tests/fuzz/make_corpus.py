@@ -222,6 +222,10 @@ def message_inputs(logs: list[Path]) -> None:
             name,
             bytes([number]) + behind_fingerprint(messages.message_class(name)().encode()),
         )
+    mark = messages.message_class("episode_mark_t")()
+    mark.seq, mark.episode, mark.task = 3, 2, "pick the block"
+    number = bytes([names.index("episode_mark_t")])
+    keep("messages", "episode_mark_t-task", number + behind_fingerprint(mark.encode()))
     for log in logs:
         for channel, data in last_of_each_channel(log):
             row = messages.channels().get(channel)
@@ -246,6 +250,29 @@ def message_inputs(logs: list[Path]) -> None:
     keep("joint_state", "nan", b"\0" + patches((q, nan)) + bytes([8 * 7, 0]))
     requests = b"".join(bytes([8 + kind]) + patches((20, half)) for kind in (4, 5, 6, 7))
     keep("joint_state", "requests", requests * 2)
+
+
+def stream_inputs() -> None:
+    """As streams.cc reads them: type and cycles, patches. Offsets are those of the messages."""
+
+    def message(kind: int, *changes: tuple[int, bytes], cycles: int = 31) -> bytes:
+        return bytes([8 * cycles + kind]) + patches(*changes)
+
+    joints, pose, twist, overlay = 0, 1, 2, 6
+    t0, delay, knots, dt, value, tau = 32, 40, 50, 52, 116, 33
+    near, far, much = (struct.pack(">f", x) for x in (0.3, 0.5, 1e30))
+    nan = struct.pack(">f", float("nan"))
+    for name, kind in (("joints", joints), ("pose", pose), ("twist", twist)):
+        followed = message(kind) * 4
+        jumps = message(kind, (value, near), (value + 64, far)) * 3
+        keep("streams", name, followed + jumps + message(kind, (knots, b"\x10"), (delay, bytes(4))))
+    spoilt = [(value, nan), (value, much), (dt + 4, bytes(4)), (knots, b"\x11"), (delay, much)]
+    spoilt += [(t0, bytes(8)), (t0, b"\x7f" + bytes(7)), (t0, b"\xff" * 8)]
+    keep("streams", "spoilt", b"".join(message(joints, change, cycles=3) for change in spoilt))
+    flood = message(joints, cycles=0) + message(pose, cycles=0) + message(twist, cycles=0)
+    keep("streams", "flood", flood * 10)
+    on_top = message(overlay, (tau, near), cycles=5)
+    keep("streams", "overlay", message(joints) + on_top * 6 + message(overlay, (tau, much)))
 
 
 def last_of_each_channel(log: Path) -> Iterator[tuple[str, bytes]]:
@@ -285,6 +312,7 @@ def main() -> None:
             if protocol == "cia402":
                 sdo_inputs(frames)
         message_inputs(logs)
+    stream_inputs()
     sensor_inputs()
     black_box_inputs()
     shared_memory_inputs()

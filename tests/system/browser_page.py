@@ -38,8 +38,8 @@ FOV = np.radians(75)  # vertical, the page's default
 class Arm:
     """The three processes, and what they and the page have sent."""
 
-    def __init__(self, directory) -> None:
-        self.directory, self.feed = directory, LiveFeed()
+    def __init__(self, directory, robot: str = ROBOT) -> None:
+        self.directory, self.robot, self.feed = directory, robot, LiveFeed()
         self._requests = Receiver("PUSH", "MODE_REQUEST")
         self._streams = {name: self._requests.stream(name) for name in self._requests.channels}
         self.processes: dict[str, subprocess.Popen] = {}
@@ -57,7 +57,7 @@ class Arm:
                 self.sent[name] += [messages.decode(kind, data) for data in stream.raw()]
 
     def start(self, name: str, *arguments: str) -> None:
-        command = ["nice", "-n", "19", BIN / f"limber-{name}", "--robot", ROBOT, *arguments]
+        command = ["nice", "-n", "19", BIN / f"limber-{name}", "--robot", self.robot, *arguments]
         with open(self.directory / f"{name}.log", "a", encoding="utf-8") as log:
             self.processes[name] = subprocess.Popen(command, stdout=log, stderr=log)
 

@@ -1,7 +1,6 @@
 """The recorder: nothing lost, nothing overwritten, and datagrams that are no messages."""
 
 import json
-import os
 import signal
 import socket
 import struct
@@ -16,10 +15,10 @@ from processes import started
 from limber.lcmtypes.joint_state_t import joint_state_t
 from limber.lcmtypes.mode_request_t import mode_request_t
 from limber.log.reader import Log
+from recorders import URL, recording
 from stack import BIN, USER_URL
 
 GROUP = ("239.255.76.67", 7667)
-URL = "udpm://239.255.76.67:7667?ttl=0"
 # The header of a short LCM message, number 2, and a channel's name without its end.
 ENDLESS_NAME = b"LC02" + (2).to_bytes(4, "big") + b"AB"
 
@@ -46,22 +45,6 @@ def test_a_broken_datagram_is_left_out(tmp_path):
         assert recorder.wait(timeout=300) == 0, output.read_text()
     assert output.read_text().count("impossible size") == 1
     assert [event.channel for event in lcm.EventLog(str(path))] == ["MODE_REQUEST"]
-
-
-@contextmanager
-def recording(path, *options, url=URL):
-    """limber-record, once it listens; what it has said is in `path`.txt."""
-    said = path.with_suffix(".txt")
-    command = [str(BIN / "limber-record"), "--out", str(path), *options]
-    surroundings = {**os.environ, "LCM_DEFAULT_URL": url}
-    with (
-        said.open("w") as log,
-        started(command, stdout=log, stderr=log, env=surroundings) as recorder,
-    ):
-        while "recording" not in said.read_text():
-            assert recorder.poll() is None, said.read_text()
-            time.sleep(0.02)
-        yield recorder
 
 
 def publish(count, pause_s=0.0):

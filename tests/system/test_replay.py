@@ -1,5 +1,6 @@
 """`limber log replay` on the wire: what is sent and when, and what stops it."""
 
+import signal
 import subprocess
 import sys
 import time
@@ -8,6 +9,8 @@ import lcm
 import pytest
 
 from limber import messages
+from limber.log.reader import Log
+from recorders import recording
 from stack import USER_URL, Listener
 
 SESSION = 77
@@ -122,3 +125,24 @@ def test_stopped_by_a_driver_that_starts_meanwhile(log):
     _, errors = process.communicate(timeout=300)
     assert process.returncode == 3
     assert "a driver has started on this address: the replay is stopped" in errors
+
+
+def test_another_programs_long_message_comes_whole(tmp_path):
+    """200 kB, in fragments: to LCM's own receiver, and to limber-record."""
+    picture = bytes(range(256)) * 800
+    path = tmp_path / "long.lcmlog"
+    file = lcm.EventLog(str(path), "w")
+    file.write_event(1_000_000, "JOINT_STATE", state(0))
+    file.write_event(1_000_001, "CAMERA", picture)
+    file.close()
+    heard = []
+    line = lcm.LCM(USER_URL)
+    line.subscribe("CAMERA", lambda _, data: heard.append(data))
+    with recording(tmp_path / "again.lcmlog") as recorder:
+        out, errors = replay(path, "--channels", "CAMERA").communicate(timeout=300)
+        while line.handle_timeout(500):
+            pass
+        recorder.send_signal(signal.SIGINT)
+        assert recorder.wait(timeout=300) == 0
+    assert heard == [picture], out + errors
+    assert Log(tmp_path / "again.lcmlog").raw("CAMERA") == [picture]

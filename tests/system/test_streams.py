@@ -1,5 +1,6 @@
 """Targets with times from a script to the real processes."""
 
+import struct
 import subprocess
 import sys
 import time
@@ -8,9 +9,13 @@ import numpy as np
 import pytest
 from processes import started
 
-from limber import Arm, RefusedError
+from limber import Arm, RefusedError, messages
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
+from limber.live import stream_messages
+from limber.live.line import Line
 from limber.live.script_client import script_client
+from limber.model.robot import load_robot
+from stack import USER_URL
 
 
 @pytest.fixture
@@ -111,3 +116,100 @@ def test_torques_on_top_at_500_hz_make_no_cycle_late(standing):
         assert status["overlays_taken"] - before["overlays_taken"] >= 490
         assert arm.mode == "active"
         assert sum(arm.lost.values()) == 0
+
+
+class Flood:
+    """Sends TARGET_STREAMs of the arm's client, with bytes changed where the moment needs it."""
+
+    SEQ, CLIENT_AND_RUN, T0 = 8, 24, 40
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm, self.line = arm, Line(USER_URL)
+        self.random = np.random.default_rng(7)
+        self.home = arm.q
+        self.who = struct.pack(">qq", int(arm.state.status["controller"]), arm._port.client)
+
+    def message(self, wrong: str = "") -> bytes:
+        """Up to 0.3 rad beside where the arm was, three knots; or wrong in one way."""
+        knots = self.home + self.random.uniform(-0.3, 0.3, (3, 7))
+        given = {"joints_rad": knots, "delay_s": float(self.random.uniform(0.0, 0.1))}
+        (made,) = stream_messages.targets(7, np.array([0.0, 0.02, 0.05]), given)
+        if wrong == "nan":
+            made.value[1][3] = np.nan
+        elif wrong == "kind":
+            made.kind = 9
+        elif wrong == "beyond":
+            made.value[0][0] = 1e6
+        elif wrong == "dt":
+            made.dt_s[1] = made.dt_s[2]
+        return made.encode()
+
+    def send(self, data: bytes, after_s: float = 0.0, seq_before: int = 0) -> None:
+        made = bytearray(data)
+        seq = time.monotonic_ns() - seq_before
+        struct.pack_into(">q", made, self.SEQ, seq)
+        made[self.CLIENT_AND_RUN : self.CLIENT_AND_RUN + 16] = self.who
+        t0_ns = round(1e9 * (self.arm.time_s + after_s))
+        struct.pack_into(">q", made, self.T0, max(t0_ns, 0))
+        self.line.publish("TARGET_STREAM", bytes(made))
+
+
+def counts(arm: Arm) -> np.ndarray:
+    """Taken, late, stale, refused."""
+    found = arm.state.targets
+    return np.array([found.taken, found.late, found.stale, found.refused])
+
+
+def passes_no_limit(stack, first: int) -> None:
+    """Torques from that message on, and the goal's speed, whatever has come."""
+    robot = load_robot("openarm").resolved
+    limit = np.array([joint["torque_limit_Nm"] for joint in robot["joints"]])
+    rate = np.array([joint["torque_rate_limit_Nm_per_s"] for joint in robot["joints"]])
+    sent = messages.views("joint_command_t", stack.user.raw["JOINT_TORQUE"][first:])
+    tau = sent["tau"][:, :7]
+    assert len(sent) > 500 and (np.abs(tau) <= limit * (1 + 1e-9)).all()
+    follows = np.diff(sent["state_seq"]) == 1
+    assert (np.abs(np.diff(tau, axis=0))[follows] <= 1e-3 * rate * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("law", ["cartesian_impedance", "joint_impedance"])
+def test_a_flood_of_targets_passes_no_limit_and_is_counted(standing, law):
+    """10,000 a second for two seconds, good and wrong ones, from the past and the future, twice and
+    out of order. The queue holds eight a cycle: what does not fit is dropped, and never half read.
+    """
+    with Arm() as arm:
+        arm.activate()
+        arm.gains(law)
+        arm.wait(for_s=0.5)
+        flood = Flood(arm)
+        kinds = [""] * 12 + ["nan", "kind", "beyond", "dt"]
+        ready = [flood.message(kind) for kind in kinds * 8]
+        when = [0.0] * 4 + [-0.15, -0.3, -10.0, 2.0, 6.0, 1e9]
+        refused_before = np.array(standing.driver_status.commands_refused)
+        first, before = standing.user.count("JOINT_TORQUE"), counts(arm)
+        begun_s = time.monotonic()
+        for i in range(20_000):
+            late = i % 17 == 0
+            flood.send(ready[i % len(ready)], when[i % len(when)], 10**9 if late else 0)
+            time.sleep(max(0.0, begun_s + i / 10_000 - time.monotonic()))
+        arm.wait(for_s=0.2)
+        taken, late, stale, refused = found = counts(arm) - before
+        assert (found > 0).all() and late <= taken
+        assert taken + stale + refused <= 20_000
+        assert arm.mode == "active" and arm.faults == []
+        passes_no_limit(standing, first)
+        assert (np.array(standing.driver_status.commands_refused) == refused_before).all()
+        good, wrong = flood.message(), flood.message("nan")
+        for data, options, expected in (
+            (good, {}, (1, 0, 0, 0)),
+            (good, {"after_s": -0.3}, (0, 0, 1, 0)),
+            (good, {"seq_before": 10**9}, (0, 0, 1, 0)),
+            (good, {"after_s": 6.0}, (0, 0, 0, 1)),
+            (wrong, {}, (0, 0, 0, 1)),
+        ):
+            before = counts(arm)
+            flood.send(data, **options)
+            arm.wait(until=lambda _, b=before: (counts(arm) != b).any(), timeout_s=5)
+            arm.wait(for_s=0.05)
+            assert tuple(counts(arm) - before) == expected, options
+        flood.line.close()

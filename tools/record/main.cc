@@ -10,6 +10,7 @@
 #include "common/program.h"
 #include "common/realtime.h"
 #include "common/wait_readable.h"
+#include "tools/record/episode_marks.h"
 #include "tools/record/lcm_listener.h"
 #include "tools/record/recorder.h"
 
@@ -32,13 +33,17 @@ int record(const Options& given, const std::string& url) {
   limber::raise_priority(/*paced=*/true);  // a run in lock step beside other work waits for nobody
   limber::Recorder recorder(given.path, static_cast<std::int64_t>(given.least_free_MB * 1e6));
   limber::LcmListener listener(url);
+  limber::EpisodeMarks marks(url);
   const auto write = [&](std::int64_t time_us, const limber::LcmDatagram& message) {
     recorder.write(time_us, message.channel, message.message);
+    if (marks.take(message)) marks.wait_for(recorder.hurry());
   };
   spdlog::info("recording {} to {}", url, given.path);
   const std::int64_t start_ns = limber::monotonic_ns();
   std::int64_t stopped_ns = 0;
+  const auto stored = [&](std::int64_t number) { return recorder.stored(number); };
   while (true) {
+    marks.confirm(stored);
     const std::int64_t now = limber::monotonic_ns();
     if (stopped_ns == 0 &&
         (stop != 0 || (given.duration_s > 0 && now - start_ns > given.duration_s * 1e9)))
@@ -57,6 +62,7 @@ int record(const Options& given, const std::string& url) {
     limber::wait_readable(listener.descriptor(), now + 50'000'000);
   }
   recorder.close();
+  marks.confirm(stored);
   if (listener.incomplete() > 0) {
     spdlog::warn("{} messages in fragments did not come whole: left out", listener.incomplete());
   }

@@ -29,6 +29,9 @@ class Recorder {
   /// A message that the disk is too slow for is counted as lost; the first is warned of.
   /// Throws std::runtime_error when the disk refuses (full, gone).
   void write(std::int64_t time_us, std::string_view channel, std::span<const std::uint8_t> message);
+  /// See EventLog.
+  std::int64_t hurry() { return log_.hurry(); }
+  bool stored(std::int64_t number) const { return log_.stored(number); }
   /// Throws std::runtime_error when the disk refuses.
   void close() { log_.close(); }
 

@@ -7,7 +7,7 @@ import termios
 
 import pytest
 
-from limber.joint_check.keys import ENTER, Keys
+from limber.keys import ENTER, Keys
 
 
 @pytest.fixture

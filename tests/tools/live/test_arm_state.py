@@ -6,7 +6,7 @@ from made_logs import records
 
 from limber import messages
 from limber.errors import InputError
-from limber.live.arm_state import Pose, State
+from limber.live.arm_state import TARGET_COUNTS, Pose, State
 from limber.live.arrival import RestWatch, Target
 
 JOINTS = ("shoulder", "elbow")
@@ -32,6 +32,14 @@ def test_joint_quantities_have_one_entry_a_joint():
     np.testing.assert_array_equal(now.tau, [0.0, -0.1])
     assert now.q.dtype == float
     assert (now.time_s, now.mode, now.drives) == (1.5, "active", "on")
+
+
+def test_targets_in_a_line():
+    counts = {f"stream_{name}": i for i, name in enumerate(TARGET_COUNTS, 1)}
+    now = state({"stream": 2, "stream_margin_s": -0.25, **counts})
+    words = "1 taken, 2 late, 3 stale, 4 refused, 5 starved"
+    assert str(now.targets) == f"targets waiting, margin -250 ms: {words}"
+    assert str(state().targets).startswith("targets none: 0 taken")
 
 
 def test_a_state_keeps_its_values():

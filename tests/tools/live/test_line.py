@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 
 from limber.errors import RunError
-from limber.live.line import Line
+from limber.live.line import Line, datagrams
 
 
 def test_the_datagrams():
@@ -35,9 +35,43 @@ def test_another_address_is_refused(url):
         Line(url)
 
 
-def test_too_much_for_a_datagram_is_told():
-    with (
-        closing(Line("udpm://127.0.0.1:7667?ttl=0")) as line,
-        pytest.raises(RunError, match="PUSH cannot be sent"),
-    ):
-        line.publish("PUSH", bytes(70_000))
+@pytest.fixture
+def two():
+    """A line, and the socket that hears it."""
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as hears:
+        hears.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 21)
+        hears.bind(("127.0.0.1", 0))
+        hears.settimeout(5)
+        with closing(Line(f"udpm://127.0.0.1:{hears.getsockname()[1]}?ttl=0")) as line:
+            yield line, hears
+
+
+def test_the_longest_datagram(two):
+    line, hears = two
+    line.publish("ARM", bytes(65_495))  # with the channel's name 65,499 bytes
+    assert hears.recv(70_000) == b"LC02" + bytes(4) + b"ARM\0" + bytes(65_495)
+
+
+def test_the_fragments_of_a_longer_message(two):
+    """70,000 bytes, 1_1170h: 65,483 of them behind "ARM\\0" make a part of 65,487 bytes, and
+    4,517 are left; they begin at byte 65,483, FFCBh.
+    """
+    line, hears = two
+    message = bytes(range(250)) * 280
+    line.publish("PUSH", b"")
+    line.publish("ARM", message)
+    hears.recv(2000)
+    head = b"LC03" + b"\0\0\0\x01" + b"\x00\x01\x11\x70"
+    assert hears.recv(70_000) == (
+        head + b"\0\0\0\0" + b"\0\0" + b"\0\x02" + b"ARM\0" + message[:65_483]
+    )
+    assert hears.recv(70_000) == head + b"\0\0\xff\xcb" + b"\0\x01" + b"\0\x02" + message[65_483:]
+
+
+@pytest.mark.parametrize("size", [65_496, 65_487 * 2 - 4, 65_487 * 2 - 3, 300_000])
+def test_every_byte_is_sent_once(size):
+    """Fragments as long as they may be, whatever is left for the last."""
+    parts = list(datagrams(7, "ARM", bytes(size)))
+    lengths = [len(part) - 20 for part in parts]
+    assert sum(lengths) == size + 4 and max(lengths) <= 65_487 and min(lengths) > 0
+    assert {part[18:20] for part in parts} == {len(parts).to_bytes(2, "big")}

@@ -18,7 +18,7 @@ JOINTS = 2
 NAMES = Names(["shoulder", "elbow"], [])
 
 
-def events(active_s, stream=()):
+def events(active_s, stream=(), marks=()):
     """Four seconds: q = 0.1 t and 0.2 t, torque 1 and 2, contact 3 and 4; ACTIVE in `active_s`."""
     state, status = records("joint_state_t", 4000), records("controller_status_t", 800)
     t, status_t = np.arange(4000) * 1e-3, np.arange(800) * 5e-3
@@ -37,13 +37,14 @@ def events(active_s, stream=()):
         for row in rows
     ]
     made += [(int(at * 1e6), "TARGET_STREAM", message.encode()) for at, message in stream]
+    made += [(int(at * 1e6), "EPISODE", message.encode()) for at, message in marks]
     made.sort(key=lambda event: event[0])
     return [event_bytes(name, data, i, at) for i, (at, name, data) in enumerate(made)]
 
 
-def converted(tmp_path, active_s, stream=()):
+def converted(tmp_path, active_s, stream=(), marks=()):
     log = tmp_path / "run.lcmlog"
-    log.write_bytes(b"".join(events(active_s, stream)))
+    log.write_bytes(b"".join(events(active_s, stream, marks)))
     out = tmp_path / "dataset"
     conversion.convert(log, "lerobot", out, (), NAMES, Console(quiet=True))
     data = parquet.read_table(out / "data/chunk-000/file-000.parquet").to_pydict()
@@ -101,3 +102,55 @@ def test_a_log_without_an_episode_is_told(tmp_path):
     with pytest.raises(InputError, match="nowhere in ACTIVE"):
         converted(tmp_path, [])
     assert not (tmp_path / "dataset").exists()
+
+
+def mark(at_s, kind, task=""):
+    message = message_class("episode_mark_t")()
+    message.seq, message.mark, message.task = round(1e9 * at_s), kind, task
+    return at_s, message
+
+
+def test_marks_are_the_episodes_with_task_and_success(tmp_path):
+    """Whatever the mode is; the dropped one and the one without an end are none."""
+    kinds = message_class("episode_mark_t")
+    marks = [
+        mark(0.2, kinds.MARK_START, "pick"),
+        mark(1.2, kinds.MARK_SUCCESS),
+        mark(1.5, kinds.MARK_START, "pick"),
+        mark(1.8, kinds.MARK_FAILURE),
+        mark(1.9, kinds.MARK_DROP),
+        mark(2.0, kinds.MARK_START, "place"),
+        mark(3.0, kinds.MARK_FAILURE),
+        mark(3.2, kinds.MARK_START, "pick"),
+        mark(3.5, kinds.MARK_SUCCESS),
+        mark(3.8, kinds.MARK_START, "never"),
+    ]
+    out, data = converted(tmp_path, [(0.5, 3.5)], marks=marks)
+    info = json.loads((out / "meta/info.json").read_text())
+    found = parquet.read_table(out / "meta/episodes/chunk-000/file-000.parquet").to_pydict()
+    assert (info["total_episodes"], info["total_tasks"]) == (3, 2)
+    assert found["length"] == [30, 30, 9]
+    assert found["tasks"] == [["pick"], ["place"], ["pick"]]
+    assert found["success"] == [True, False, True]
+    tasks = parquet.read_table(out / "meta/tasks.parquet").to_pydict()
+    assert tasks == {"task_index": [0, 1], "task": ["pick", "place"]}
+    assert data["task_index"].tolist() == [0] * 30 + [1] * 30 + [0] * 9
+    assert np.flatnonzero(data["next.done"]).tolist() == [29, 59, 68]
+    assert np.flatnonzero(data["next.success"]).tolist() == [29, 68]
+    t = np.array([0.2, 2.0, 3.2])[data["episode_index"]] + data["frame_index"] / FPS
+    shoulder = data["observation.state"][:, 0]
+    np.testing.assert_allclose(shoulder, np.degrees(0.1 * t), atol=np.degrees(0.1) * 0.011)
+    assert info["features"]["next.success"] == {"dtype": "bool", "shape": [1], "names": None}
+
+
+def test_without_marks_nothing_is_said_of_success(tmp_path):
+    out, data = converted(tmp_path, [(0.5, 3.5)])
+    assert "next.success" not in data
+    assert "next.success" not in json.loads((out / "meta/info.json").read_text())["features"]
+
+
+def test_marks_without_an_episode_are_told(tmp_path):
+    """They stand before what the mode would make of it."""
+    start = mark(0.6, message_class("episode_mark_t").MARK_START)
+    with pytest.raises(InputError, match="no mark ends one"):
+        converted(tmp_path, [(0.5, 3.5)], marks=[start])

@@ -47,6 +47,15 @@ def until(condition) -> None:
         time.sleep(0.01)
 
 
+def test_a_text_is_a_line_of_bounded_length(served, viewer):
+    field = served.gui.add_text("a", "before")
+    for value in [None, 3, 0.5, True, [], {"a": 1}, "x" * 201, "é" * 101, "a\nb", "\x1b[2J", "\0"]:
+        say(viewer, field, {"value": value})
+    say(viewer, field, {"value": "pick <b>"})
+    until(lambda: field.value != "before")
+    assert field.value == "pick <b>"
+
+
 FIELDS = {
     "slider": (lambda gui: gui.add_slider("a", 0.0, 10.0, 0.1, 3.0), [True], 7),
     "dropdown": (lambda gui: gui.add_dropdown("a", ("x", "y")), [1, 0.5, True], "y"),

@@ -64,3 +64,9 @@ def test_nothing_from_outside_becomes_markup():
         Situation(BAD, evil, evil, [note, note], "FAULT"), [evil], [evil], [evil], [note], True
     )
     assert "<img" not in "".join(card(shown))
+
+
+def test_hand_and_targets_stand_below_the_facts():
+    lines = ["hand 50 mm", "targets <running>"]
+    _, facts, _ = card(Shown(Situation(WARN, "ACTIVE", ""), facts=["a law"], lines=lines))
+    assert facts.index("a law") < facts.index("hand 50 mm") < facts.index("&lt;running&gt;")

@@ -80,9 +80,22 @@ def record(
     duration: Annotated[
         float, typer.Option(min=0.0, max=1e6, help="Seconds; 0: until Ctrl-C.")
     ] = 0.0,
+    episodes: Annotated[
+        bool, typer.Option("--episodes", help="Mark episodes by key: start, success, failure.")
+    ] = False,
+    task: Annotated[str, typer.Option(help="What is done in them, such as 'pick a block'.")] = "",
 ) -> None:
     """Record all messages without loss, until Ctrl-C."""
     from limber.paths import output_folder
 
     output_folder(out.parent)
+    if task and not episodes:
+        raise InputError("--task belongs to --episodes")
+    if episodes:
+        from limber.live import episode_keys
+        from limber.log.episodes import show
+
+        episode_keys.record(out, duration, task, console)
+        show(out, console)
+        return
     become("limber-record", "--out", str(out), "--duration", str(duration))

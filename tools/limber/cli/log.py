@@ -89,6 +89,32 @@ def convert(
     conversion.convert(path, to, out, _names(channels), names, console, run)
 
 
+@groups.log.command(epilog="Example: limber log episodes picks.lcmlog.zst --drop 2")
+def episodes(
+    path: LogPath,
+    drop: Annotated[
+        list[int] | None, typer.Option(min=1, help="Leave out what this one holds; it stays.")
+    ] = None,
+    keep: Annotated[list[int] | None, typer.Option(min=1, help="Takes --drop back.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Picture to write (.png): episodes over each other.")
+    ] = None,
+    only: Annotated[
+        list[int] | None, typer.Option(min=1, help="In the picture; default: all but dropped.")
+    ] = None,
+) -> None:
+    """List the episodes that were marked while recording, drop some, draw them."""
+    from limber.log import episodes as module
+
+    if drop or keep:
+        module.mark(path, drop or [], keep or [])
+    module.show(path, console)
+    if plot:
+        from limber.plot import episodes as picture
+
+        picture.draw(path, only or [], plot, names_of(_robot_of(path, None)).joints, console)
+
+
 @groups.log.command(epilog="Example: limber log cut out/demo-1 --to 8 --out push.lcmlog.zst")
 def cut(
     path: LogPath,

@@ -9,10 +9,10 @@ from rich.text import Text
 from limber.joint_check import judge, wiring, words
 from limber.joint_check.drives import Drives, Readings
 from limber.joint_check.judge import Finding, Step, Verdict
-from limber.joint_check.keys import ENTER, Keys
 from limber.joint_check.results import SKIPPED, Row
 from limber.joint_check.screen import Screen
 from limber.joint_check.view import BAD, GOOD, WARN, awaited, picture
+from limber.keys import ENTER, Keys
 from limber.model.robot import Robot
 
 PERIOD_S = 0.05

@@ -8,8 +8,8 @@ from limber.errors import OK, OUT_OF_TOLERANCE, InputError
 from limber.joint_check import results, wiring
 from limber.joint_check.check import Amounts, Check
 from limber.joint_check.drives import DriverOptions, drives
-from limber.joint_check.keys import Keys
 from limber.joint_check.screen import Screen
+from limber.keys import Keys
 from limber.model.robot import load_robot
 
 HINT = (

@@ -11,6 +11,7 @@ from limber.live.arm_modes import Modes
 from limber.live.arm_motions import Motions
 from limber.live.arm_streams import Streams
 from limber.live.arm_world import World
+from limber.live.episodes import Episodes
 from limber.live.gains_message import gains as gains_message
 from limber.live.hand import Hand
 
@@ -39,12 +40,20 @@ class Arm(Modes, Motions, Streams, World, AbstractContextManager["Arm", None]):
     ) -> None:
         super().__init__(robot, client, url)
         self._hand = Hand(self._link, self._send)
+        self._episodes = Episodes(self._link.receiver)
         atexit.register(self.close)
 
     @property
     def hand(self) -> Hand:
         """Requests to the hand, if there is one, and its state."""
         return self._hand
+
+    @property
+    def episodes(self) -> Episodes:
+        """Marks of episodes in what is being recorded. Each call returns when a recorder has its
+        mark in the file; RunError if none has.
+        """
+        return self._episodes
 
     def gains(self, law: str | None = None, ramp_s: float = 0.0, **keys: Any) -> None:
         """Changes law, numbers, choices and settings that are named; all else stays.

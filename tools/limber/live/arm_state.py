@@ -53,6 +53,19 @@ class Targets:
     refused: int
     starved: int
 
+    def __str__(self) -> str:
+        counts = ", ".join(f"{getattr(self, name)} {name}" for name in TARGET_COUNTS)
+        margin = "" if self.state == "none" else f", margin {1e3 * self.margin_s:+.0f} ms"
+        return f"targets {self.state}{margin}: {counts}"
+
+
+def targets_of(status: np.void) -> Targets:
+    """Of a CONTROLLER_STATUS."""
+    state = constants("controller_status_t", "STREAM_")[int(status["stream"])].lower()
+    delay_s, margin_s = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
+    counts = {name: int(status[f"stream_{name}"]) for name in TARGET_COUNTS}
+    return Targets(state, delay_s, margin_s, **counts)
+
 
 class Quantities:
     """The quantities of an arm at one time.
@@ -175,11 +188,7 @@ class Quantities:
     @property
     def targets(self) -> Targets:
         """Of the targets with times that have come, see Targets."""
-        status = self._records()[1]
-        state = constants("controller_status_t", "STREAM_")[int(status["stream"])].lower()
-        delay_s, margin_s = (float(status[f"stream_{name}_s"]) for name in ("delay", "margin"))
-        counts = {name: int(status[f"stream_{name}"]) for name in TARGET_COUNTS}
-        return Targets(state, delay_s, margin_s, **counts)
+        return targets_of(self._records()[1])
 
     @property
     def faults(self) -> list[str]:

@@ -121,6 +121,8 @@ def _state(state: np.void) -> HandState:
 
 def hand_text(state: np.void) -> str:
     """Of a HAND_STATE, in a line."""
-    words = [word for word in FLAGS if state[word]]
-    text = f"hand {float(state['width_m']) * 1e3:.1f} mm, {float(state['force_N']):.1f} N"
-    return ", ".join([text, *words])
+    parts = [f"hand {float(state['width_m']) * 1e3:.1f} mm", f"{float(state['force_N']):.1f} N"]
+    parts += [word for word in FLAGS if state[word]]
+    if state["temperature_degC"]:  # that the drive reports
+        parts.append(f"{float(state['temperature_degC']):.0f} °C")
+    return ", ".join(parts)

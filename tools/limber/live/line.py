@@ -2,7 +2,7 @@
 
 import socket
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import count
 from urllib.parse import parse_qs, urlsplit
 
@@ -11,6 +11,7 @@ from limber.live.network import CURE
 from limber.live.plane_receiver import PlaneReceiver
 
 GROUP, PORT = "239.255.76.67", 7667  # LCM's own
+LONGEST_SHORT, LONGEST_PART = 65_499, 65_487  # liblcm's, of what follows the header
 
 Handler = Callable[[str, bytes], None]
 
@@ -59,16 +60,13 @@ class Line:
         return 0 if self._receiver is None else self._receiver.malformed()
 
     def publish(self, channel: str, data: bytes) -> None:
-        """One datagram of LCM's: magic, number, channel, 0, message. Raises RunError without a
-        multicast route, or for more than a datagram holds.
-        """
+        """In one datagram, or in fragments, as LCM sends it. RunError without a multicast route."""
         if self._sender is None:
             self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._ttl)
-        header = struct.pack(">4sI", b"LC02", next(self._numbers) % 2**32)
-        datagram = header + channel.encode("ascii") + b"\0" + data
         try:
-            self._sender.sendto(datagram, (self._group, self._port))
+            for datagram in datagrams(next(self._numbers) % 2**32, channel, data):
+                self._sender.sendto(datagram, (self._group, self._port))
         except OSError as error:
             raise RunError(f"{channel} cannot be sent ({error.strerror}): {CURE}") from error
 
@@ -81,6 +79,23 @@ class Line:
         if self._sender is not None:
             self._sender.close()
             self._sender = None
+
+
+def datagrams(number: int, channel: str, data: bytes) -> Iterator[bytes]:
+    """Of a message: "LC02", number, channel, 0, message; of one that is too long for this "LC03"
+    with a part each, as common/lcm_fragments.h has it.
+    """
+    name = channel.encode("ascii") + b"\0"
+    if len(name) + len(data) <= LONGEST_SHORT:
+        yield struct.pack(">4sI", b"LC02", number) + name + data
+        return
+    count = -(-(len(name) + len(data)) // LONGEST_PART)
+    at = 0
+    for i in range(count):
+        head = struct.pack(">4sIIIHH", b"LC03", number, len(data), at, i, count)
+        part = data[at : at + LONGEST_PART - len(name)]
+        yield head + name + part
+        at, name = at + len(part), b""
 
 
 def _place(url: str) -> tuple[str, int, int]:

@@ -47,6 +47,10 @@ class Recording:
             time.sleep(0.01)
         return self
 
+    def running(self) -> bool:
+        """It has not ended by itself, as it does when the disk is full."""
+        return self._process.poll() is None
+
     def __exit__(self, *_error: object) -> None:
         self._process.send_signal(signal.SIGINT)
         report, _ = self._process.communicate(timeout=20)

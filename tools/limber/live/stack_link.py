@@ -9,9 +9,10 @@ import numpy as np
 from limber import messages
 from limber.live.arm_errors import NoStackError, StackLostError, WaitTimeoutError
 from limber.live.arm_state import State
+from limber.live.episodes import KEPT
 from limber.live.receiver import Receiver
 
-CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO", "REQUEST_ANSWER", "HAND_STATE")
+CHANNELS = ("JOINT_STATE", "CONTROLLER_STATUS", "ROBOT_INFO", "REQUEST_ANSWER", "HAND_STATE", KEPT)
 SENDERS = {
     "JOINT_STATE": "limber-driver",
     "CONTROLLER_STATUS": "limber-controller",

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from limber.arrays import Floats
+from limber.log.episodes import episodes
+from limber.log.event_index import NO_EVENTS
 from limber.log.reader import Log, time_s
 from limber.log.rows import stretches
 from limber.messages import CLIENTS, constants, driven_joints, joint_name, message_class
@@ -61,6 +63,7 @@ def events(log: Log, names: Names) -> list[Event]:
         *_contacts(truth),
         *_streams(status),
         *_grasps(log.fields("HAND_STATE", "time_ns", "grasped", "width_m")),
+        *_episodes(log),
     ]
     return sorted(found, key=lambda event: event.time_s)
 
@@ -70,6 +73,22 @@ def _grasps(hand: np.ndarray) -> Iterator[Event]:
         width_mm = float(hand["width_m"][rows.stop - 1]) * 1e3
         text = f"hand: grasped for {length_s:.3g} s, {width_mm:.1f} mm wide"
         yield Event(float(time_s(hand)[rows.start]), "controller", text)
+
+
+def _episodes(log: Log) -> Iterator[Event]:
+    for one in episodes(log):
+        words = f"{one.outcome or 'no end'}{', dropped' * one.dropped} after {one.length_s:.3g} s"
+        task = f" ({one.task})" if one.task else ""
+        at_s = _arm_time_s(log, one.start_us)
+        yield Event(at_s, "recorder", f"episode {one.number}{task}: {words}")
+
+
+def _arm_time_s(log: Log, stamp_us: int) -> float:
+    """Of the newest JOINT_STATE then, else of the first."""
+    stamps_us = log.channels.get("JOINT_STATE", NO_EVENTS).stamps_us
+    row = max(int(np.searchsorted(stamps_us, stamp_us, side="right")) - 1, 0)
+    found = log.records("JOINT_STATE", row, row + 1)[1]
+    return float(time_s(found)[0]) if len(found) else 0.0
 
 
 def _changes(records: np.ndarray, *fields: str) -> Iterator[int]:

@@ -281,6 +281,11 @@ class Log:
     def truncated_bytes(self) -> int:
         return self._damage.truncated_bytes
 
+    @property
+    def cut_off(self) -> bool:
+        """It ends within an event, or within a compressed block."""
+        return self._damage.truncated_bytes + self._damage.packed_truncated_bytes > 0
+
     def damage(self) -> str:
         """One sentence on what could not be read; empty if everything was."""
         return str(self._damage)

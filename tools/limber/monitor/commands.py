@@ -16,8 +16,10 @@ from limber.model.robot import load_robot, robot_beside
 from limber.model.scenario import load_scenario, scenario_beside
 from limber.monitor import server
 from limber.monitor.control import ControlPanel
+from limber.monitor.episodes import EpisodePanel
 from limber.monitor.goal_handle import GoalHandle
 from limber.monitor.guard import Guard
+from limber.monitor.hand_panel import HandPanel
 from limber.monitor.laws import list_laws
 from limber.monitor.live_feed import LiveFeed
 from limber.monitor.log_feed import LogFeed
@@ -77,14 +79,20 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
         with tabs.add_tab("push"):
             push = PushTool(gui, page.scene.arm, feed, requests, served.link, typed)
             parts.append(push.draw)
+        if robot.hand is not None:
+            with tabs.add_tab("hand"):
+                parts.append(HandPanel(gui, robot.hand, requests, feed, typed).draw)
         size_m = 0.35 * page.scene.figure.reach_m
         goal = GoalHandle(served.scene, size_m, feed, laws, requests)
+    with tabs.add_tab("episodes"):
+        episodes = EpisodePanel(gui, feed)
     with tabs.add_tab("view"):
         add_view_options(gui, page.scene)
     page.add_charts()
 
     def draw() -> bool:
         batch = page.draw()
+        page.guard(episodes.draw, batch)
         outcomes = requests.collect(batch)
         page.tell(outcomes)
         page.tell_stop(requests.stops, requests.stop_state)

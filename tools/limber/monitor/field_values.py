@@ -9,6 +9,8 @@ import viser
 from viser import _messages
 from viser.infra import ClientId
 
+LONGEST_BYTES = 200  # of a text
+
 
 def keep_possible(gui: viser.GuiApi) -> None:
     """Other values are dropped before viser sees them."""
@@ -32,6 +34,9 @@ def possible(present: Any, options: Any, value: Any) -> bool:
     """
     if options is not None:
         return isinstance(value, str) and value in options
+    if isinstance(present, str):
+        fits = isinstance(value, str) and value.isprintable()
+        return fits and len(value.encode()) <= LONGEST_BYTES
     if isinstance(present, bool):
         return isinstance(value, bool)
     number = isinstance(value, int | float) and not isinstance(value, bool)

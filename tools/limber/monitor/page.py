@@ -5,6 +5,7 @@ import time
 import numpy as np
 import viser
 
+from limber.live.arm_state import targets_of
 from limber.live.hand import hand_text
 from limber.messages import constants
 from limber.model.robot import Robot
@@ -113,6 +114,7 @@ class Page:
             pending,
             self.answers.shown(words.mode),
             self.control,
+            self._lines(),
         )
 
     def tell(self, outcomes: list[Outcome]) -> None:
@@ -160,9 +162,17 @@ class Page:
             drive = constants("joint_state_t", "DRIVE_").get(int(state["drive_state"]), "UNKNOWN")
             facts.append(f"drives {drive.replace('HOLD', 'FALLBACK')}")
             facts.append(f"{float(state['time_ns']) * 1e-9:.0f} s")
-        if (hand := self.feed.newest.get("HAND_STATE")) is not None:
-            facts.append(hand_text(hand))
         return facts
+
+    def _lines(self) -> list[str]:
+        """Hand and targets, of an arm that has a hand and of one that targets were sent to."""
+        hand, status = (self.feed.newest.get(c) for c in ("HAND_STATE", "CONTROLLER_STATUS"))
+        lines = [] if hand is None else [hand_text(hand)]
+        if status is not None:
+            targets = targets_of(status)
+            if targets.state != "none" or targets.taken or targets.refused:
+                lines.append(str(targets))
+        return lines
 
     def _law_name(self, status: np.void) -> str:
         law = self.laws.law(int(status["law"]))

@@ -29,7 +29,7 @@ KIND_MODE = ANSWER.KIND_MODE
 class Outcome:
     """`text` is empty if the request was taken."""
 
-    kind: str  # mode, goal, gains
+    kind: str  # mode, goal, gains, hand
     text: str = ""
 
 
@@ -75,6 +75,12 @@ class Requests:
             self._wrong.append(Outcome("gains", str(error)))
             return
         self._expect("gains", self._send("COMPLIANCE_GAINS", message))
+
+    def hand(self, width_m: float, force_N: float) -> None:
+        """As fast as robot.yaml allows."""
+        message = messages.message_class("hand_goal_t")()
+        message.width_m, message.force_N = width_m, force_N
+        self._expect("hand", self._send("HAND_GOAL", message))
 
     def push(self, link: str, wrench: np.ndarray, duration_s: float) -> None:
         """On the simulated arm: base axes, N and N m, at the link's origin; replaces the last."""

@@ -20,7 +20,8 @@ BUTTONS = (*WAY, *ASIDE)
 @dataclass
 class Shown:
     """All that the card tells. `control`: the page may move the arm. `pending`: what of the gains
-    will be in effect once the law runs. `answers`: what became of requests.
+    will be in effect once the law runs. `answers`: what became of requests. `lines`: what is too
+    long for the facts, below them.
     """
 
     now: Situation
@@ -29,6 +30,7 @@ class Shown:
     pending: list[str] = field(default_factory=list)
     answers: list[Note] = field(default_factory=list)
     control: bool = False
+    lines: list[str] = field(default_factory=list)
 
 
 class StatusCard:
@@ -62,6 +64,7 @@ def card(shown: Shown) -> tuple[str, str, str]:
         + "</div>"
     )
     facts = escape(" · ".join(shown.facts))
+    facts += "".join(f"<div>{escape(line)}</div>" for line in shown.lines)
     facts = f'<div style="font-size:0.85em;opacity:0.8;margin:0 12px">{facts}</div>'
     others = now.notes[1:] if cause else now.notes
     notes = [_note(note) for note in others]

@@ -4,12 +4,13 @@ import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.progress import Progress
 
 from limber.errors import InputError
-from limber.log import events
+from limber.log import episodes, events
 from limber.log.convert.windows import Writer, joint_names, windows
 from limber.log.cut import copy_events
 from limber.log.reader import Log, log_file
@@ -26,6 +27,7 @@ class Format:
     writer: str
     folder: bool = False
     text: bool = True  # messages with text, too
+    episodes: bool = False  # made of the log's episodes
 
 
 FORMATS = {
@@ -34,9 +36,10 @@ FORMATS = {
     "mcap": Format(".mcap", "mcap_file", "McapFile"),
     "rerun": Format(".rrd", "rerun_file", "RerunFile", text=False),
     "npz": Format(".npz", "npz_file", "NpzFile", text=False),
-    "lerobot": Format("_lerobot", "lerobot_dataset", "LeRobotDataset", folder=True, text=False),
+    "lerobot": Format("_lerobot", "lerobot_dataset", "LeRobotDataset", True, False, episodes=True),
     "lcm": Format(".lcmlog", "", ""),
 }
+EPISODE_CHANNELS = (episodes.CHANNEL, episodes.KEPT)
 
 
 def convert(
@@ -56,16 +59,23 @@ def convert(
     target = out or source.with_name(base_name(source) + FORMATS[kind].suffix)
     writer_class = _writer_class(kind)
     require_new(target)
-    log = Log(source)
-    log = log if run is None else log.of_run(run)
+    whole = Log(source)
+    log = whole if run is None else whole.of_run(run)
     channels = log.chosen(wanted)
     joints, several = joint_names(log, names.joints)
     told: list[str] = []
+    options: dict[str, Any] = {}
+    if FORMATS[kind].episodes:
+        marked = episodes.of_part(episodes.episodes(whole), log)
+        used, told = episodes.usable(marked)
+        options["marked"] = used if marked else None
+        channels = [name for name in channels if name not in EPISODE_CHANNELS]
     with complete_or_nothing(target) as part:
         if writer_class is None:
             copy_events(log, part, target.suffix == ".zst", channels)
         else:
-            told = _write(log, kind, channels, writer_class(part, joints), names, console)
+            writer = writer_class(part, joints, **options)
+            told += _write(log, kind, channels, writer, names, console)
     if several:
         told.append(f"several arms in this log: joints have the names of the first, {joints}")
     for line in filter(None, [log.damage(), *told]):

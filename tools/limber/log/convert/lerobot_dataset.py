@@ -1,6 +1,7 @@
 """A dataset of LeRobot's, format v3.0, written with pyarrow alone.
 
-An episode is a time in ACTIVE of a second or more. A frame has the joints in degrees, their torque
+Episodes are those that the log's marks tell, with task and success; without marks the times in
+ACTIVE of a second or more. A frame has the joints in degrees, their torque
 and the estimated contact; its action is the target of the next frame's time, where the log has
 targets of joints (TARGET_STREAM), else the joints then. Times are index / fps, as LeRobot's are.
 """
@@ -18,13 +19,15 @@ from pyarrow import parquet
 from limber.arrays import Floats
 from limber.errors import InputError
 from limber.log.convert.windows import Batch
+from limber.log.episodes import Episode
 from limber.log.events import Event
 from limber.messages import message_class
 
 FPS = 30
 EVERY_US = 10_000  # of the log a row is kept
 SHORTEST_S = 1.0
-TASK = "limber"
+TASK = "limber"  # where none is named
+DONE, SUCCESS = "next.done", "next.success"  # of the last frame
 CHUNK = "chunk-000/file-000.parquet"
 QUANTILES = (1, 10, 50, 90, 99)
 STATE, STATUS, STREAM = "JOINT_STATE", "CONTROLLER_STATUS", "TARGET_STREAM"
@@ -51,8 +54,14 @@ class Samples:
 
 
 class LeRobotDataset:
-    def __init__(self, path: Path, joints: tuple[str, ...]) -> None:
+    """`marked`: the episodes; None: the log has no marks."""
+
+    def __init__(
+        self, path: Path, joints: tuple[str, ...], marked: list[Episode] | None = None
+    ) -> None:
         self._folder, self._joints = path, joints
+        self._marked = marked
+        self._tasks = list(dict.fromkeys(_task(one) for one in marked or [])) or [TASK]
         self._state, self._contact, self._mode = Samples(), Samples(), Samples()
         self._targets: list[tuple[float, Floats]] = []  # arm time, s
         self._zero_us = 0
@@ -75,12 +84,13 @@ class LeRobotDataset:
                 self._take_targets(batch.stamps_us, found, n)
 
     def close(self) -> None:
-        frames = [self._frames(span) for span in self._spans()]
-        if not frames or not self._state.rows:
-            raise InputError(
-                f"no episode: the arm is nowhere in ACTIVE for {SHORTEST_S:g} s, or JOINT_STATE "
-                "or CONTROLLER_STATUS is missing"
-            )
+        spans = self._spans()
+        if not spans or not self._state.rows or not self._contact.rows:
+            why = f"the arm is nowhere in ACTIVE for {SHORTEST_S:g} s"
+            if self._marked is not None:
+                why = "no mark ends one that is not dropped"
+            raise InputError(f"no episode: {why}, or JOINT_STATE or CONTROLLER_STATUS is missing")
+        frames = [self._frames(span) for span in spans]
         self._write_data(frames)
         self._write_meta(frames)
 
@@ -101,6 +111,8 @@ class LeRobotDataset:
 
     def _spans(self) -> list[tuple[int, int]]:
         """First and last time stamp of each episode."""
+        if self._marked is not None:
+            return [(one.start_us, one.end_us) for one in self._marked]
         active = message_class("controller_status_t").MODE_ACTIVE
         stamps = np.asarray(self._mode.stamps_us)
         is_active = np.array([int(row[0]) == active for row in self._mode.rows], bool)
@@ -108,10 +120,16 @@ class LeRobotDataset:
         spans = [(int(stamps[a]), int(stamps[b - 1])) for a, b in edges.reshape(-1, 2)]
         return [span for span in spans if span[1] - span[0] >= SHORTEST_S * 1e6]
 
+    def _task_numbers(self, lengths: Sequence[int] | np.ndarray) -> list[int]:
+        """Of each episode, in the list of tasks."""
+        if self._marked is None:
+            return [0] * len(lengths)
+        return [self._tasks.index(_task(one)) for one in self._marked]
+
     def _frames(self, span: tuple[int, int]) -> tuple[Floats, Floats]:
         """observation.state and action, a row a frame."""
         n = len(self._joints)
-        count = int((span[1] - span[0]) * 1e-6 * FPS)
+        count = max(int((span[1] - span[0]) * 1e-6 * FPS), 1)
         times_us = span[0] + np.arange(count + 1) * 1e6 / FPS
         state = self._state.at(times_us)
         q = np.degrees(state[:, :n])
@@ -136,10 +154,12 @@ class LeRobotDataset:
             key: {"dtype": "float32", "shape": [len(words)], "names": words}
             for key, words in names.items()
         }
+        ends = (DONE, SUCCESS) if self._marked is not None else ()
         indices = ("frame_index", "episode_index", "index", "task_index")
         return {
             **own,
             "timestamp": {"dtype": "float32", "shape": [1], "names": None},
+            **{key: {"dtype": "bool", "shape": [1], "names": None} for key in ends},
             **{key: {"dtype": "int64", "shape": [1], "names": None} for key in indices},
         }
 
@@ -153,8 +173,13 @@ class LeRobotDataset:
             "frame_index": pyarrow.array(within),
             "episode_index": pyarrow.array(np.repeat(np.arange(len(lengths)), lengths)),
             "index": pyarrow.array(np.arange(sum(lengths))),
-            "task_index": pyarrow.array(np.zeros(sum(lengths), np.int64)),
+            "task_index": pyarrow.array(np.repeat(self._task_numbers(lengths), lengths)),
         }
+        if self._marked is not None:
+            last = np.cumsum(lengths) - 1
+            done = np.isin(np.arange(sum(lengths)), last)
+            good = np.repeat([one.outcome == "success" for one in self._marked], lengths)
+            columns |= {DONE: pyarrow.array(done), SUCCESS: pyarrow.array(done & good)}
         self._parquet(f"data/{CHUNK}", pyarrow.table(columns))
 
     def _write_meta(self, frames: list[tuple[Floats, Floats]]) -> None:
@@ -163,7 +188,7 @@ class LeRobotDataset:
         zeros = np.zeros(len(lengths), np.int64)
         episodes = {
             "episode_index": np.arange(len(lengths)),
-            "tasks": [[TASK]] * len(lengths),
+            "tasks": [[self._tasks[number]] for number in self._task_numbers(lengths)],
             "length": lengths,
             "data/chunk_index": zeros,
             "data/file_index": zeros,
@@ -172,9 +197,11 @@ class LeRobotDataset:
             "meta/episodes/chunk_index": zeros,
             "meta/episodes/file_index": zeros,
         }
+        if self._marked is not None:
+            episodes["success"] = [one.outcome == "success" for one in self._marked]
         self._parquet(f"meta/episodes/{CHUNK}", pyarrow.table(episodes))
         # The task is pandas' index: without this note it would be read as a number.
-        tasks = pyarrow.table({"task_index": np.zeros(1, np.int64), "task": [TASK]})
+        tasks = pyarrow.table({"task_index": np.arange(len(self._tasks)), "task": self._tasks})
         note = {"index_columns": ["task"], "column_indexes": [], "columns": _pandas_columns()}
         noted = tasks.replace_schema_metadata({"pandas": json.dumps(note)})
         self._parquet("meta/tasks.parquet", noted)
@@ -184,7 +211,7 @@ class LeRobotDataset:
             "robot_type": "limber_follower",
             "total_episodes": len(lengths),
             "total_frames": total,
-            "total_tasks": 1,
+            "total_tasks": len(self._tasks),
             "chunks_size": 1000,
             "data_files_size_in_mb": 100,
             "video_files_size_in_mb": 200,
@@ -207,6 +234,10 @@ class LeRobotDataset:
     def _json(self, name: str, content: dict[str, Any]) -> None:
         text = json.dumps(content, indent=4) + "\n"
         (self._folder / name).write_text(text, encoding="utf-8")
+
+
+def _task(episode: Episode) -> str:
+    return episode.task or TASK
 
 
 def _pandas_columns() -> list[dict[str, Any]]:
