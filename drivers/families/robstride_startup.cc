@@ -3,7 +3,7 @@
 //   run mode := control, read back -> time-out := watchdog_s, read back
 //
 // A write is answered with a state, which tells nothing of it; what is read may be refused, and its
-// value is 0 then.
+// value is 0 then. Both are read again while the drive is on.
 #include <fmt/format.h>
 
 #include <array>
@@ -41,7 +41,7 @@ class RobstrideStartup final : public StartupDialogue {
   int steps() const noexcept override { return static_cast<int>(steps_.size()); }
   StartupStep step(int index) const noexcept override {
     const Step& step = at(index);
-    return {static_cast<std::uint32_t>(step.parameter), static_cast<double>(step.raw), !step.write};
+    return {static_cast<std::uint32_t>(step.parameter), static_cast<double>(step.raw)};
   }
   CanFrame request(int index) const noexcept override {
     const Step& step = at(index);
@@ -49,11 +49,19 @@ class RobstrideStartup final : public StartupDialogue {
     return step.write ? robstride::encode_write(number_, parameter, step.raw)
                       : robstride::encode_read(number_, parameter);
   }
+  bool can_be_polled(int index) const noexcept override { return !at(index).write; }
   Answer check_answer(int index, const CanFrame& frame, double* found) noexcept override {
     const Step& step = at(index);
+    *found = step.raw;
+    robstride::Id id{};
+    if (step.write)
+      return robstride::split(frame, &id) && id.type == Type::kState &&
+                     static_cast<std::uint8_t>(id.data) == number_
+                 ? Answer::kRight
+                 : Answer::kNone;
     robstride::ParameterAnswer answer;
-    if (step.write || !robstride::decode_parameter_answer(frame, &answer) ||
-        answer.motor != number_ || answer.host != robstride::kHost ||
+    if (!robstride::decode_parameter_answer(frame, &answer) || answer.motor != number_ ||
+        answer.host != robstride::kHost ||
         answer.index != static_cast<std::uint16_t>(step.parameter))
       return Answer::kNone;
     *found = answer.raw;

@@ -6,6 +6,7 @@
 #include "drivers/protocols/canopen_sdo.h"
 #include "drivers/protocols/cia402.h"
 #include "drivers/protocols/mit.h"
+#include "drivers/protocols/robstride.h"
 #include "qa/faults/fault_table.h"
 #include "qa/faults/state_change.h"
 #include "robots/loader/protocols/drive_protocol.h"
@@ -18,6 +19,7 @@ using Frames = std::vector<CanFrame>;
 /// Of four drives on a bus of iiwa14: 22 objects each, one every 20 cycles, and the changed one
 /// once more. desktop2r has five registers of two drives: 240.
 constexpr int kLastSetting = 1840;
+constexpr auto kTimeoutParameter = static_cast<std::uint16_t>(robstride::Parameter::kTimeout);
 
 std::function<void(FaultStage*)> replies(const TamperedBus::Change& change) {
   return [change](FaultStage* stage) { stage->change_replies(change); };
@@ -106,13 +108,20 @@ std::uint16_t number_of(const DriveConfig& drive) {
   return static_cast<std::uint16_t>(drive.command_id);
 }
 
+std::uint8_t robstride_number(const DriveConfig& drive) {
+  return static_cast<std::uint8_t>(drive.command_id);
+}
+
+bool is_robstride(const DriveConfig& drive) { return drive.protocol->word == "robstride"; }
+
 bool is_damiao(const DriveConfig& drive) { return drive.protocol->word == "damiao_mit"; }
 
-/// Damiao: PMAX; CiA 402: the mode, 6060h.
+/// Damiao: PMAX; RobStride: the time-out; CiA 402: the mode, 6060h.
 void foreign_setting(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   stage->send_from_outside(
-      is_damiao(drive)
+      is_robstride(drive) ? robstride::encode_write(robstride_number(drive), kTimeoutParameter, 0)
+      : is_damiao(drive)
           ? mit::encode_register_write(number_of(drive), mit::Register::kPositionRange,
                                        mit::float_bits(6.0F), false)
           : canopen::encode_sdo_write(cia402::kMode, 1, canopen::node_of(drive.command_id)));
@@ -125,15 +134,16 @@ void mode_past_the_bus(FaultStage* stage) {
                                     stage->bus_config().fd));
 }
 
-/// Damiao: TIMEOUT; CiA 402: the event timer of RPDO1.
+/// Damiao: TIMEOUT; RobStride: the time-out; CiA 402: the event timer of RPDO1.
 void watchdog_off_past_the_bus(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   const auto timer = canopen::pdo_event_timer_ms(canopen::kRpdoCommunication);
   stage->simulator().tell_past_the_bus(
-      0, is_damiao(drive)
-             ? mit::encode_register_write(number_of(drive), mit::Register::kTimeout, 0,
-                                          stage->bus_config().fd)
-             : canopen::encode_sdo_write(timer, 0, canopen::node_of(drive.command_id)));
+      0,
+      is_robstride(drive) ? robstride::encode_write(robstride_number(drive), kTimeoutParameter, 0)
+      : is_damiao(drive)  ? mit::encode_register_write(number_of(drive), mit::Register::kTimeout, 0,
+                                                       stage->bus_config().fd)
+                         : canopen::encode_sdo_write(timer, 0, canopen::node_of(drive.command_id)));
 }
 
 /// The velocity is wrong by half of the joint's limit, so that no limit notices.
@@ -229,15 +239,13 @@ std::vector<Fault> bus_faults() {
        .most_cycles = 400,
        .watched_cycles = 400},
       {.name = "the drive reports an error", .begin = drive_error, .most_cycles = 2},
-      {.name = "the drive disables itself",
-       .begin = disabled,
-       .most_cycles = 2},
+      {.name = "the drive disables itself", .begin = disabled, .most_cycles = 2},
       {.name = "another program disables the drive", .begin = foreign_disable, .most_cycles = 1},
       {.name = "another program commands the drive", .begin = foreign_master, .most_cycles = 1},
       {.name = "another program writes the drive's settings",
        .begin = foreign_setting,
        .most_cycles = 1,
-       .protocols = {"damiao_mit", "cia402"}},
+       .protocols = {"damiao_mit", "cia402", "robstride"}},
       {.name = "the drive's control mode is changed past the bus",
        .begin = mode_past_the_bus,
        .most_cycles = 240,
@@ -247,7 +255,7 @@ std::vector<Fault> bus_faults() {
        .begin = watchdog_off_past_the_bus,
        .most_cycles = kLastSetting,
        .watched_cycles = kLastSetting + 100,
-       .protocols = {"damiao_mit", "cia402"}},
+       .protocols = {"damiao_mit", "cia402", "robstride"}},
       {.name = "frames of other devices", .begin = other_devices},
       {.name = "bus-off",
        .begin = [](FaultStage* stage) { stage->bus().set_bus_off(); },

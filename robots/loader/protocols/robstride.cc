@@ -61,6 +61,7 @@ void read_motor(const YamlMap& yaml, DriveConfig* drive) {
 
 constexpr std::uint32_t kControl = 1U << 24U;
 constexpr std::uint32_t kState = 2U << 24U;
+constexpr std::uint32_t kRead = 17U << 24U;
 constexpr std::uint32_t kReport = 24U << 24U;
 constexpr std::uint32_t kHost = 0xFD;
 
@@ -70,6 +71,11 @@ void read_ids(const YamlMap& yaml, DriveConfig* drive) {
   const auto id = static_cast<std::uint32_t>(yaml.integer("id", 1, 127));
   drive->command_id = kControl | id;
   drive->reply_id = kState | id << 8U | kHost;
+}
+
+SettingFrames setting(const DriveConfig& drive) {
+  const std::uint32_t id = drive.command_id & 0x7FU;
+  return {kRead | kHost << 8U | id, kRead | id << 8U | kHost, true};
 }
 
 /// A control frame has its torque in the identifier, a state its mode and faults.
@@ -104,6 +110,7 @@ const DriveProtocol kRobstride = {
     .read_ids = read_ids,
     .address = address,
     .frames = frames,
+    .setting = setting,
     .kind = kind,
 };
 

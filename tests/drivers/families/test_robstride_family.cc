@@ -128,7 +128,8 @@ TEST_F(RobstrideFamily, TheStartUp) {
                             "1200FD01#2870000090010000", "1100FD01#2870000000000000"};
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(text(startup.request(i)), requests[i]);
-    EXPECT_EQ(startup.step(i).answered, i % 2 == 1) << "a write is answered with a state";
+    EXPECT_TRUE(startup.step(i).answered);
+    EXPECT_EQ(startup.can_be_polled(i), i % 2 == 1) << "read again while it is on";
   }
   double found = 0.0;
   EXPECT_EQ(startup.check_answer(3, parse("110001FD#2870000090010000"), &found), Answer::kRight);
@@ -144,6 +145,9 @@ TEST_F(RobstrideFamily, TheStartUp) {
       << "to another host";
   EXPECT_EQ(startup.check_answer(1, parse("110001FD#2870000090010000"), &found), Answer::kNone);
   EXPECT_EQ(startup.check_answer(0, parse("110001FD#0570000000000000"), &found), Answer::kNone);
+  EXPECT_EQ(startup.check_answer(0, parse("028001FD#7FFF7FFF7FFF0181"), &found), Answer::kRight)
+      << "a write is answered with a state";
+  EXPECT_EQ(startup.check_answer(0, parse("028002FD#7FFF7FFF7FFF0181"), &found), Answer::kNone);
   EXPECT_TRUE(startup.is_presence(parse("000001FE#0102030405060708")));
   EXPECT_FALSE(startup.is_presence(parse("000002FE#0102030405060708")));
   EXPECT_FALSE(startup.is_presence(parse("028001FD#7FFF7FFF7FFF0181")));

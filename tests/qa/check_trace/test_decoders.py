@@ -9,7 +9,7 @@ import pytest
 from limber.errors import InputError
 from limber_qa.check_trace.arm import read_arm
 from limber_qa.check_trace.candump import Trace, read_trace
-from limber_qa.check_trace.drives import cia402, damiao_mit, moteus
+from limber_qa.check_trace.drives import cia402, damiao_mit, moteus, robstride
 from limber_qa.check_trace.events import Kind
 from limber_qa.check_trace.judge import judge
 
@@ -17,6 +17,7 @@ TURN_rad = 2 * math.pi
 DM4310 = next(motor for motor in read_arm("openarm").motors if motor.name == "joint5")
 IDEAL = read_arm("planar2r").motors[0]
 IIWA = read_arm("iiwa14").motors[0]
+RS00 = read_arm("edulite_a3").motors[0]  # 14 N m, 33 rad/s; counts the other way
 
 MODES = ((10, 0), (1, 33), (0, 0))  # and fault
 
@@ -75,6 +76,53 @@ def moteus_frame(*values: float) -> str:
         f"<{len(values)}f", *values
     )
     return data.ljust(32, b"\x50").hex().upper()
+
+
+def test_robstride_command(tmp_path):
+    """p 1.0, v -2.0, kp 60, kd 1.5, t 2.5 of 14 N m, in counts of 32767 and 65535."""
+    motor = on_can0(RS00)
+    frames = ("0196DB01#8A2F783D1EB84CCC", "017FFF01#7FFF7FFF00004CCC", "017FFF02#7FFF7FFF00000000")
+    hold, damp = robstride.commands(motor, trace(tmp_path, *frames))
+    assert hold.kind is Kind.HOLD
+    assert hold.position == pytest.approx(-1.0, abs=4 * math.pi / 32767)
+    assert hold.velocity == pytest.approx(2.0, abs=33 / 32767)
+    assert (hold.kp, hold.kd) == pytest.approx((60, 1.5), abs=500 / 65535)
+    assert hold.torque == pytest.approx(-2.5, abs=14 / 32767)
+    assert damp.kind is Kind.DAMP and damp.torque == 0.0
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        ("017FFF01#7FFF7FFF00000000", Kind.FOLLOW),
+        ("0300FD01#0000000000000000", Kind.ENABLE),
+        ("0400FD01#0000000000000000", Kind.DISABLE),
+        ("1100FD01#2870000000000000", Kind.REQUEST),
+        ("0600FD01#0100000000000000", Kind.INVALID),
+        ("017FFF01#7FFF7FFF000000", Kind.INVALID),
+        ("0300FD01##00000000000000000", Kind.INVALID),
+    ],
+)
+def test_robstride_kinds(tmp_path, frame, kind):
+    (command,) = robstride.commands(on_can0(RS00), trace(tmp_path, frame))
+    assert command.kind is kind
+
+
+def test_robstride_states(tmp_path):
+    """Running; stopped with a fault; answers about parameters and reports are no states."""
+    motor = on_can0(RS00)
+    frames = (
+        "028001FD#87A27E0F8D8C0181",
+        "020201FD#7FFF7FFF7FFF0181",
+        "110001FD#2870000090010000",
+        "188001FD#7FFF7FFF7FFF0181",
+        "028002FD#7FFF7FFF7FFF0181",
+    )
+    good, failed = robstride.states(motor, trace(tmp_path, *frames))
+    assert (good.enabled, good.failed) == (True, False)
+    assert good.position == pytest.approx(-0.75, abs=4 * math.pi / 32767)
+    assert good.velocity == pytest.approx(0.5, abs=33 / 32767)
+    assert (failed.enabled, failed.failed) == (False, True)
 
 
 def test_moteus_command(tmp_path):

@@ -98,6 +98,45 @@ TEST(Antagonist, SecondMotorHasANameOfItsOwn) {
   EXPECT_EQ(said(decoder, "004#FFFFFFFFFFFFFFFC"), "elbow/2 command enable: ");
 }
 
+// --- RobStride: motor 1, an RS02 -----------------------------------------------------------------
+
+struct Robstride : ::testing::Test {
+  static Robot rs02() {
+    Robot robot = one_motor("robstride", 0x01000001, 0x020001FD);
+    robot.joints[0].drive.range = {4.0 * std::numbers::pi, 44.0, 17.0, 500.0, 5.0};
+    return robot;
+  }
+  Robot robot = rs02();
+  BusDecoder decoder{robot, 0};
+};
+
+// 35375, 31278, 7864 and 19660 counts; torque 37586.
+TEST_F(Robstride, CommandsAndRequests) {
+  EXPECT_EQ(
+      said(decoder, "0192D201#8A2F7A2E1EB84CCC"),
+      "elbow command command: position 1.0002 rad, velocity -1.9995 rad/s, kp 59.998 N m/rad, "
+      "kd 1.5 N m s/rad, torque 2.5003 N m");
+  EXPECT_EQ(said(decoder, "0300FD01#0000000000000000"), "elbow command enable: ");
+  EXPECT_EQ(said(decoder, "0400FD01#0000000000000000"), "elbow command stop: ");
+  EXPECT_EQ(said(decoder, "0400FD01#0100000000000000"), "elbow command stop and clear faults: ");
+  EXPECT_EQ(said(decoder, "1200FD01#2870000090010000"),
+            "elbow command write: parameter 7028 0x00000190");
+  EXPECT_EQ(said(decoder, "1100FD01#2870000000000000"), "elbow command read: parameter 7028");
+}
+
+TEST_F(Robstride, Replies) {
+  EXPECT_EQ(said(decoder, "028001FD#87A37E8B8D8C0181"),
+            "elbow reply state: running, position 0.75015 rad, velocity -0.4995 rad/s, torque 1.8 "
+            "N m, T 38.5 degC");
+  EXPECT_EQ(said(decoder, "180601FD#7FFF7FFF7FFF0000")
+                .find("elbow reply state, not requested: stopped, over-current, over-temperature"),
+            0U);
+  EXPECT_EQ(said(decoder, "110101FD#2870000000000000"), "elbow reply read refused: parameter 7028");
+  EXPECT_EQ(said(decoder, "150001FD#0500000000000000"),
+            "elbow reply fault: motor too hot, under-voltage");
+  EXPECT_EQ(said(decoder, "028002FD#87A37E8B8D8C0181").find("elbow"), std::string::npos);
+}
+
 // --- moteus: servo 4 -----------------------------------------------------------------------------
 
 struct Moteus : ::testing::Test {
