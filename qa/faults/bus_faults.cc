@@ -273,7 +273,8 @@ std::vector<Fault> bus_faults() {
              drive->range.position_rad *= 1.005;
              drive->range.kp_Nm_per_rad *= 1.05;
              drive->rated_torque_Nm *= 1.005;
-           }},
+           },
+       .protocols = {"damiao_mit", "moteus", "cia402"}},  // a RobStride drive has no such registers
   };
 }
 

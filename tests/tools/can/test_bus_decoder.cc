@@ -115,7 +115,7 @@ TEST_F(Robstride, CommandsAndRequests) {
   EXPECT_EQ(
       said(decoder, "0192D201#8A2F7A2E1EB84CCC"),
       "elbow command command: position 1.0002 rad, velocity -1.9995 rad/s, kp 59.998 N m/rad, "
-      "kd 1.5 N m s/rad, torque 2.5003 N m");
+      "kd 1.5 N m s/rad, torque 2.5002 N m");
   EXPECT_EQ(said(decoder, "0300FD01#0000000000000000"), "elbow command enable: ");
   EXPECT_EQ(said(decoder, "0400FD01#0000000000000000"), "elbow command stop: ");
   EXPECT_EQ(said(decoder, "0400FD01#0100000000000000"), "elbow command stop and clear faults: ");
@@ -125,9 +125,10 @@ TEST_F(Robstride, CommandsAndRequests) {
 }
 
 TEST_F(Robstride, Replies) {
-  EXPECT_EQ(said(decoder, "028001FD#87A37E8B8D8C0181"),
-            "elbow reply state: running, position 0.75015 rad, velocity -0.4995 rad/s, torque 1.8 "
-            "N m, T 38.5 degC");
+  EXPECT_EQ(
+      said(decoder, "028001FD#87A37E8B8D8C0181"),
+      "elbow reply state: running, position 0.75014 rad, velocity -0.49953 rad/s, torque 1.7998 "
+      "N m, T 38.5 degC");
   EXPECT_EQ(said(decoder, "180601FD#7FFF7FFF7FFF0000")
                 .find("elbow reply state, not requested: stopped, over-current, over-temperature"),
             0U);
