@@ -10,10 +10,9 @@ namespace {
 constexpr int kPositionBits = 16;
 constexpr int kBits = 12;  // velocity, kp, kd, torque
 
-// Torque counts that turn an otherwise saturated command into a special frame, and the first one
-// below.
-constexpr std::uint32_t kFirstSpecialTorque = 0xFFB;
-constexpr std::uint32_t kLastSpecialTorque = 0xFFE;
+// Damping counts with which a command saturated in position, velocity and stiffness would begin
+// with six bytes FF, and the first one below.
+constexpr std::uint32_t kFirstSpecialDamping = 0xFF0;
 
 constexpr std::uint32_t top_count(int bits) noexcept { return (1U << bits) - 1U; }
 
@@ -127,12 +126,10 @@ bool encode_command(const Command& command, const CommandRange& range, std::uint
   const std::uint32_t v =
       symmetric(command.velocity_rad_per_s, range.velocity_rad_per_s, kBits, quantiser);
   const std::uint32_t kp = one_sided(command.kp_Nm_per_rad, range.kp_Nm_per_rad, kBits, quantiser);
-  const std::uint32_t kd =
-      one_sided(command.kd_Nms_per_rad, range.kd_Nms_per_rad, kBits, quantiser);
-  std::uint32_t t = symmetric(command.torque_Nm, range.torque_Nm, kBits, quantiser);
-  const bool others_at_top = p == top_count(kPositionBits) && (v & kp & kd) == top_count(kBits);
-  if (others_at_top && t >= kFirstSpecialTorque && t <= kLastSpecialTorque)
-    t = kFirstSpecialTorque - 1;
+  std::uint32_t kd = one_sided(command.kd_Nms_per_rad, range.kd_Nms_per_rad, kBits, quantiser);
+  const std::uint32_t t = symmetric(command.torque_Nm, range.torque_Nm, kBits, quantiser);
+  if (p == top_count(kPositionBits) && (v & kp) == top_count(kBits) && kd >= kFirstSpecialDamping)
+    kd = kFirstSpecialDamping - 1;
 
   *frame = empty_frame(id, fd);
   frame->data[0] = low_byte(p >> 8U);

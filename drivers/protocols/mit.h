@@ -95,9 +95,9 @@ inline constexpr double kTimeoutCount_s = 50e-6;
 double half_count(double range, int bits) noexcept;
 
 // Master to drive. Values outside the ranges saturate; a non-finite value (or range) gives false
-// and leaves the frame alone. A command that would read as a special frame (torque within four
-// counts of the top, all other fields at the top) is moved down to the first torque count that does
-// not.
+// and leaves the frame alone. No command begins with six bytes FF, in which drives of several
+// makers see special frames, one of them a change of protocol: with all fields at the top the
+// damping is moved down to the first count that does not.
 [[nodiscard]] bool encode_command(const Command& command, const CommandRange& range,
                                   std::uint32_t id, bool fd, Quantiser quantiser,
                                   CanFrame* frame) noexcept;

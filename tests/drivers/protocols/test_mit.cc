@@ -2,6 +2,7 @@
 // algebra over whole fields.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -272,26 +273,31 @@ TEST(MitRefusal, ANaNInAReplyIsNoUndefinedCast) {
             "011#110000000000FF00");
 }
 
-TEST(MitRefusal, NoCommandEverReadsAsASpecialFrame) {
+// Of a mini-cheetah special frame seven bytes are FF, of a RobStride one six: a change of protocol.
+TEST(MitRefusal, NoCommandEverBeginsAsASpecialFrame) {
   for (const Quantiser quantiser : kQuantisers) {
-    for (std::uint32_t torque = 0xFF0; torque <= 0xFFF; ++torque) {
+    for (std::uint32_t torque = 0; torque <= 0xFFF; ++torque) {
       const double torque_Nm = -10.0 + (torque + 0.25) * 20.0 / 4095.0;
-      CanFrame frame;
-      ASSERT_TRUE(
-          encode_command({99, 99, 999, 99, torque_Nm}, kDm4310, 1, false, quantiser, &frame));
-      Special special{};
-      EXPECT_FALSE(decode_special(frame, &special)) << text(frame);
-      EXPECT_EQ(raw_torque(frame), torque >= 0xFFB && torque <= 0xFFE ? 0xFFAU : torque);
+      for (std::uint32_t damping = 0xFE0; damping <= 0xFFF; ++damping) {
+        const double kd = (damping + 0.25) * 5.0 / 4095.0;
+        CanFrame frame;
+        ASSERT_TRUE(
+            encode_command({99, 99, 999, kd, torque_Nm}, kDm4310, 1, false, quantiser, &frame));
+        EXPECT_EQ(frame.data[5], std::min(damping >> 4U, 0xFEU)) << text(frame);
+        EXPECT_EQ(raw_torque(frame), torque) << "stays";
+      }
     }
   }
 }
 
-TEST(MitRefusal, TheSameTorqueIsLeftAloneBesideAnUnsaturatedField) {
-  const double torque_Nm = -10.0 + (0xFFC + 0.25) * 20.0 / 4095.0;
-  CanFrame frame;
-  ASSERT_TRUE(encode_command({99, 99, 499, 99, torque_Nm}, kDm4310, 1, false, Quantiser::kTruncate,
-                             &frame));
-  EXPECT_EQ(raw_torque(frame), 0xFFCU);
+TEST(MitRefusal, TheSameDampingIsLeftAloneBesideAnUnsaturatedField) {
+  for (const Command& command : {Command{12.4, 99, 999, 99, 0}, Command{99, 29.9, 999, 99, 0},
+                                 Command{99, 99, 499, 99, 0}}) {
+    CanFrame frame;
+    ASSERT_TRUE(encode_command(command, kDm4310, 1, false, Quantiser::kTruncate, &frame));
+    EXPECT_EQ(frame.data[5], 0xFF);
+    EXPECT_EQ(frame.data[6] >> 4U, 0xF);
+  }
 }
 
 TEST(MitRefusal, ANodeTakesTheSpecialFrameForNoCommand) {

@@ -82,20 +82,20 @@ TEST(MitCommands, ARangeThatIsNoneHasNoCommand) {
   }
 }
 
-// All fields at the top, and FFBh to FFEh as the torque: those are special frames.
-TEST(MitCommands, NoneReadsAsASpecialFrame) {
-  const CommandRange range{1.0, 1.0, 4095.0, 1.0, 1.0};
-  const auto encoded = [&](double position, int torque_count) {
+// All fields at the top: the damping gives way, whatever the torque.
+TEST(MitCommands, NoneBeginsAsASpecialFrame) {
+  const CommandRange range{1.0, 1.0, 4095.0, 1.0, 4095.0};
+  const auto encoded = [&](double position, int damping_count, int torque_count) {
     CanFrame frame;
-    EXPECT_TRUE(mit::encode_command({position, 1.0, 1.0, 1.0, 2.0 * torque_count - 4095.0}, range,
-                                    1, false, mit::Quantiser::kRound, &frame));
+    EXPECT_TRUE(
+        mit::encode_command({position, 1.0, 1.0, 1.0 * damping_count, 2.0 * torque_count - 4095.0},
+                            range, 1, false, mit::Quantiser::kRound, &frame));
     return text(frame);
   };
-  for (int count = 0xFFB; count <= 0xFFE; ++count)
-    EXPECT_EQ(encoded(1.0, count), "001#FFFFFFFFFFFFFFFA");
-  EXPECT_EQ(encoded(1.0, 0xFFF), "001#FFFFFFFFFFFFFFFF");
-  EXPECT_EQ(encoded(1.0, 0xFFA), "001#FFFFFFFFFFFFFFFA");
-  EXPECT_EQ(encoded(-1.0, 0xFFC), "001#0000FFFFFFFFFFFC") << "one field is not at the top";
+  EXPECT_EQ(encoded(1.0, 0xFFF, 0xFFC), "001#FFFFFFFFFFFEFFFC");
+  EXPECT_EQ(encoded(1.0, 0xFF0, 0x800), "001#FFFFFFFFFFFEF800");
+  EXPECT_EQ(encoded(1.0, 0xFEF, 0xFFC), "001#FFFFFFFFFFFEFFFC") << "the first that needs not";
+  EXPECT_EQ(encoded(-1.0, 0xFFF, 0xFFC), "001#0000FFFFFFFFFFFC") << "one field is not at the top";
 }
 
 TEST(MitSpecials, EightBytes) {
