@@ -262,7 +262,7 @@ TEST(MitRefusal, OutOfRangeSaturates) {
     EXPECT_EQ(encoded({-1e300, -1e300, -1e300, -1e300, -1e300}, kDm4310, 1, quantiser),
               "001#0000000000000000");
     EXPECT_EQ(encoded({99.0, 99.0, 9e9, 99.0, 0.0}, kDm4310, 1, quantiser).substr(0, 16),
-              "001#FFFFFFFFFFFF");
+              "001#FFFFFFFFFFFE");
     EXPECT_EQ(encoded({0, 0, 0, 0, 1e300}, kDm4310, 1, quantiser).substr(16), "0FFF");
   }
 }
