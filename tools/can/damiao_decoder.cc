@@ -25,7 +25,7 @@ constexpr std::array kDamiaoRegisters = {
     RegisterRow{6, "maximum speed", false, "rad/s"},
     RegisterRow{7, "MST_ID", true, ""},
     RegisterRow{8, "ESC_ID", true, ""},
-    RegisterRow{9, "TIMEOUT", true, "counts of 50 us"},
+    RegisterRow{9, "TIMEOUT", true, "counts of 50 us, 0: off"},
     RegisterRow{10, "CTRL_MODE", true, ""},
     RegisterRow{11, "damping", false, ""},
     RegisterRow{12, "inertia", false, "kg m^2"},
@@ -43,6 +43,8 @@ constexpr std::array kDamiaoRegisters = {
     RegisterRow{24, "current bandwidth", false, "Hz"},
     RegisterRow{29, "over-voltage limit", false, "V"},
     RegisterRow{35, "can_br", true, ""},
+    RegisterRow{80, "position before the gear", false, "rad"},
+    RegisterRow{81, "position", false, "rad"},
 };
 
 const RegisterRow* row_of(std::uint8_t reg) {
@@ -50,14 +52,6 @@ const RegisterRow* row_of(std::uint8_t reg) {
     if (row.number == reg) return &row;
   }
   return nullptr;
-}
-
-Value register_value(std::uint8_t reg, std::uint32_t raw) {
-  const RegisterRow* row = row_of(reg);
-  if (row == nullptr) return {"register " + std::to_string(reg), "0x" + hex(raw, 8), ""};
-  const double value =
-      row->whole ? static_cast<double>(raw) : static_cast<double>(mit::bits_float(raw));
-  return {row->name, row->whole ? std::to_string(raw) : number(value), row->unit};
 }
 
 Value register_name(std::uint8_t reg) {
@@ -80,6 +74,14 @@ const char* special_word(mit::Special special) {
 }
 
 }  // namespace
+
+Value damiao_register(std::uint8_t reg, std::uint32_t raw) {
+  const RegisterRow* row = row_of(reg);
+  if (row == nullptr) return {"register " + std::to_string(reg), "0x" + hex(raw, 8), ""};
+  const double value =
+      row->whole ? static_cast<double>(raw) : static_cast<double>(mit::bits_float(raw));
+  return {row->name, row->whole ? std::to_string(raw) : number(value), row->unit};
+}
 
 std::optional<Reading> DamiaoDecoder::read(const CanFrame& frame) {
   if (has_id(frame, drive_.command_id)) return read_command(frame);
@@ -143,7 +145,7 @@ Reading DamiaoDecoder::read_request(const mit::RegisterRequest& request) {
     return {name_,
             Direction::kCommand,
             "write register",
-            {register_value(request.reg, request.raw_value)}};
+            {damiao_register(request.reg, request.raw_value)}};
   }
   const char* what = request.operation == mit::kStoreRegister ? "store registers" : "state request";
   return {name_, Direction::kCommand, what, {}};
@@ -183,7 +185,7 @@ std::optional<Reading> DamiaoDecoder::read_register(const CanFrame& frame) {
                                       static_cast<mit::Register>(open_->reg), &raw))
     return std::nullopt;
   const char* what = open_->operation == mit::kReadRegister ? "register" : "register written";
-  Reading reading{name_, Direction::kReply, what, {register_value(open_->reg, raw)}};
+  Reading reading{name_, Direction::kReply, what, {damiao_register(open_->reg, raw)}};
   open_.reset();
   return reading;
 }

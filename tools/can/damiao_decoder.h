@@ -27,6 +27,9 @@ class DamiaoDecoder final : public FrameDecoder {
   std::optional<mit::RegisterRequest> open_;
 };
 
+/// A register by its name in the maker's manual, with unit; by its number if it is not listed.
+Value damiao_register(std::uint8_t reg, std::uint32_t raw);
+
 void add_damiao_messages(const Motor& motor, const BusFacts& bus,
                          std::vector<dbc::Message>* messages);
 /// Requests of registers, under an identifier that all drives share.

@@ -22,6 +22,7 @@ from limber.cli import (
     live,
     log,
     monitor,
+    motors,
     run,
 )
 from limber.cli.options import console
@@ -48,6 +49,7 @@ app.add_typer(groups.log, name="log")
 app.add_typer(groups.identify, name="identify")
 app.add_typer(groups.export, name="export")
 app.add_typer(can.app, name="can")
+app.add_typer(motors.app, name="motors")
 put_in_panels(app)
 app.add_typer(law.app, name="law", hidden=True)
 app.info.epilog = "Beside these: limber law (a control law of your own), limber ros2 (for ROS 2)."

@@ -12,7 +12,7 @@ PANELS = {
     "Run an arm": ("demo", "run", "lab", "sim", "doctor"),
     "See what it does": ("monitor", "watch", "plot"),
     "Ask something of it": ("send",),
-    "Describe an arm and measure it": ("new", "check", "identify", "export"),
+    "Describe an arm and measure it": ("new", "check", "motors", "identify", "export"),
     "Record and read": ("log", "can"),
 }
 PLACES = {name: place for place, name in enumerate(sum(PANELS.values(), ()))}

@@ -30,7 +30,7 @@ PROGRAMS = tuple(
     f"limber-{name}"
     for name in (
         *("driver", "controller", "sim", "lab", "check"),
-        *("record", "send", "can"),
+        *("record", "send", "can", "motors"),
     )
 )
 

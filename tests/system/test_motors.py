@@ -1,0 +1,127 @@
+"""`limber motors` against the emulated drives of each family, and beside others on the bus."""
+
+from __future__ import annotations
+
+import struct
+import threading
+from contextlib import contextmanager
+
+import can
+import pytest
+from local_drive import multicast_group
+
+ARMS = {
+    "desktop2r": ("damiao_mit", (1, 2)),
+    "edulite_a3": ("robstride", (1, 2, 3, 4, 5, 6)),
+    "planar2r": ("moteus", (1, 2)),
+    "testbench": ("cia402", (1,)),
+}
+
+
+@pytest.fixture
+def motors(stack, limber):
+    """Calls `limber motors COMMAND BUS ...` beside the simulated arm `start(name)`."""
+
+    def start(robot: str):
+        stack.robot = robot
+        stack.start("sim", "--realtime")
+        stack.until(lambda: stack.truth is not None, 20, "the simulator")
+        fd = ["--fd"] if robot in ("planar2r", "testbench") else []
+
+        def call(command: str, *words: str):
+            return limber("motors", command, f"virtual:{robot}", *words, *fd)
+
+        return call
+
+    return start
+
+
+@contextmanager
+def sending(robot: str, frame: can.Message, every_s: float = 0.02):
+    """Another program on the bus."""
+    end = threading.Event()
+
+    def send() -> None:
+        group = multicast_group(robot)
+        with can.Bus(interface="udp_multicast", channel=group, hop_limit=0) as bus:
+            while not end.wait(every_s):
+                bus.send(frame)
+
+    thread = threading.Thread(target=send)
+    thread.start()
+    try:
+        yield
+    finally:
+        end.set()
+        thread.join()
+
+
+def listed(done) -> list[str]:
+    return [line.split()[0] for line in done.stdout.splitlines()]
+
+
+@pytest.mark.parametrize("robot", sorted(ARMS))
+def test_scan_finds_the_motors_and_no_others(motors, robot):
+    family, numbers = ARMS[robot]
+    call = motors(robot)
+    done = call("scan")
+    assert done.returncode == 0, done.stderr
+    assert listed(done) == [f"{family}:{number}" for number in numbers]
+    shown = call("show", f"{family}:1")
+    assert shown.returncode == 0, shown.stderr
+    assert "not answered" not in shown.stdout and len(shown.stdout.splitlines()) >= 8
+
+
+@pytest.mark.parametrize(("robot", "number"), [("desktop2r", 5), ("edulite_a3", 100)])
+def test_number_and_zero(motors, robot, number):
+    family = ARMS[robot][0]
+    call = motors(robot)
+    taken = call("set-id", f"{family}:1", "2")
+    assert taken.returncode == 3 and "a motor answers to 2 already" in taken.stderr
+    done = call("set-id", f"{family}:1", str(number))
+    assert done.returncode == 0, done.stderr
+    assert f"{family}:{number}" in listed(call("scan"))
+    gone = call("show", f"{family}:1")
+    assert gone.returncode == 3 and "does not answer" in gone.stderr
+    assert call("zero", f"{family}:{number}").returncode == 0
+    shown = call("show", f"{family}:{number}").stdout
+    position = next(line for line in shown.splitlines() if line.startswith("position "))
+    assert abs(float(position.split()[1])) < 0.01
+
+
+def test_makers_tools_are_named_where_they_are_needed(motors):
+    call = motors("planar2r")
+    done = call("zero", "moteus:1")
+    assert done.returncode == 3 and "moteus_tool" in done.stderr
+
+
+def test_nothing_is_sent_while_somebody_else_sends(motors):
+    call = motors("desktop2r")
+    torque = can.Message(
+        arbitration_id=1, data=b"\x7f\xff\x7f\xf0\0\0\x07\xff", is_extended_id=False
+    )
+    with sending("desktop2r", torque):
+        done = call("set-id", "damiao_mit:1", "5")
+    assert done.returncode == 3 and "somebody sends on this bus" in done.stderr
+    assert listed(call("scan")) == ["damiao_mit:1", "damiao_mit:2"]
+
+
+def test_a_motor_that_is_on_is_left_alone(motors):
+    call = motors("edulite_a3")
+    enable = can.Message(arbitration_id=0x0300FD01, data=bytes(8), is_extended_id=True)
+    group = multicast_group("edulite_a3")
+    with can.Bus(interface="udp_multicast", channel=group, hop_limit=0) as bus:
+        bus.send(enable)
+    done = call("zero", "robstride:1")
+    assert done.returncode == 3 and "its power stage is on" in done.stderr
+
+
+def test_heartbeats_and_reports_are_not_somebody(motors):
+    call = motors("edulite_a3")
+    report = can.Message(
+        arbitration_id=0x188001FD,
+        data=struct.pack(">4H", 0x7FFF, 0x7FFF, 0x7FFF, 300),
+        is_extended_id=True,
+    )
+    with sending("edulite_a3", report):
+        assert call("scan").returncode == 0
