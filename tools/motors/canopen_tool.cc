@@ -52,6 +52,12 @@ class CanopenTool final : public MotorTool {
     return Found{node, fmt::format("device profile {}", message.value & 0xFFFFU)};
   }
 
+  /// Heartbeats, and the start of a node.
+  bool sends_unasked(const CanFrame& frame) const noexcept override {
+    return !frame.extended && frame.id > canopen::kHeartbeatCode &&
+           frame.id <= canopen::kHeartbeatCode + kCanopenLastNode;
+  }
+
   std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
     std::vector<Value> values;
     for (const CanopenShown& shown : kCanopenShown) {

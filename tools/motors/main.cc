@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <stdexcept>
@@ -49,7 +50,10 @@ Motor motor_of(const std::string& word) {
 Wire open(const Arguments& given, const MotorTool* tool = nullptr) {
   if (tool != nullptr && tool->needs_fd() && !given.fd)
     throw ConfigError(std::string(tool->protocol()) + " motors need --fd");
-  return {given.bus, given.fd};
+  return {given.bus, given.fd, [](const CanFrame& frame) {
+            return std::ranges::any_of(
+                all_tools(), [&](const MotorTool* one) { return one->sends_unasked(frame); });
+          }};
 }
 
 int scan(const Arguments& given) {
@@ -90,9 +94,10 @@ bool answers(const Motor& motor, Wire* wire, bool fd) {
 Wire open_to(const Motor& motor, const Arguments& given) {
   Wire wire = open(given, motor.tool);
   if (!answers(motor, &wire, given.fd))
-    throw std::runtime_error(fmt::format("{} does not answer on {}; `limber motors scan {}` lists "
-                                         "those that do",
-                                         given.motor, given.bus, given.bus));
+    throw std::runtime_error(
+        fmt::format("{} does not answer on {}; `limber motors scan {}` lists "
+                    "those that do",
+                    given.motor, given.bus, given.bus));
   return wire;
 }
 

@@ -37,6 +37,12 @@ class MotorTool {
   virtual CanFrame presence(int number, bool fd) const noexcept = 0;
   virtual std::optional<Found> found(const CanFrame& frame) const = 0;
 
+  /// Whether its drives send the frame by themselves.
+  virtual bool sends_unasked(const CanFrame& frame) const noexcept {
+    static_cast<void>(frame);
+    return false;
+  }
+
   /// What it has stored and measures. Throws std::runtime_error if it does not answer.
   virtual std::vector<Value> show(Wire* wire, int number, bool fd) const = 0;
   /// Whether its power stage is on.

@@ -49,6 +49,13 @@ class RobstrideTool final : public MotorTool {
     return Found{id.data, "unique id " + bus_tools::bytes(frame)};
   }
 
+  /// Reports and faults.
+  bool sends_unasked(const CanFrame& frame) const noexcept override {
+    robstride::Id id{};
+    return robstride::split(frame, &id) && id.target > robstride::kLastMotor &&
+           (id.type == Type::kReport || id.type == Type::kFault);
+  }
+
   std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
     std::vector<Value> values;
     for (const RobstrideShown& shown : kRobstrideShown) {

@@ -6,30 +6,19 @@
 #include <stdexcept>
 
 #include "common/clock.h"
-#include "drivers/protocols/canopen.h"
-#include "drivers/protocols/robstride.h"
 
 namespace limber::motor_tools {
 namespace {
 
 constexpr double kSecond_ns = 1e9;
 
-/// What drives send by themselves: heartbeats and the start of CANopen nodes, RobStride's reports.
-bool comes_unasked(const CanFrame& frame) {
-  robstride::Id id{};
-  if (robstride::split(frame, &id))
-    return id.target > robstride::kLastMotor &&
-           (id.type == robstride::Type::kReport || id.type == robstride::Type::kFault);
-  return !frame.extended && frame.id > canopen::kHeartbeatCode && frame.id < 0x780;
-}
-
 }  // namespace
 
-Wire::Wire(const std::string& address, bool fd)
+Wire::Wire(const std::string& address, bool fd, const Accept& unasked)
     : address_(address), bus_(open_can_bus(address, fd)) {
   std::optional<CanFrame> foreign;
   listen(kQuiet_s, [&](const CanFrame& frame) {
-    if (!frame.error && !comes_unasked(frame)) foreign = frame;
+    if (!frame.error && !unasked(frame)) foreign = frame;
     return foreign.has_value();
   });
   if (foreign)

@@ -14,11 +14,12 @@ namespace limber::motor_tools {
 
 class Wire {
  public:
-  /// Opens the bus and listens for kQuiet_s. Throws ConfigError if it cannot be opened,
-  /// std::runtime_error if somebody else sends on it: commands of a driver, or another program's.
-  Wire(const std::string& address, bool fd);
-
   using Accept = std::function<bool(const CanFrame&)>;
+  /// Opens the bus and listens for kQuiet_s. Throws ConfigError if it cannot be opened,
+  /// std::runtime_error if somebody else sends on it what is not `unasked`: commands of a driver,
+  /// or another program's.
+  Wire(const std::string& address, bool fd, const Accept& unasked);
+
   /// Sends until an answer comes, kTries times. Nothing: there was none. Throws std::runtime_error
   /// if the bus takes no frames.
   std::optional<CanFrame> ask(const CanFrame& request, const Accept& accept);
