@@ -76,21 +76,21 @@ std::uint32_t register_value(const CanFrame& frame) noexcept {
   return value;
 }
 
+bool is_usable(double range) noexcept { return range > 0.0 && std::isfinite(range); }
+
+}  // namespace
+
 bool all_finite(const Command& command) noexcept {
   return std::isfinite(command.position_rad) && std::isfinite(command.velocity_rad_per_s) &&
          std::isfinite(command.kp_Nm_per_rad) && std::isfinite(command.kd_Nms_per_rad) &&
          std::isfinite(command.torque_Nm);
 }
 
-bool is_usable(double range) noexcept { return range > 0.0 && std::isfinite(range); }
-
 bool is_usable(const CommandRange& range) noexcept {
   return is_usable(range.position_rad) && is_usable(range.velocity_rad_per_s) &&
          is_usable(range.torque_Nm) && is_usable(range.kp_Nm_per_rad) &&
          is_usable(range.kd_Nms_per_rad);
 }
-
-}  // namespace
 
 const char* error_text(DriveError error) noexcept {
   switch (error) {

@@ -90,6 +90,10 @@ struct ServoCommand {
 };
 inline constexpr double kTimeoutCount_s = 50e-6;
 
+bool all_finite(const Command& command) noexcept;
+/// Every range is finite and more than 0.
+bool is_usable(const CommandRange& range) noexcept;
+
 /// The half count that a truncating sender's values lie below the truth on average: add it to a
 /// decoded field that spans -range to +range. A truncated zero then decodes to exactly 0.
 double half_count(double range, int bits) noexcept;

@@ -61,18 +61,6 @@ std::uint16_t index_of(const CanFrame& frame) noexcept {
   return static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
 }
 
-bool is_usable(double range) noexcept { return range > 0.0 && std::isfinite(range); }
-bool is_usable(const CommandRange& range) noexcept {
-  return is_usable(range.position_rad) && is_usable(range.velocity_rad_per_s) &&
-         is_usable(range.torque_Nm) && is_usable(range.kp_Nm_per_rad) &&
-         is_usable(range.kd_Nms_per_rad);
-}
-bool is_finite(const Command& command) noexcept {
-  return std::isfinite(command.position_rad) && std::isfinite(command.velocity_rad_per_s) &&
-         std::isfinite(command.kp_Nm_per_rad) && std::isfinite(command.kd_Nms_per_rad) &&
-         std::isfinite(command.torque_Nm);
-}
-
 }  // namespace
 
 const char* fault_text(int bit) noexcept {
@@ -127,7 +115,7 @@ CanFrame request(Type type, std::uint8_t motor) noexcept { return frame_of({type
 
 bool encode_command(const Command& command, const CommandRange& range, std::uint8_t motor,
                     CanFrame* frame) noexcept {
-  if (!is_finite(command) || !is_usable(range)) return false;
+  if (!mit::all_finite(command) || !mit::is_usable(range)) return false;
   *frame = frame_of({Type::kControl, symmetric(command.torque_Nm, range.torque_Nm, true), motor});
   put(frame, 0, symmetric(command.position_rad, range.position_rad, true));
   put(frame, 2, symmetric(command.velocity_rad_per_s, range.velocity_rad_per_s, true));

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "drivers/can/can_frame.h"
+#include "drivers/protocols/mit.h"
 #include "robots/loader/robot.h"
 
 #pragma GCC visibility push(default)
@@ -46,13 +47,7 @@ std::uint32_t to_number(const Id& id) noexcept;
 /// A frame of the host to the motor: its sixteen bits are the host's number.
 CanFrame request(Type type, std::uint8_t motor) noexcept;
 
-struct Command {
-  double position_rad = 0.0;
-  double velocity_rad_per_s = 0.0;
-  double kp_Nm_per_rad = 0.0;
-  double kd_Nms_per_rad = 0.0;
-  double torque_Nm = 0.0;
-};
+using mit::Command;  // the same five numbers
 
 enum class Mode : std::uint8_t { kReset = 0, kCalibration = 1, kRun = 2 };
 /// Bits of State::faults, from 0: under-voltage, over-current, over-temperature, encoder, stall or

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/nodes/encoder_counts.h"
+#include "sim/nodes/five_numbers.h"
 
 namespace limber::sim {
 namespace {
@@ -200,28 +201,16 @@ void DamiaoNode::update(const JointReading& joint, std::int64_t now_ns) noexcept
 }
 
 double DamiaoNode::most_torque() const noexcept {
-  const double range = registers_.range().torque_Nm;
-  return drive_.peak_torque_Nm > 0.0 ? std::min(drive_.peak_torque_Nm, range) : range;
+  return sim::most_torque(drive_, registers_.range());
 }
 
 DriveLaw DamiaoNode::law() const noexcept {
-  DriveLaw law;
-  law.passive_damping = shorted_ ? drive_.short_circuit_damping_Nms : 0.0;
-  if (state_ != mit::DriveError::kEnabled) return law;
-  law.limit = torque_share_ * most_torque();
-  law.tau_ff = drive_.sign * command_.torque_Nm;
-  if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) {
-    // The loop runs on the frozen reading, which no longer depends on the joint.
-    law.tau_ff +=
-        drive_.sign * (command_.kp_Nm_per_rad * (command_.position_rad - frozen_position_) +
-                       command_.kd_Nms_per_rad * command_.velocity_rad_per_s);
-    return law;
-  }
-  law.kp = command_.kp_Nm_per_rad;
-  law.kd = command_.kd_Nms_per_rad;
-  law.q_des = drive_.sign * (command_.position_rad - zero_ - drive_.offset_rad);
-  law.v_des = drive_.sign * command_.velocity_rad_per_s;
-  return law;
+  if (state_ != mit::DriveError::kEnabled)
+    return {.passive_damping = shorted_ ? drive_.short_circuit_damping_Nms : 0.0};
+  return law_of(
+      command_, drive_, zero_,
+      has(scenario_event_t::FAULT_FROZEN_ENCODER) ? std::optional(frozen_position_) : std::nullopt,
+      torque_share_ * most_torque());
 }
 
 void DamiaoNode::on_fault(int fault, const JointReading& joint) noexcept {

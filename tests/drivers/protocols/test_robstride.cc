@@ -43,13 +43,13 @@ TEST(Robstride, ACommandMeansWhatTheModelsRangesSay) {
   CanFrame frame;
   ASSERT_TRUE(encode_command(kCommand, kRs04, 2, &frame));
   Command read;
-  ASSERT_TRUE(decode_command(frame, kRs04, &read));
+  ASSERT_TRUE(robstride::decode_command(frame, kRs04, &read));
   EXPECT_NEAR(read.torque_Nm, 2.5, 0.5 * 120.0 / 32767.0);
   EXPECT_NEAR(read.position_rad, 1.0, 0.5 * kTwoTurns / 32767.0);
   EXPECT_NEAR(read.velocity_rad_per_s, -2.0, 0.5 * 15.0 / 32767.0);
   EXPECT_NEAR(read.kp_Nm_per_rad, 60.0, 0.5 * 5000.0 / 65535.0);
   EXPECT_NEAR(read.kd_Nms_per_rad, 2.0, 0.5 * 100.0 / 65535.0);
-  ASSERT_TRUE(decode_command(frame, kRs02, &read));
+  ASSERT_TRUE(robstride::decode_command(frame, kRs02, &read));
   EXPECT_NEAR(read.torque_Nm, 2.5 * 17.0 / 120.0, 0.01) << "by another model's";
   EXPECT_DOUBLE_EQ(torque_count_Nm(kRs02), 17.0 / 32767.0);
 }
