@@ -53,8 +53,9 @@ TEST_P(HoldEverywhere, EndsOfEachJointIncluded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, HoldEverywhere,
-                         ::testing::Values("ideal7", "desktop2r", "openarm", "panda", "iiwa14", "planar2r",
-                                           "baxter", "antagonist2r", "antagonist7", "testbench"),
+                         ::testing::Values("ideal7", "desktop2r", "openarm", "panda", "iiwa14",
+                                           "planar2r", "baxter", "antagonist2r", "antagonist7",
+                                           "testbench"),
                          [](const auto& parameter) { return parameter.param; });
 
 }  // namespace

@@ -8,7 +8,14 @@ from limber.replay.address import address
 from limber.replay.choice import choose
 
 COMMANDS = {"JOINT_TORQUE", "MODE_REQUEST", "COMPLIANCE_GOAL", "COMPLIANCE_GAINS", "PUSH"}
-COMMANDS |= {"SCENARIO_EVENT", "HAND_GOAL", "TARGET_STREAM", "TORQUE_OVERLAY", "WORKPIECE"}
+COMMANDS |= {
+    "EPISODE",
+    "SCENARIO_EVENT",
+    "HAND_GOAL",
+    "TARGET_STREAM",
+    "TORQUE_OVERLAY",
+    "WORKPIECE",
+}
 ALL = set(messages.channels())
 PRIVATE = "udpm://239.255.76.67:7700?ttl=0"
 
