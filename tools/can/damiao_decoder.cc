@@ -25,7 +25,7 @@ constexpr std::array kDamiaoRegisters = {
     RegisterRow{6, "maximum speed", false, "rad/s"},
     RegisterRow{7, "MST_ID", true, ""},
     RegisterRow{8, "ESC_ID", true, ""},
-    RegisterRow{9, "TIMEOUT", true, "counts of 50 us, 0: off"},
+    RegisterRow{9, "TIMEOUT", true, "counts of 50 us"},
     RegisterRow{10, "CTRL_MODE", true, ""},
     RegisterRow{11, "damping", false, ""},
     RegisterRow{12, "inertia", false, "kg m^2"},
