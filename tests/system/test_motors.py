@@ -95,6 +95,25 @@ def test_makers_tools_are_named_where_they_are_needed(motors):
     assert done.returncode == 3 and "moteus_tool" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["scan", "telepathy:0"], "virtual:NAME"),
+        (["show", "virtual:nobody", "damiao:3"], "damiao_mit, robstride, moteus, cia402"),
+        (["show", "virtual:nobody", "moteus:3"], "need --fd"),
+        (["zero", "virtual:nobody", "damiao_mit:x"], "1 to 127"),
+    ],
+)
+def test_wrong_words(limber, words, said):
+    done = limber("motors", *words)
+    assert done.returncode == 2 and said in done.stderr
+
+
+def test_an_empty_bus(limber):
+    done = limber("motors", "scan", "virtual:nobody")
+    assert done.returncode == 3 and "no motor answers" in done.stderr
+
+
 def test_nothing_is_sent_while_somebody_else_sends(motors):
     call = motors("desktop2r")
     torque = can.Message(

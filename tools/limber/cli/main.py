@@ -48,11 +48,14 @@ groups.log.add_typer(black_box.app, name="black-box")
 app.add_typer(groups.log, name="log")
 app.add_typer(groups.identify, name="identify")
 app.add_typer(groups.export, name="export")
+can.app.add_typer(motors.app, name="motors")
 app.add_typer(can.app, name="can")
-app.add_typer(motors.app, name="motors")
 put_in_panels(app)
 app.add_typer(law.app, name="law", hidden=True)
-app.info.epilog = "Beside these: limber law (a control law of your own), limber ros2 (for ROS 2)."
+app.info.epilog = (
+    "Beside these: limber law (a control law of your own), limber motors (those on a bus), "
+    "limber ros2 (for ROS 2)."
+)
 # What proves limber and what teaches it lies beside a clone's sources, and is not installed.
 IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}
 for name, package in IN_A_CLONE.items():

@@ -12,7 +12,7 @@ PANELS = {
     "Run an arm": ("demo", "run", "lab", "sim", "doctor"),
     "See what it does": ("monitor", "watch", "plot"),
     "Ask something of it": ("send",),
-    "Describe an arm and measure it": ("new", "check", "motors", "identify", "export"),
+    "Describe an arm and measure it": ("new", "check", "identify", "export"),
     "Record and read": ("log", "can"),
 }
 PLACES = {name: place for place, name in enumerate(sum(PANELS.values(), ()))}
@@ -27,6 +27,7 @@ ELSEWHERE = {
     "directions": "identify joints",
     "service": "export service",
     "ros2": "export ros2",
+    "motors": "can motors",
     "experiment": "lecture experiment",
     "eval": "lecture eval",
     "referee": "dev check-trace",
