@@ -1,4 +1,4 @@
-"""Commands for single motors, before they are an arm: `limber motors ...`."""
+"""Commands for single motors, before they are an arm: `limber can motors ...`, or without `can`."""
 
 from typing import Annotated
 
@@ -17,19 +17,19 @@ Fd = Annotated[bool, typer.Option("--fd", help="The bus is CAN-FD, which moteus 
 NUMBERS = {"min": 1, "max": 127}
 
 
-@app.command(epilog="Example: limber motors scan can0 --fd")
+@app.command(epilog="Example: limber can motors scan can0 --fd")
 def scan(bus: BusName, fd: Fd = False) -> None:
     """List the motors of every family that answer. Nothing is commanded or written."""
     _become("scan", bus, fd)
 
 
-@app.command(epilog="Example: limber motors show can0 damiao_mit:3")
+@app.command(epilog="Example: limber can motors show can0 damiao_mit:3")
 def show(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     """Show what a motor has stored, and what it measures."""
     _become("show", bus, fd, motor)
 
 
-@app.command("set-id", epilog="Example: limber motors set-id can0 robstride:127 3")
+@app.command("set-id", epilog="Example: limber can motors set-id can0 robstride:127 3")
 def set_id(
     bus: BusName,
     motor: Motor,
@@ -40,7 +40,7 @@ def set_id(
     _become("set-id", bus, fd, motor, str(number))
 
 
-@app.command(epilog="Example: limber motors zero can0 damiao_mit:3")
+@app.command(epilog="Example: limber can motors zero can0 damiao_mit:3")
 def zero(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     """Make where a motor is its zero, stored and read back."""
     _become("zero", bus, fd, motor)
