@@ -14,7 +14,7 @@ using robstride::Parameter;
 using robstride::Type;
 
 constexpr double kRobstrideSave_s = 0.1;
-constexpr double kRobstrideReport_s = 0.1;
+constexpr double kRobstrideReport_s = 0.5;
 
 struct RobstrideShown {
   Parameter parameter;

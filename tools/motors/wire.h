@@ -32,8 +32,8 @@ class Wire {
   const std::string& address() const noexcept { return address_; }
 
   static constexpr double kQuiet_s = 0.3;
-  static constexpr double kAnswer_s = 0.05;
-  static constexpr int kTries = 3;
+  static constexpr double kAnswer_s = 0.1;
+  static constexpr int kTries = 5;
 
  private:
   void listen(double wait_s, const std::function<bool(const CanFrame&)>& heard);
