@@ -42,9 +42,7 @@ class RobstrideCodec final : public DriveCodec {
   CanFrame disable() noexcept override { return robstride::request(Type::kStop, number_); }
   CanFrame clear_error() noexcept override {
     reported_.store(0, std::memory_order_relaxed);
-    CanFrame frame = disable();
-    frame.data[0] = robstride::kClear;
-    return frame;
+    return robstride::encode_clear(number_);
   }
   CanFrame enable(const DriveMemory& /*memory*/) noexcept override {
     return robstride::request(Type::kEnable, number_);
@@ -129,11 +127,7 @@ std::string RobstrideCodec::emergency_text(std::uint16_t code) const {
 }
 
 std::string RobstrideCodec::status_text(std::uint16_t status) const {
-  std::string text;
-  for (int bit = 0; bit < robstride::kFaults; ++bit) {
-    if ((status >> static_cast<unsigned>(bit) & 1U) != 0)
-      text += fmt::format("{}{}", text.empty() ? "" : ", ", robstride::fault_text(bit));
-  }
+  const std::string text = robstride::faults_text(static_cast<std::uint8_t>(status));
   if (!text.empty()) return text;
   switch (static_cast<robstride::Mode>(status >> kModeShift)) {
     case robstride::Mode::kReset:

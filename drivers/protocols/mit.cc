@@ -160,6 +160,10 @@ CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw
                         fd);
 }
 
+CanFrame encode_register_store(std::uint16_t id, bool fd) noexcept {
+  return register_frame(id, kStoreRegister, 1, 0, kRegisterId, fd);
+}
+
 CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept {
   return register_frame(id, kStateRequest, 0, 0, kRegisterId, fd);
 }

@@ -109,6 +109,8 @@ CanFrame encode_special(Special special, std::uint32_t id, bool fd) noexcept;
 CanFrame encode_register_read(std::uint16_t id, Register reg, bool fd) noexcept;
 CanFrame encode_register_write(std::uint16_t id, Register reg, std::uint32_t raw_value,
                                bool fd) noexcept;
+/// Keeps the registers that were written beyond a power failure.
+CanFrame encode_register_store(std::uint16_t id, bool fd) noexcept;
 /// Asks for a state reply without commanding anything.
 CanFrame encode_state_request(std::uint16_t id, bool fd) noexcept;
 

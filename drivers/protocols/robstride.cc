@@ -61,6 +61,13 @@ std::uint16_t index_of(const CanFrame& frame) noexcept {
   return static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
 }
 
+/// Data 1, 2, 3, ...: what the manual has where a frame must not come by chance.
+CanFrame counting(Type type, std::uint8_t motor, std::uint8_t bytes) noexcept {
+  CanFrame frame = frame_of({type, kHost, motor});
+  for (std::uint8_t i = 0; i < bytes; ++i) frame.data[i] = static_cast<std::uint8_t>(i + 1);
+  return frame;
+}
+
 }  // namespace
 
 const char* fault_text(int bit) noexcept {
@@ -68,6 +75,15 @@ const char* fault_text(int bit) noexcept {
                                                        "over-temperature",  "encoder error",
                                                        "stall or overload", "not calibrated"};
   return kTexts[static_cast<std::size_t>(bit)];
+}
+
+std::string faults_text(std::uint8_t faults) {
+  std::string text;
+  for (int bit = 0; bit < kFaults; ++bit) {
+    if ((faults >> static_cast<unsigned>(bit) & 1U) != 0)
+      text += (text.empty() ? "" : ", ") + std::string(fault_text(bit));
+  }
+  return text;
 }
 
 const char* reported_fault_text(int bit) noexcept {
@@ -112,6 +128,37 @@ bool split(const CanFrame& frame, Id* id) noexcept {
 }
 
 CanFrame request(Type type, std::uint8_t motor) noexcept { return frame_of({type, kHost, motor}); }
+
+CanFrame encode_clear(std::uint8_t motor) noexcept {
+  CanFrame frame = request(Type::kStop, motor);
+  frame.data[0] = kClear;
+  return frame;
+}
+
+CanFrame encode_set_zero(std::uint8_t motor) noexcept {
+  CanFrame frame = request(Type::kSetZero, motor);
+  frame.data[0] = 1;
+  return frame;
+}
+
+CanFrame encode_set_id(std::uint8_t motor, std::uint8_t wanted) noexcept {
+  return frame_of({Type::kSetId, static_cast<std::uint16_t>(wanted << 8U | kHost), motor});
+}
+
+CanFrame encode_save(std::uint8_t motor) noexcept { return counting(Type::kSave, motor, 8); }
+
+CanFrame encode_report(std::uint8_t motor, bool on) noexcept {
+  CanFrame frame = counting(Type::kReport, motor, 6);
+  frame.data[6] = on ? 1 : 0;
+  return frame;
+}
+
+CanFrame encode_presence(std::uint8_t motor, std::uint64_t unique) noexcept {
+  CanFrame frame = frame_of({Type::kPing, motor, kEverybody});
+  put_little(&frame, 0, static_cast<std::uint32_t>(unique));
+  put_little(&frame, 4, static_cast<std::uint32_t>(unique >> 32U));
+  return frame;
+}
 
 bool encode_command(const Command& command, const CommandRange& range, std::uint8_t motor,
                     CanFrame* frame) noexcept {

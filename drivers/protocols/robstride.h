@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/protocols/mit.h"
@@ -56,6 +57,8 @@ inline constexpr int kFaults = 6;
 enum Fault : std::uint8_t { kUnderVoltage = 1, kOverCurrent = 2, kOverTemperature = 4 };
 /// "over-current"; bit 0 to kFaults - 1.
 const char* fault_text(int bit) noexcept;
+/// Those of State::faults, "over-current, encoder error"; empty if there is none. Allocates.
+std::string faults_text(std::uint8_t faults);
 
 struct State {
   std::uint8_t motor = 0;
@@ -82,6 +85,16 @@ CanFrame encode_state(const State& state, const CommandRange& range, Type type) 
                                 State* state) noexcept;
 /// The torque of one count.
 double torque_count_Nm(const CommandRange& range) noexcept;
+
+// What has data of its own beside the type.
+CanFrame encode_clear(std::uint8_t motor) noexcept;
+CanFrame encode_set_zero(std::uint8_t motor) noexcept;
+CanFrame encode_set_id(std::uint8_t motor, std::uint8_t wanted) noexcept;
+CanFrame encode_save(std::uint8_t motor) noexcept;
+/// Switches states without a request on or off.
+CanFrame encode_report(std::uint8_t motor, bool on) noexcept;
+/// Of a motor, to a ping or a new number.
+CanFrame encode_presence(std::uint8_t motor, std::uint64_t unique) noexcept;
 
 /// Indices of parameters; little-endian in the frame.
 enum class Parameter : std::uint16_t {

@@ -92,11 +92,7 @@ void foreign_master(FaultStage* stage) {
 void disabled(FaultStage* stage) {
   const DriveConfig& drive = stage->joint().drive;
   stage->bus().replace_sent(
-      [&drive](const CanFrame& frame) {
-        CanFrame of_kind = frame;
-        of_kind.id = kind_of_id(drive, frame.id, frame.extended);
-        return has_id(of_kind, drive.command_id);
-      },
+      [&drive](const CanFrame& frame) { return has_kind(frame, drive, drive.command_id); },
       stage->family().codec->disable());
 }
 

@@ -96,13 +96,17 @@ const BusConfig& FaultStage::bus_config() const {
   return robot_.robot.buses[static_cast<std::size_t>(joint().drive.bus)];
 }
 
-bool FaultStage::is_mine(const CanFrame& frame) const {
-  const DriveConfig& drive = joint().drive;
+bool has_kind(const CanFrame& frame, const DriveConfig& drive, std::uint32_t id) noexcept {
   CanFrame of_kind = frame;
   of_kind.id = kind_of_id(drive, frame.id, frame.extended);
+  return has_id(of_kind, id);
+}
+
+bool FaultStage::is_mine(const CanFrame& frame) const {
+  const DriveConfig& drive = joint().drive;
   std::uint32_t id = drive.reply_id;
   for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
-    if (has_id(of_kind, id)) return !tells_setting(frame);
+    if (has_kind(frame, drive, id)) return !tells_setting(frame);
   }
   return false;
 }

@@ -35,6 +35,9 @@ struct Reaction {
   std::int64_t fault_ns = 0;     ///< arm time of its begin
 };
 
+/// Whether the frame has the drive's identifier `id`, whatever data that carries.
+bool has_kind(const CanFrame& frame, const DriveConfig& drive, std::uint32_t id) noexcept;
+
 /// Set-up and members allocate; nothing here runs beside a real arm.
 class FaultStage {
  public:

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limber/scenario_event_t.hpp>
-#include <numbers>
 
-#include "sim/nodes/encoder_counts.h"
 #include "sim/nodes/five_numbers.h"
 
 namespace limber::sim {
@@ -24,9 +22,7 @@ DamiaoNode::DamiaoNode(const JointConfig& joint, bool fd)
 DamiaoNode::Sensed DamiaoNode::sense(const JointReading& joint) const noexcept {
   const double torque = drive_.sign * joint.motor_torque;
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return {frozen_position_, 0.0, torque};
-  const double step = 2.0 * std::numbers::pi / drive_.counts_per_turn;
-  const double angle = drive_.sign * joint.theta + drive_.offset_rad;
-  return {whole_counts(angle / step) * step + zero_, drive_.sign * joint.theta_dot, torque};
+  return {counted_angle(drive_, joint.theta) + zero_, drive_.sign * joint.theta_dot, torque};
 }
 
 CanFrame DamiaoNode::state_frame(const CanFrame& request,

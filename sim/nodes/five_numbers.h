@@ -1,12 +1,14 @@
-// The law of drives that take position, velocity, kp, kd and torque in each command.
+// The angle and the law of drives that take position, velocity, kp, kd and torque in each command.
 #pragma once
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 
 #include "drivers/protocols/mit.h"
 #include "robots/loader/robot.h"
 #include "sim/joints/drive_law.h"
+#include "sim/nodes/encoder_counts.h"
 
 namespace limber::sim {
 
@@ -27,6 +29,12 @@ inline DriveLaw law_of(const mit::Command& command, const DriveConfig& drive, do
   law.q_des = drive.sign * (command.position_rad - zero - drive.offset_rad);
   law.v_des = drive.sign * command.velocity_rad_per_s;
   return law;
+}
+
+/// What its encoder counts of the motor's angle, as the drive's own, rad.
+inline double counted_angle(const DriveConfig& drive, double theta) noexcept {
+  const double step = 2.0 * std::numbers::pi / drive.counts_per_turn;
+  return whole_counts((drive.sign * theta + drive.offset_rad) / step) * step;
 }
 
 /// What the drive's current and the torque field allow.

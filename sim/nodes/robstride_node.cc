@@ -4,9 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limber/scenario_event_t.hpp>
-#include <numbers>
 
-#include "sim/nodes/encoder_counts.h"
 #include "sim/nodes/five_numbers.h"
 
 namespace limber::sim {
@@ -34,9 +32,7 @@ RobstrideNode::RobstrideNode(const JointConfig& joint)
 
 double RobstrideNode::position(const JointReading& joint) const noexcept {
   if (has(scenario_event_t::FAULT_FROZEN_ENCODER)) return frozen_position_;
-  const double step = 2.0 * std::numbers::pi / drive_.counts_per_turn;
-  const double angle = drive_.sign * joint.theta + drive_.offset_rad;
-  return whole_counts(angle / step) * step + zero_;
+  return counted_angle(drive_, joint.theta) + zero_;
 }
 
 robstride::State RobstrideNode::state(const JointReading& joint) const noexcept {
@@ -67,9 +63,7 @@ bool RobstrideNode::receive(const CanFrame& frame, const JointReading& joint, st
     const auto wanted = static_cast<std::uint8_t>(id.data >> 8U);
     const bool valid = wanted >= 1 && wanted <= robstride::kLastMotor;
     if (id.type == Type::kSetId && !deaf && valid) number_ = wanted;
-    *reply = robstride::request(Type::kPing, robstride::kEverybody);
-    reply->id = robstride::to_number({Type::kPing, number_, robstride::kEverybody});
-    reply->data[0] = number_;
+    *reply = robstride::encode_presence(number_, number_);
   } else if (id.type == Type::kRead && robstride::decode_parameter_request(frame, &request)) {
     *reply = read(request.index, sender, joint);
   } else {

@@ -5,7 +5,6 @@ replayed, a second arm leads the first, and what is recorded then is read by LeR
 LIMBER_LEROBOT names. Then the rest runs in a network namespace of its own.
 """
 
-import ctypes
 import os
 import subprocess
 import sys
@@ -14,10 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from own_network import leave_the_machines_network
 from processes import started
 
 from limber import Arm, NoStackError
-from limber.live import private_network
 from limber.paths import ROOT
 
 OTHER = {
@@ -37,16 +36,10 @@ print(found.num_episodes, *frame["observation.state"].tolist(), "|", *frame["act
 """
 
 
-CLONE_NEWUSER, CLONE_NEWNET = 0x10000000, 0x40000000
-
-
 @pytest.fixture(scope="module")
 def python(installed):
     """LeRobot's; this process has left the machine's network."""
-    kind = CLONE_NEWNET if os.geteuid() == 0 else CLONE_NEWNET | CLONE_NEWUSER
-    if ctypes.CDLL(None, use_errno=True).unshare(kind) != 0:
-        pytest.skip("no network namespace of its own is permitted here")
-    private_network.set_up()
+    leave_the_machines_network()
     return installed
 
 

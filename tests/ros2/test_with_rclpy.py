@@ -4,7 +4,6 @@
 Python that LIMBER_ROS2 names. Then the rest runs in a network namespace of its own.
 """
 
-import ctypes
 import os
 import shutil
 import subprocess
@@ -13,11 +12,11 @@ from pathlib import Path
 
 import pytest
 import ros2_peer
+from own_network import leave_the_machines_network
 from processes import started
 from ros2_peer import until
 
 from limber import Arm
-from limber.live import private_network
 from limber.model.robot import load_robot
 from limber.paths import ROOT
 
@@ -25,7 +24,6 @@ ROBOT = "planar2r"
 PEER = Path(__file__).with_name("rclpy_peer.py")
 PACKAGES = ("rclpy", "sensor-msgs", "geometry-msgs", "diagnostic-msgs", "std-msgs")
 WHEELS = [f"ros-jazzy-{name}" for name in (*PACKAGES, "rmw-fastrtps-cpp")]
-CLONE_NEWUSER, CLONE_NEWNET = 0x10000000, 0x40000000
 SCENARIO = f"""format: limber-scenario/1
 robot: {ROBOT}
 duration_s: 3600
@@ -67,10 +65,7 @@ def installed():
 @pytest.fixture(scope="module")
 def python(installed):
     """ROS's; this process has left the machine's network."""
-    kind = CLONE_NEWNET if os.geteuid() == 0 else CLONE_NEWNET | CLONE_NEWUSER
-    if ctypes.CDLL(None, use_errno=True).unshare(kind) != 0:
-        pytest.skip("no network namespace of its own is permitted here")
-    private_network.set_up()
+    leave_the_machines_network()
     return installed
 
 

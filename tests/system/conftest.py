@@ -6,6 +6,7 @@ import subprocess
 
 import pytest
 
+from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber_qa.check_trace.judge import judge_file
 from limber_qa.check_trace.stops import Expectation
 from limber_qa.faults.matrix import read_matrix
@@ -51,6 +52,14 @@ def stack(request, tmp_path):
         yield running
     finally:
         running.close()
+
+
+@pytest.fixture
+def standing(stack):
+    """Drives that may be switched on."""
+    stack.start_all()
+    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
+    return stack
 
 
 def pytest_collection_modifyitems(items):

@@ -14,7 +14,6 @@ from processes import started
 
 from limber import Arm
 from limber.errors import RunError
-from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.live.episodes import Episodes
 from limber.live.line import Line
 from limber.live.receiver import Receiver
@@ -31,14 +30,6 @@ def limber(*arguments: str) -> str:
     done = subprocess.run(command, timeout=300, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
-
-
-@pytest.fixture
-def standing(stack):
-    stack.robot = "openarm"
-    stack.start_all()
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
-    return stack
 
 
 def test_three_episodes_become_a_dataset_of_two(standing, tmp_path):

@@ -27,14 +27,6 @@ def limber_send(*entries: str, client: int | None = None) -> subprocess.Complete
     )
 
 
-@pytest.fixture
-def standing(stack):
-    """Drives that may be switched on."""
-    stack.start_all()
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
-    return stack
-
-
 def test_command_line(standing):
     stack = standing
     done = limber_send("mode: hold")

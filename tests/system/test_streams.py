@@ -18,14 +18,6 @@ from limber.model.robot import load_robot
 from stack import USER_URL
 
 
-@pytest.fixture
-def standing(stack):
-    stack.robot = "openarm"
-    stack.start_all()
-    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
-    return stack
-
-
 def test_a_stream_is_followed_and_rests_when_it_ends(standing):
     with Arm() as arm:
         arm.activate()

@@ -85,10 +85,7 @@ Reading RobstrideDecoder::read_reply(const CanFrame& frame) const {
   if (robstride::decode_state(frame, drive_.range, &state)) {
     constexpr std::array kModes = {"stopped", "calibrating", "running", "mode 3"};
     std::string status = kModes[static_cast<std::size_t>(state.mode)];
-    for (int bit = 0; bit < robstride::kFaults; ++bit) {
-      if ((state.faults >> static_cast<unsigned>(bit) & 1U) != 0)
-        status += std::string(", ") + robstride::fault_text(bit);
-    }
+    if (state.faults != 0) status += ", " + robstride::faults_text(state.faults);
     return {name_,
             Direction::kReply,
             id.type == Type::kReport ? "state, not requested" : "state",

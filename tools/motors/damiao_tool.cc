@@ -55,7 +55,8 @@ class DamiaoTool final : public MotorTool {
 
   void set_number(Wire* wire, int number, int wanted, bool fd) const override {
     write(wire, number, kDamiaoNumber, static_cast<std::uint32_t>(wanted), fd);
-    store(wire, wanted, fd);
+    wire->send(mit::encode_register_store(as_id(wanted), fd), kDamiaoStore_s,
+               [](const CanFrame&) {});
     const std::uint32_t now = read(wire, wanted, kDamiaoNumber, fd);
     if (now != static_cast<std::uint32_t>(wanted))
       throw std::runtime_error(fmt::format("ESC_ID reads {}, not {}", now, wanted));
@@ -93,13 +94,6 @@ class DamiaoTool final : public MotorTool {
     if (raw != value)
       throw std::runtime_error(
           fmt::format("register {} stays {}: the drive refused {}", reg, raw, value));
-  }
-
-  static void store(Wire* wire, int number, bool fd) {
-    CanFrame frame = mit::encode_register_write(as_id(number), as_register(0), 0, fd);
-    frame.data[2] = mit::kStoreRegister;
-    frame.data[3] = 1;
-    wire->send(frame, kDamiaoStore_s, [](const CanFrame&) {});
   }
 
   static mit::DriveError state(Wire* wire, int number, bool fd) {

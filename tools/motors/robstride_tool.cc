@@ -68,10 +68,7 @@ class RobstrideTool final : public MotorTool {
                         answer.refused ? "" : shown.unit});
     }
     const robstride::State state = report(wire, number);
-    std::string faults;
-    for (int bit = 0; bit < robstride::kFaults; ++bit)
-      if ((state.faults >> static_cast<unsigned>(bit) & 1U) != 0)
-        faults += (faults.empty() ? "" : ", ") + std::string(robstride::fault_text(bit));
+    const std::string faults = robstride::faults_text(state.faults);
     values.push_back({"temperature", bus_tools::number(state.temperature_degC), "degC"});
     values.push_back({"state", state.mode == robstride::Mode::kRun ? "running" : "stopped", ""});
     values.push_back({"faults", faults.empty() ? "none" : faults, ""});
@@ -83,10 +80,8 @@ class RobstrideTool final : public MotorTool {
   }
 
   void set_number(Wire* wire, int number, int wanted, bool fd) const override {
-    CanFrame frame = robstride::request(Type::kSetId, as_number(number));
-    const auto data = static_cast<std::uint16_t>(wanted << 8 | robstride::kHost);
-    frame.id = robstride::to_number({Type::kSetId, data, as_number(number)});
-    wire->send(frame, kRobstrideSave_s, [](const CanFrame&) {});
+    wire->send(robstride::encode_set_id(as_number(number), as_number(wanted)), kRobstrideSave_s,
+               [](const CanFrame&) {});
     save(wire, wanted);
     const auto there = [&](const CanFrame& answer) {
       const auto motor = found(answer);
@@ -97,9 +92,8 @@ class RobstrideTool final : public MotorTool {
   }
 
   void set_zero(Wire* wire, int number, bool /*fd*/) const override {
-    CanFrame frame = robstride::request(Type::kSetZero, as_number(number));
-    frame.data[0] = 1;
-    wire->send(frame, kRobstrideSave_s, [](const CanFrame&) {});
+    wire->send(robstride::encode_set_zero(as_number(number)), kRobstrideSave_s,
+               [](const CanFrame&) {});
     save(wire, number);
     const robstride::ParameterAnswer answer = read(wire, number, Parameter::kPosition);
     const double angle = std::bit_cast<float>(answer.raw);
@@ -121,27 +115,22 @@ class RobstrideTool final : public MotorTool {
   }
 
   static void save(Wire* wire, int number) {
-    CanFrame frame = robstride::request(Type::kSave, as_number(number));
-    for (std::uint8_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(i + 1);
-    wire->send(frame, kRobstrideSave_s, [](const CanFrame&) {});
+    wire->send(robstride::encode_save(as_number(number)), kRobstrideSave_s, [](const CanFrame&) {});
   }
 
   /// A state without a command: reports are switched on until one comes. Its fields are shares of
   /// ranges that are not known here.
   static robstride::State report(Wire* wire, int number) {
-    CanFrame frame = robstride::request(Type::kReport, as_number(number));
-    for (std::uint8_t i = 0; i < 6; ++i) frame.data[i] = static_cast<std::uint8_t>(i + 1);
     robstride::State state;
     const auto mine = [&](const CanFrame& answer) {
       robstride::Id id{};
       return robstride::split(answer, &id) && id.type == Type::kReport &&
              robstride::decode_state(answer, {}, &state) && state.motor == as_number(number);
     };
-    frame.data[6] = 1;
-    wire->send(frame, 0.0, [](const CanFrame&) {});
+    wire->send(robstride::encode_report(as_number(number), true), 0.0, [](const CanFrame&) {});
     const bool came = wire->await(mine, kRobstrideReport_s).has_value();
-    frame.data[6] = 0;
-    wire->send(frame, Wire::kAnswer_s, [](const CanFrame&) {});
+    wire->send(robstride::encode_report(as_number(number), false), Wire::kAnswer_s,
+               [](const CanFrame&) {});
     if (!came) throw std::runtime_error("it does not report its state");
     return state;
   }
