@@ -19,6 +19,7 @@ from limber.paths import ROOT
 
 JOBS = os.cpu_count() or 1
 LONGEST_PART_S = 2400  # on two processors: 900
+FAILED_LINES = 60  # the end of a failed part stands once more below the summary: which, and why
 PYTEST = [sys.executable, "-m", "pytest"]
 CTEST = ["ctest", "--test-dir", str(ROOT / "build" / "dev"), "--output-on-failure"]
 
@@ -155,9 +156,10 @@ class Verdict:
     name: str
     passed: bool
     seconds: float
+    output: str
 
 
-def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
+def _run_part(name: str, command: list[str]) -> Verdict:
     """The output comes when the part has ended; of those in real time, at once.
 
     A part that hangs fails like any other. Its output goes to a file, not to a pipe that what it
@@ -166,23 +168,26 @@ def _run_part(name: str, command: list[str]) -> tuple[Verdict, str]:
     at_once = PARTS[name].lane in AT_ONCE
     command = [*([] if at_once else ["nice", "-n", "19"]), *command]
     start = time.monotonic()
-    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as kept:
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8") as kept:
         try:
-            done = subprocess.run(
-                command,
-                cwd=ROOT,
-                check=False,
-                stdout=None if at_once else kept,
-                stderr=subprocess.STDOUT,
-                timeout=LONGEST_PART_S,
-            )
-            passed, end = done.returncode == 0, ""
-        except subprocess.TimeoutExpired:
-            passed, end = False, f"{name}: stopped after {LONGEST_PART_S} s\n"
+            process = subprocess.Popen(command, cwd=ROOT, stdout=kept, stderr=subprocess.STDOUT)
         except FileNotFoundError as error:
             raise RunError(f"{command[0]} is missing: start with ./limber test") from error
-        kept.seek(0)
-        return Verdict(name, passed, time.monotonic() - start), kept.read() + end
+        with open(kept.name, encoding="utf-8", errors="replace") as reader, process:
+            output = ""
+            while True:
+                ended = process.poll() is not None
+                new = reader.read()
+                output += new
+                if at_once:
+                    print(new, end="", flush=True)
+                if ended:
+                    break
+                if time.monotonic() - start > LONGEST_PART_S:
+                    process.kill()
+                    output += f"{name}: stopped after {LONGEST_PART_S} s\n"
+                time.sleep(0.2)
+        return Verdict(name, process.returncode == 0, time.monotonic() - start, output)
 
 
 def run(names: list[str], console: Console) -> bool:
@@ -198,10 +203,10 @@ def run(names: list[str], console: Console) -> bool:
                 continue
             if lane in AT_ONCE:
                 console.rule(name)
-            verdict, output = _run_part(name, commands[name])
-            if output:
+            verdict = _run_part(name, commands[name])
+            if verdict.output and lane not in AT_ONCE:
                 console.rule(name)
-                print(output, end="", flush=True)
+                print(verdict.output, end="", flush=True)
             verdicts.append(verdict)
 
     beside = [lane for lane in Lane if lane is not Lane.LAST]
@@ -214,4 +219,7 @@ def run(names: list[str], console: Console) -> bool:
         text = "[green]passed[/]" if verdict.passed else "[bold red]FAILED[/]"
         console.print(f"{verdict.name:10} {text} {verdict.seconds:6.1f} s")
     console.print(f"{'all':10} {'':6} {time.monotonic() - begun:6.1f} s")
+    for verdict in (verdict for verdict in verdicts if not verdict.passed):
+        console.rule(f"{verdict.name} failed")
+        print("\n".join(verdict.output.splitlines()[-FAILED_LINES:]), flush=True)
     return all(verdict.passed for verdict in verdicts)

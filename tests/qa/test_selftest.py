@@ -74,6 +74,7 @@ def test_one_failure_fails_all_and_stops_nothing(parts, tmp_path, capfd):
     summary = output[output.index("summary") :]
     assert summary.count("passed") == 3
     assert summary.count("FAILED") == 1
+    assert "bad news" in summary  # where a log that keeps its end alone still shows it
 
 
 def test_all_good_is_good(parts):
