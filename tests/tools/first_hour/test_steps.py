@@ -1,11 +1,15 @@
 """What each step of the first hour makes of what it has found."""
 
+import shutil
+
 import numpy as np
 import pytest
 
-from limber.first_hour import bounded, motors_step, powered, zero_step
+from limber.first_hour import bounded, motors_step, powered, wire_step, zero_step
 from limber.first_hour.record import FAILED, PASSED
 from limber.model.robot import load_robot
+from limber.paths import robot_folder
+from limber.run import buses
 
 BUS = [{"name": "arm", "can": "socketcan:can0", "fd": False}]
 WANTED = {"arm": {"damiao_mit:1": "shoulder", "damiao_mit:2": "elbow"}}
@@ -125,3 +129,27 @@ class Log:
 )
 def test_a_push_goes_away_and_comes_back(far, left, verdict):
     assert powered.judge_push(Log(far, left)).verdict == verdict
+
+
+def arm_on(folder, address: str):
+    shutil.copytree(robot_folder("desktop2r"), folder)
+    path = folder / "robot.yaml"
+    text = path.read_text(encoding="utf-8").replace('"virtual:desktop2r"', f'"{address}"')
+    path.write_text(text, encoding="utf-8")
+    return load_robot(str(folder))
+
+
+def test_a_serial_adapter_that_is_not_there_is_no_simulated_bus(tmp_path):
+    robot = arm_on(tmp_path / "arm", f"dmserial:{tmp_path}/ttyACM0@921600")
+    found = wire_step.check(robot)
+    assert found.verdict == FAILED and "no such device" in found.lines[0]
+    assert "/dev/serial/by-id" in found.cure
+    (tmp_path / "ttyACM0").touch()
+    assert wire_step.check(robot).verdict == PASSED
+    assert buses.real(robot.buses) == list(robot.buses.values())
+    assert robot.resolved["buses"][0]["can"].startswith("dmserial:")
+
+
+def test_a_virtual_bus_is_simulated():
+    found = wire_step.check(load_robot("desktop2r"))
+    assert found.verdict == PASSED and found.lines == ("arm: virtual:desktop2r, simulated",)

@@ -8,11 +8,11 @@ from limber.model.robot import Robot
 def check(robot: Robot) -> Found:
     lines, cures = [], []
     for bus, needs in can_interfaces.needs_of(str(robot.folder)).items():
-        if needs.interface is None:
+        if needs.address.startswith("virtual:"):
             lines.append(f"{bus}: {needs.address}, simulated")
             continue
         wrong = can_interfaces.problems(needs)
         lines.append(f"{bus}: {needs.address}: {'; '.join(wrong) or 'as robot.yaml has it'}")
         if wrong:
-            cures.append(needs.bring_up(needs.interface))
+            cures.append(needs.cure())
     return failed(lines[0], "; ".join(cures), *lines[1:]) if cures else Found(PASSED, tuple(lines))
