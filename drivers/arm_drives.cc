@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "drivers/driver_setup.h"
 #include "drivers/protocols/cycle_frames.h"
@@ -19,11 +20,27 @@ std::string line_about(const Drive& motor, const std::string& words) {
 }
 
 std::string out_of_range_line(const ArmJoint& joint) {
-  const JointConfig& config = joint.motors().front().link().joint();
+  const JointLink& link = joint.motors().front().link();
+  const JointConfig& config = link.joint();
+  if (!link.turns().known)
+    return fmt::format(
+        "{}: reads {:.4g}, and a whole turn from there is within its limits {:g} to {:g}, too: the "
+        "drives cannot be enabled; its drive keeps a single turn: turn it to where only one angle "
+        "fits and start again, tighten its limits, or write keeps_turns: true for its motor if the "
+        "drive counts turns without power",
+        config.name, link.theta(), config.position_min, config.position_max);
   return fmt::format(
       "{}: at {:.4g}, outside its limits {:g} to {:g}: the drives cannot be enabled; "
       "move it by hand, or correct its offset_rad and sign",
       config.name, joint.q(), config.position_min, config.position_max);
+}
+
+std::string whole_turn_line(const JointLink& link) {
+  return fmt::format(
+      "{}: its drive reads a whole turn off, which is taken out: {:.4g} instead of {:.4g}, the "
+      "only "
+      "one of both within its limits",
+      link.joint().name, link.theta(), link.theta() - 2.0 * std::numbers::pi * link.turns().turns);
 }
 
 }  // namespace
@@ -86,6 +103,8 @@ std::vector<std::string> ArmDrives::configuration_warnings() const {
         lines.push_back(line_about(motor, warning));
     }
     if (joint.out_of_range()) lines.push_back(out_of_range_line(joint));
+    const JointLink& link = joint.motors().front().link();
+    if (link.turns().turns != 0) lines.push_back(whole_turn_line(link));
   }
   return lines;
 }

@@ -7,11 +7,10 @@
 namespace limber {
 namespace {
 
-constexpr double kPositionMargin_rad = 0.02;
 constexpr double kVelocityMargin = 1.1;
 
 bool within(double x, double low, double high) noexcept {
-  return x >= low - kPositionMargin_rad && x <= high + kPositionMargin_rad;
+  return x >= low - kBeyondTravel && x <= high + kBeyondTravel;
 }
 
 }  // namespace
@@ -113,7 +112,7 @@ std::int64_t ArmJoint::silent_cycles() const noexcept {
 
 bool ArmJoint::out_of_range() const noexcept {
   if (age_cycles() == JointLink::kNever) return false;
-  if (!within(q(), joint_.position_min, joint_.position_max)) return true;
+  if (!first().turns().known || !within(q(), joint_.position_min, joint_.position_max)) return true;
   const double wound = winding_limit(joint_);
   return two_motors() &&
          !(within(first().theta(), -wound, wound) && within(second().theta(), -wound, wound));

@@ -94,7 +94,8 @@ class ArmJoint {
   }
   /// Cycles since one of its motors last replied.
   std::int64_t silent_cycles() const noexcept;
-  /// 0.02 rad beyond a position limit; of two motors each also beyond what it may wind up.
+  /// kBeyondTravel beyond a position limit, or not known to a whole turn; of two motors each also
+  /// beyond what it may wind up.
   bool out_of_range() const noexcept;
   /// Above 110 % of the velocity limit in three cycles in a row.
   bool too_fast() const noexcept { return fast_cycles_ >= 3; }

@@ -63,6 +63,7 @@ class SerialBus final : public CanBus {
     while (taken < frames.size() && (begin_ < end_ || read_more())) {
       switch (codec_->take(in_[begin_++], &frames[taken])) {
         case SerialEvent::kNothing:
+        case SerialEvent::kDone:
           break;
         case SerialEvent::kFrame:
           frames[taken++].timestamp_ns = read_ns_;
@@ -142,14 +143,17 @@ class SerialBus final : public CanBus {
     const auto size = static_cast<ssize_t>(greeting.bytes.size());
     if (::write(port_.get(), greeting.bytes.data(), greeting.bytes.size()) != size)
       throw ConfigError(text_ + ": takes no bytes");
-    // Some adapters answer nothing: that counts as agreed.
+    // Some adapters answer nothing: that counts as done.
     CanFrame frame;
     pollfd waiting{port_.get(), POLLIN, 0};
-    while (poll(&waiting, 1, kAnswer_ms) > 0) {
+    while (poll(&waiting, 1, greeting.any_answer ? kSilence_ms : kAnswer_ms) > 0) {
       std::uint8_t byte = 0;
       if (::read(port_.get(), &byte, 1) != 1) return;
-      if (codec_->take(byte, &frame) != SerialEvent::kRefused || greeting.may_refuse) continue;
-      throw ConfigError(text_ + ": the adapter refuses " + greeting.meaning);
+      const SerialEvent event = codec_->take(byte, &frame);
+      if (greeting.any_answer) continue;
+      if (event == SerialEvent::kDone) return;
+      if (event == SerialEvent::kRefused)
+        throw ConfigError(text_ + ": the adapter refuses " + greeting.meaning);
     }
   }
 
@@ -170,7 +174,8 @@ class SerialBus final : public CanBus {
   }
 
   static constexpr std::chrono::milliseconds kLookAgain{100};
-  static constexpr int kAnswer_ms = 50;
+  static constexpr int kAnswer_ms = 500;
+  static constexpr int kSilence_ms = 100;
 
   std::string text_;
   CanAddress line_;

@@ -16,6 +16,7 @@ namespace limber {
 enum class SerialEvent : std::uint8_t {
   kNothing,
   kFrame,
+  kDone,     ///< the adapter has done what it was sent
   kRefused,  ///< the adapter has not sent a frame of ours
   kGarbage,  ///< bytes were skipped: one answer was damaged
 };
@@ -24,7 +25,7 @@ enum class SerialEvent : std::uint8_t {
 struct SerialGreeting {
   std::string bytes;
   std::string meaning;      ///< "a bit rate of 1000000 bit/s"
-  bool may_refuse = false;  ///< such as to close what is closed
+  bool any_answer = false;  ///< or several, or none: such as to close what is closed
 };
 
 /// Classic frames only. One instance a line: it keeps what has arrived of an answer.

@@ -108,7 +108,7 @@ class SlcanCodec final : public SerialCodec {
     }
     const std::size_t size = std::exchange(size_, 0);
     if (letter == kBell) return SerialEvent::kRefused;
-    if (size == 0) return SerialEvent::kNothing;
+    if (size == 0) return SerialEvent::kDone;
     if (size == 1 && (line_[0] == 'z' || line_[0] == 'Z')) return SerialEvent::kNothing;
     const bool whole = size <= line_.size() && decode({line_.data(), size}, frame);
     return whole ? SerialEvent::kFrame : SerialEvent::kGarbage;

@@ -71,6 +71,10 @@ bool JointLink::receive(const CanFrame& frame, std::int32_t age_cycles) noexcept
   const StateReading reading = family_.codec->read_state(frame, late, &report);
   if (reading == StateReading::kPart) return true;
   if (reading == StateReading::kNone) return false;
+  if (!angle_known_ && finite(report)) {
+    turns_ = {};
+    turns_ = whole_turns(angle(report), joint_);
+  }
   if (!plausible(report)) {
     if (!takes_jumps_ || age_cycles_ <= longest_gap_ || !finite(report)) return false;
     jumped_ = true;

@@ -1,17 +1,19 @@
 // One motor's end of the bus: frames out, replies in; the drive's sign and zero are applied here
 // and nowhere else.
 //
-//   theta = sign * (drive angle - offset)       speed and torque likewise by sign
+//   theta = sign * (drive angle - offset) + 2 pi turns     speed and torque likewise by sign
 //   q     = the link encoder's angle, which counts as the joint does: its sign, its zero
 //
 // Allowed inside the cycle: everything but the constructor.
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "drivers/can/can_frame.h"
+#include "drivers/drive/whole_turns.h"
 #include "drivers/families/drive_family.h"
 #include "robots/loader/robot.h"
 
@@ -78,7 +80,8 @@ class JointLink {
 
   /// Start of a cycle: no reply yet, one cycle more since the last.
   void begin_cycle() noexcept;
-  /// The drive may have been anywhere since: the next angle is taken as it comes.
+  /// The drive may have been anywhere since: the next angle is taken as it comes, and its whole
+  /// turns (whole_turns.h) are found again.
   void forget_angle() noexcept { angle_known_ = false; }
   /// While the joint is given up, an angle that it cannot have reached is stored, too, after more
   /// cycles without a valid one than are bridged, so that it can be acknowledged; jumped() tells of
@@ -94,6 +97,8 @@ class JointLink {
   std::int32_t age_cycles() const noexcept { return age_cycles_; }
   static constexpr std::int32_t kNever = INT32_MAX;
 
+  /// What is added to what the drive reads. Not known: the joint must not be enabled.
+  WholeTurns turns() const noexcept { return turns_; }
   double theta() const noexcept { return angle(seen_); }                        ///< rad
   double theta_dot() const noexcept { return sign() * seen_.speed_rad_per_s; }  ///< rad/s
   /// The link's, rad and rad/s; the motor's without a link encoder.
@@ -134,14 +139,16 @@ class JointLink {
  private:
   double sign() const noexcept { return joint_.drive.sign; }
   double angle(const DriveReport& report) const noexcept {
-    return sign() * (report.angle_rad - joint_.drive.offset_rad);
+    return sign() * (report.angle_rad - joint_.drive.offset_rad) + kTurn_rad * turns_.turns;
   }
   double drive_angle(double theta) const noexcept {
-    return sign() * theta + joint_.drive.offset_rad;
+    return sign() * (theta - kTurn_rad * turns_.turns) + joint_.drive.offset_rad;
   }
   bool has_link_encoder() const noexcept { return joint_.link_encoder.present; }
   bool plausible(const DriveReport& report) const noexcept;
   DriveMemory memory() const noexcept { return {seen_, age_cycles_ < longest_gap_}; }
+
+  static constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
   JointConfig joint_;
   DriveFamily family_;
@@ -157,6 +164,7 @@ class JointLink {
   bool angle_known_ = false;
   bool takes_jumps_ = false;
   bool jumped_ = false;
+  WholeTurns turns_;
   DriveReport seen_;  ///< the last one stored, in the drive's own coordinates
 };
 

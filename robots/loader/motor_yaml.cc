@@ -39,6 +39,7 @@ DriveConfig read_motor(const YamlMap& yaml, const std::string& name) {
   yaml.text_or("description", "-");
   const DriveProtocol& protocol = protocol_named(yaml.word("protocol", protocol_words()));
   drive.protocol = &protocol;
+  drive.single_turn = !yaml.boolean_or("keeps_turns", !protocol.single_turn);
   drive.gear_ratio = yaml.number("gear_ratio", {0.1, 1000.0});
   const double ratio_squared = drive.gear_ratio * drive.gear_ratio;
   drive.rotor_inertia_kgm2 = ratio_squared * yaml.number("rotor_inertia_kgm2", {0.0, 1.0});

@@ -69,6 +69,7 @@ struct DriveConfig {
   double sign = 1.0;        ///< +1 or -1: joint angle = sign * (drive angle - offset)
   double offset_rad = 0.0;  ///< drive angle at joint zero
   CommandRange range;
+  bool single_turn = false;  ///< counts from a single turn on when it is switched on
   double gear_ratio = 1.0;
   double rotor_inertia_kgm2 = 0.0;        ///< reflected: rotor inertia times gear ratio squared (B)
   double torque_constant_Nm_per_A = 1.0;  ///< at the joint

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -62,6 +63,30 @@ TEST(WrongArm, AnAngleThatIsOffIsReadSo) {
   const double sign = robot.robot.joints[1].drive.sign;
   EXPECT_NEAR(lab.state().q[1] - lab.truth().q[1], 0.3 * sign, 1e-3);
   EXPECT_NEAR(lab.state().q[0], lab.truth().q[0], 1e-3);
+}
+
+// A drive that keeps one turn, switched on beyond half a turn from its zero: either way.
+TEST(WrongArm, ADriveThatReadsAWholeTurnOffIsHeldWhereItIs) {
+  for (const char* name : {"openarm", "edulite_a3"}) {
+    const LoadedRobot robot = load_robot(name);
+    for (std::size_t i = 0; i < robot.robot.joints.size(); ++i) {
+      for (const double turn : {2.0 * std::numbers::pi, -2.0 * std::numbers::pi}) {
+        LoadedRobot real = load_robot(name);
+        real.robot.joints[i].drive.offset_rad += turn;
+        EXPECT_LT(motion(robot, real), 0.01) << name << ' ' << robot.robot.joints[i].name;
+      }
+    }
+  }
+}
+
+// The same of drives that count turns without power is a wrong zero: they stay off.
+TEST(WrongArm, AWholeTurnOfADriveThatKeepsThemIsOutOfRange) {
+  const LoadedRobot robot = load_robot("iiwa14");
+  LoadedRobot real = load_robot("iiwa14");
+  real.robot.joints[1].drive.offset_rad += 2.0 * std::numbers::pi;
+  Lab lab(robot, Scenario{}, LabOptions{&real, {}, {}});
+  for (int cycle = 0; cycle < 1000; ++cycle) lab.step();
+  EXPECT_TRUE(lab.state().joint_flags[1] & joint_state_t::JOINT_OUT_OF_RANGE);
 }
 
 TEST(WrongArm, SwappedNeighboursDoNotMoveIt) {

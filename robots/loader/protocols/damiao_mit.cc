@@ -74,6 +74,7 @@ extern const DriveProtocol kDamiaoMit;
 const DriveProtocol kDamiaoMit = {
     .word = "damiao_mit",
     .title = "Damiao",
+    .single_turn = true,
     .hex_ids = true,
     .id_found = "CAN_ID of the drive",
     .usual_gear_ratio = 10.0,

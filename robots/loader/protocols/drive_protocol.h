@@ -57,6 +57,7 @@ struct DriveProtocol {
   bool reports_link = false;  ///< its drives can have a link encoder and a torque sensor
   bool needs_sync = false;    ///< one SYNC a cycle on each of its buses
   bool rotary_only = false;   ///< counts turns
+  bool single_turn = false;   ///< unless a motor has `keeps_turns: true`
   bool hex_ids = false;       ///< its makers' tools write identifiers in hexadecimal digits
   const char* id_found = "node number of the drive";
   double sample_point = 0.0;  ///< that its drives want on the bus; 0: any

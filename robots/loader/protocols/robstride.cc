@@ -99,6 +99,7 @@ const DriveProtocol kRobstride = {
     .title = "RobStride",
     .usually_fd = false,
     .rotary_only = true,
+    .single_turn = true,
     .id_found = "CAN_ID of the motor (parameter 200A, or its maker's tool)",
     .usual_gear_ratio = 10.0,
     .joints_a_bus = 2,

@@ -252,5 +252,77 @@ TEST(JointLinkTest, AgeCountsCyclesSinceTheLastReply) {
   }
 }
 
+constexpr double kTurn = 6.283185307179586;
+
+JointConfig with_travel(JointConfig joint, double low, double high) {
+  joint.position_min = low;
+  joint.position_max = high;
+  joint.drive.single_turn = true;
+  return joint;
+}
+
+CanFrame standing_at(int id_nibble, double drive_angle) {
+  return state_reply(id_nibble, 0, count_of_angle(drive_angle), 2048, 2048);
+}
+
+TEST(JointLinkTest, AWholeTurnIsTakenOutAndCommandsGoBackToTheDrivesAngle) {
+  for (const int turns : {-1, 0, 1}) {
+    JointLink link(with_travel(plain_joint(), -1.0, 3.0), true, 1e-3, kBridged);
+    const double drive_angle = 2.5 - turns * kTurn;
+    ASSERT_TRUE(link.receive(standing_at(1, drive_angle)));
+    EXPECT_TRUE(link.turns().known);
+    EXPECT_EQ(link.turns().turns, turns);
+    EXPECT_NEAR(link.theta(), 2.5, kAngleCount);
+    const RawCommand sent = raw_command(link.command({2.4, 10.0, 1.0, 0.0}));
+    EXPECT_NEAR(sent.p, count_of_angle(drive_angle - 0.1), 2);
+  }
+}
+
+TEST(JointLinkTest, ADriveThatCountsTheOtherWayRoundHasItsTurnsInTheJointsWay) {
+  JointLink link(with_travel(reversed_joint(), -1.0, 3.0), true, 1e-3, kBridged);
+  ASSERT_TRUE(link.receive(standing_at(2, 0.3 - 2.5 + kTurn)));  // zero at 0.3
+  EXPECT_EQ(link.turns().turns, 1);
+  EXPECT_NEAR(link.theta(), 2.5, kAngleCount);
+}
+
+TEST(JointLinkTest, NoAngleThatFitsStaysAsItIsAndTwoAreNotKnown) {
+  JointLink none(with_travel(plain_joint(), -1.0, 1.0), true, 1e-3, kBridged);
+  ASSERT_TRUE(none.receive(standing_at(1, 2.0)));
+  EXPECT_TRUE(none.turns().known);
+  EXPECT_NEAR(none.theta(), 2.0, kAngleCount);  // out of range, told as ever
+  JointLink two(with_travel(plain_joint(), -3.2, 3.2), true, 1e-3, kBridged);
+  ASSERT_TRUE(two.receive(standing_at(1, 3.15)));
+  EXPECT_FALSE(two.turns().known);
+  two.begin_cycle();
+  two.forget_angle();
+  ASSERT_TRUE(two.receive(standing_at(1, 2.0)));  // turned by hand to where one fits
+  EXPECT_TRUE(two.turns().known);
+}
+
+TEST(JointLinkTest, JointsWithoutEndsAndDrivesThatKeepTheirTurnsAreLeftAlone) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  JointLink endless(with_travel(plain_joint(), -kNone, kNone), true, 1e-3, kBridged);
+  ASSERT_TRUE(endless.receive(standing_at(1, 7.0)));
+  EXPECT_NEAR(endless.theta(), 7.0, kAngleCount);
+  JointConfig keeping = with_travel(plain_joint(), -1.0, 3.0);
+  keeping.drive.single_turn = false;
+  JointLink kept(keeping, true, 1e-3, kBridged);
+  ASSERT_TRUE(kept.receive(standing_at(1, 7.0)));
+  EXPECT_NEAR(kept.theta(), 7.0, kAngleCount);
+}
+
+// A drive that restarts while the arm moves comes back a turn off: impossible, until it is off.
+TEST(JointLinkTest, TurnsAreFoundAgainOnceTheDriveIsOff) {
+  JointLink link(with_travel(plain_joint(), -1.0, 4.0), true, 1e-3, kBridged);
+  ASSERT_TRUE(link.receive(standing_at(1, 3.5)));
+  link.begin_cycle();
+  EXPECT_FALSE(link.receive(standing_at(1, 3.5 - kTurn)));
+  EXPECT_NEAR(link.theta(), 3.5, kAngleCount);
+  link.forget_angle();
+  ASSERT_TRUE(link.receive(standing_at(1, 3.5 - kTurn)));
+  EXPECT_EQ(link.turns().turns, 1);
+  EXPECT_NEAR(link.theta(), 3.5, kAngleCount);
+}
+
 }  // namespace
 }  // namespace limber::test_joint_link

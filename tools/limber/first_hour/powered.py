@@ -31,6 +31,7 @@ FRICTION_SHARE = 0.05  # ... of its torque limit, as the controller's load watch
 
 def hold(robot: Robot, folder: Path, console: Console) -> Found:
     """HOLD, and the torque that carries the arm beside that of the model."""
+    console.print(f"Once it holds, let it carry itself: the last {JUDGED_S:.0f} s count.")
     found = _run(robot, folder, "hold", HOLD_S, [], console)
     if isinstance(found, Found):
         return found
@@ -55,7 +56,8 @@ def judge_gravity(robot: Robot, q: Floats, tau: Floats) -> Found:
             wrong.append(joint.name)
     if wrong:
         cure = (
-            "a factor of 2 to 4 in one joint: torque range or model of its motor in robot.yaml; "
+            "was it supported? Else, a factor of 2 to 4 in one joint: torque range or model of its "
+            "motor in robot.yaml; "
             "another figure in several: masses of the URDF, gravity_m_per_s2, a payload, zeros"
         )
         return failed(f"carries another weight than the model's: {', '.join(wrong)}", cure, *lines)
