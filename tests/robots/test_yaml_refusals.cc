@@ -212,7 +212,7 @@ TEST(RobotYamlRefusals, UnknownRobot) {
   EXPECT_NE(complaint.find("did you mean 'openarm'?"), std::string::npos) << complaint;
   EXPECT_NE(complaint.find("one of: antagonist2r, antagonist7, baxter, desktop2r, edulite_a3, "
                            "ideal7, iiwa14, openarm, "
-                           "openarm_left, openarm_right, panda, planar2r, testbench"),
+                           "openarm_left, openarm_right, panda, planar2r, testbench, yam"),
             std::string::npos)
       << complaint;
   testing::complaint_of([] { load_robot(""); });

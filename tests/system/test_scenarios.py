@@ -52,6 +52,8 @@ def numbers(folder) -> dict[str, dict]:
         "iiwa14_push",
         "panda_push",
         "baxter_push",
+        "edulite_a3_push",
+        "yam_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):
