@@ -54,6 +54,7 @@ def numbers(folder) -> dict[str, dict]:
         "baxter_push",
         "edulite_a3_push",
         "yam_push",
+        "trlc_dk1_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):
