@@ -211,9 +211,10 @@ TEST(RobotYamlRefusals, UnknownRobot) {
   const std::string complaint = testing::complaint_of([] { load_robot("openarn"); });
   EXPECT_NE(complaint.find("did you mean 'openarm'?"), std::string::npos) << complaint;
   EXPECT_NE(
-      complaint.find("one of: antagonist2r, antagonist7, baxter, desktop2r, edulite_a3, "
-                     "ideal7, iiwa14, openarm, "
-                     "openarm_left, openarm_right, panda, planar2r, testbench, trlc_dk1, yam"),
+      complaint.find(
+          "one of: antagonist2r, antagonist7, baxter, desktop2r, edulite_a3, "
+          "ideal7, iiwa14, openarm, "
+          "openarm_left, openarm_right, panda, planar2r, rebot_b601_dm, testbench, trlc_dk1, yam"),
       std::string::npos)
       << complaint;
   testing::complaint_of([] { load_robot(""); });

@@ -55,6 +55,7 @@ def numbers(folder) -> dict[str, dict]:
         "edulite_a3_push",
         "yam_push",
         "trlc_dk1_push",
+        "rebot_b601_dm_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):
