@@ -119,8 +119,9 @@ Option CommandLine::buses(std::map<std::string, std::string>* addresses) {
     return true;
   };
   return Option(
-      app_->add_option("--bus", CLI::callback_t(read),
-                       "NAME=ADDRESS: socketcan:IFACE or virtual:GROUP for a bus of robot.yaml")
+      app_->add_option(
+              "--bus", CLI::callback_t(read),
+              "NAME=ADDRESS, such as arm=socketcan:can0: another address for a bus of robot.yaml")
           ->expected(1, CLI::detail::expected_max_vector_size));
 }
 

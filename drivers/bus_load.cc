@@ -24,11 +24,14 @@ struct Traffic {
   double replies_s = 0.0;
   double longest_reply_s = 0.0;
   double shortest_pair_s = std::numeric_limits<double>::infinity();
+  int commands = 0;
+  int replies = 0;
   double settings_s = 0.0;  ///< request and answer, of all drives that are asked
   int drives = 0;           ///< these
 
   void add_reply(double reply_s, double command_s) noexcept {
     replies_s += reply_s;
+    ++replies;
     longest_reply_s = std::max(longest_reply_s, reply_s);
     shortest_pair_s = std::min(shortest_pair_s, command_s + reply_s);
   }
@@ -67,12 +70,16 @@ Traffic traffic(const Robot& robot, int index, FrameTime time_s = longest_s) {
   for (const Exchange& exchange : cycle_frames(robot, index)) {
     const double command_s = time_s(bus, exchange.command);
     out.commands_s += command_s;
+    ++out.commands;
     for (const CanFrame& reply : exchange.replies) out.add_reply(time_s(bus, reply), command_s);
     for (const CanFrame& frame : exchange.setting) out.settings_s += time_s(bus, frame);
     if (!exchange.setting.empty()) ++out.drives;
     out.sync = out.sync || exchange.at_sync;
   }
-  if (out.sync) out.commands_s += time_s(bus, canopen::encode_sync());
+  if (out.sync) {
+    out.commands_s += time_s(bus, canopen::encode_sync());
+    ++out.commands;
+  }
   return out;
 }
 
@@ -103,7 +110,10 @@ double predicted_end_s(const Robot& robot, int bus) {
   const double adapter_s = adapter.send_s + adapter.receive_s + 2.0 * adapter.jitter_s;
   // The last command's reply may find the wire free; after a SYNC all of them begin together.
   const double after_s = kDriveReplyDelay_s + (wire.sync ? wire.replies_s : wire.longest_reply_s);
-  return adapter_s + wire.commands_s + std::max(wire.replies_s, after_s);
+  // On the adapter's line all frames follow one another, out and in at once.
+  const double commands_s = std::max(wire.commands_s, wire.commands * adapter.line_out_s);
+  const double replies_s = std::max(wire.replies_s, wire.replies * adapter.line_in_s);
+  return adapter_s + commands_s + std::max(replies_s, after_s);
 }
 
 double least_round_trip_s(const Robot& robot, int bus) {

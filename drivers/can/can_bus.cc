@@ -3,32 +3,32 @@
 #include <algorithm>
 #include <array>
 
+#include "common/can_address.h"
 #include "common/config_error.h"
 #include "common/joints.h"
 #include "common/shared_memory/spin.h"
 #include "common/wait_readable.h"
+#include "drivers/can/serial_bus.h"
 #include "drivers/can/shared_bus.h"
 #include "drivers/can/socketcan.h"
 #include "drivers/can/virtual_bus.h"
 
 namespace limber {
 
-std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd, Stamps stamps) {
-  const auto colon = address.find(':');
-  const std::string kind = address.substr(0, colon);
-  const std::string name = colon == std::string::npos ? "" : address.substr(colon + 1);
-  if (kind == "socketcan" && !name.empty()) return open_socketcan(name, fd);
-  if (kind == "virtual" && !name.empty()) {
-    const auto shared = shared_bus_options();
-    return shared ? open_shared_bus(name, fd, stamps, *shared) : open_virtual_bus(name, fd, stamps);
-  }
-  throw ConfigError(
-      "CAN bus '" + address +
-      "': expected socketcan:INTERFACE (socketcan:can0) or virtual:NAME (virtual:default)");
+std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd, Stamps stamps,
+                                     int bitrate_bps) {
+  const std::optional<CanAddress> found = can_address(address);
+  if (!found)
+    throw ConfigError("CAN bus '" + address + "': expected " + std::string(kCanAddressForms));
+  if (found->serial()) return open_serial_bus(address, *found, fd, bitrate_bps);
+  const std::string& name = found->place;
+  if (found->carrier == CanCarrier::kSocketCan) return open_socketcan(name, fd);
+  const auto shared = shared_bus_options();
+  return shared ? open_shared_bus(name, fd, stamps, *shared) : open_virtual_bus(name, fd, stamps);
 }
 
 std::string bus_text(const std::string& address) {
-  const bool shared = address.starts_with("virtual:") && shared_bus_options().has_value();
+  const bool shared = is_virtual(address) && shared_bus_options().has_value();
   return shared ? address + " in shared memory" : address;
 }
 

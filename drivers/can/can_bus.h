@@ -69,16 +69,18 @@ class CanBus {
   }
 };
 
-/// Opens "socketcan:IFACE" or "virtual:NAME". `fd` asks for CAN-FD. Throws ConfigError with the
-/// reason and the cure (no such interface, interface down, no FD, no AF_CAN in this kernel, no
-/// multicast route). Only a virtual bus can take the sender's stamps. Set-up only.
+/// Opens "socketcan:IFACE", "virtual:NAME", or an adapter on a serial line (serial_bus.h). `fd`
+/// asks for CAN-FD; `bitrate_bps` is for serial adapters, an interface has its own. Throws
+/// ConfigError with the reason and the cure (no such interface, interface down, no FD, no AF_CAN in
+/// this kernel, no multicast route). Only a virtual bus can take the sender's stamps. Set-up only.
 ///
 /// virtual:NAME speaks python-can's udp_multicast format. NAME "default" is python-can's own group
 /// 239.74.163.2; another NAME selects a group 239.74.x.y by hash, an address "239.1.2.3" is taken
 /// as it is; port 43113, TTL 0. Environment LIMBER_VIRTUAL_BUS_PORT overrides the port, and
 /// LIMBER_VIRTUAL_BUS moves all virtual buses of a process into shared memory (shared_bus.h).
 std::unique_ptr<CanBus> open_can_bus(const std::string& address, bool fd,
-                                     Stamps stamps = Stamps::kOnArrival);
+                                     Stamps stamps = Stamps::kOnArrival,
+                                     int bitrate_bps = 1'000'000);
 
 /// The address as logs name it: "virtual:NAME in shared memory" where that carries it.
 std::string bus_text(const std::string& address);

@@ -16,8 +16,8 @@ ArmPort::ArmPort(const Robot& robot, const ArmDriverOptions& options, LcmPort* u
   arm_plane_.subscribe<joint_command_t>(channels::kJointTorque,
                                         [this](const joint_command_t& c) { on_command(c); });
   for (const BusConfig& bus : robot.buses) {
-    buses_.push_back(
-        open_can_bus(bus.can, bus.fd, lockstep_ ? Stamps::kOfSender : Stamps::kOnArrival));
+    const Stamps stamps = lockstep_ ? Stamps::kOfSender : Stamps::kOnArrival;
+    buses_.push_back(open_can_bus(bus.can, bus.fd, stamps, bus.bitrate_bps));
     bus_pointers_.push_back(buses_.back().get());
   }
   driver_ = std::make_unique<ArmDriver>(robot, bus_pointers_, options);

@@ -16,7 +16,13 @@ from limber.paths import ROOT, completed, output_folder
 
 NAV: dict[str, list[str]] = {
     "Start": [
-        *("README.md", "docs/first_motion.md", "docs/own_arm.md", "docs/policies.md"),
+        *(
+            "README.md",
+            "docs/first_motion.md",
+            "docs/own_arm.md",
+            "docs/first_hour.md",
+            "docs/policies.md",
+        ),
         *("docs/client.md", "docs/monitor.md", "docs/logs.md", "docs/troubleshooting.md"),
         "docs/safety.md",
     ],

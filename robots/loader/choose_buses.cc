@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "common/can_address.h"
 #include "common/config_error.h"
+#include "robots/loader/adapter.h"
 
 namespace limber {
 
@@ -17,13 +19,14 @@ void choose_buses(const std::map<std::string, std::string>& addresses, Robot* ro
       throw ConfigError(fmt::format("--bus {}={}: {} has no bus '{}'; it has: {}", name, address,
                                     robot->name, name, names));
     bus->can = address;
+    bus->adapter = adapter_of(address, bus->adapter);
   }
 }
 
 void require_simulated_buses(const std::map<std::string, std::string>& addresses,
                              const Robot& robot) {
   for (const BusConfig& bus : robot.buses) {
-    if (addresses.contains(bus.name) || bus.can.rfind("virtual:", 0) == 0) continue;
+    if (addresses.contains(bus.name) || is_virtual(bus.can)) continue;
     throw ConfigError(fmt::format(
         "bus {} is {}, which may carry a real arm: run it without the simulator (limber "
         "run --no-sim), or say where to simulate with --bus {}=ADDRESS",

@@ -8,8 +8,8 @@
 
 namespace limber {
 
-/// Replaces the address of each bus named in `addresses` (name -> socketcan:IFACE or
-/// virtual:GROUP). Throws ConfigError if the robot has no bus of such a name. Set-up only.
+/// Replaces the address of each bus named in `addresses` (name -> address, see
+/// common/can_address.h). Throws ConfigError if the robot has no bus of such a name. Set-up only.
 void choose_buses(const std::map<std::string, std::string>& addresses, Robot* robot);
 
 /// A robot.yaml that names a real interface is meant for a real arm: a simulator goes there only if

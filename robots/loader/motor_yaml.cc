@@ -60,15 +60,11 @@ BusConfig read_bus(const YamlMap& yaml) {
   BusConfig bus;
   bus.name = yaml.name("name");
   bus.can = yaml.text("can");
-  const auto colon = bus.can.find(':');
-  const std::string kind = bus.can.substr(0, colon);
-  if (colon == std::string::npos || (kind != "virtual" && kind != "socketcan") ||
-      bus.can.size() == colon + 1) {
-    yaml.refuse("can",
-                fmt::format("found '{}'; expected virtual:NAME or socketcan:INTERFACE", bus.can));
-  }
+  const std::optional<CanAddress> address = can_address(bus.can);
+  if (!address)
+    yaml.refuse("can", fmt::format("found '{}'; expected {}", bus.can, kCanAddressForms));
   constexpr std::size_t kLongestInterface = 15;
-  if (kind == "socketcan" && bus.can.size() - colon - 1 > kLongestInterface)
+  if (address->carrier == CanCarrier::kSocketCan && address->place.size() > kLongestInterface)
     yaml.refuse("can", "an interface name has at most 15 letters");
   bus.fd = yaml.boolean_or("fd", false);
   bus.bitrate_bps = static_cast<int>(yaml.integer("bitrate_bps", 10'000, 1'000'000));
@@ -78,12 +74,15 @@ BusConfig read_bus(const YamlMap& yaml) {
   } else {
     yaml.leave_to("fd: true", {"data_bitrate_bps"});
   }
+  const AdapterTiming& usual = timing_of(adapter_of(bus.can, CanAdapter::kNative));
   std::vector<std::string> adapters;
   for (const AdapterTiming& adapter : kAdapters) adapters.emplace_back(adapter.word);
-  const std::string word = yaml.word_or("adapter", adapters, adapters.front());
+  const std::string word = yaml.word_or("adapter", adapters, std::string(usual.word));
   for (const AdapterTiming& adapter : kAdapters) {
     if (adapter.word == word) bus.adapter = adapter.adapter;
   }
+  if (address->serial() && word != usual.word)
+    yaml.refuse("adapter", fmt::format("{} is an adapter of the class {}", bus.can, usual.word));
   if (bus.fd && !timing_of(bus.adapter).fd) yaml.refuse("adapter", word + " carries no CAN-FD");
   bus.reply_window_s = yaml.number_or("reply_window_s", {1e-5, 1.0}, 0.0);
   yaml.finish();

@@ -26,7 +26,9 @@ const RequiredKey kOfEveryRobot[] = {
     {"", "joints", "", "one entry a joint, named as in the URDF"},
     {"", "gains", "", "what the controller starts with"},
     {"buses[]", "name", "", "that the joints name it by"},
-    {"buses[]", "can", "", "`virtual:NAME` (simulated) or `socketcan:INTERFACE`"},
+    {"buses[]", "can", "",
+     "`virtual:NAME` (simulated), `socketcan:INTERFACE`, `slcan:/dev/NAME` or "
+     "`dmserial:/dev/NAME`"},
     {"buses[]", "bitrate_bps", "", "bit rate; of CAN-FD in the arbitration phase"},
     {"buses[]", "data_bitrate_bps", "fd: true", "bit rate of CAN-FD's data phase"},
     {"watchdog", "timeout_s", "", "without a command for so long, a drive stops by itself"},

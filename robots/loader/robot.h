@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/can_address.h"
 #include "robots/loader/emergency_stop_config.h"
 #include "robots/loader/hand_travel.h"
 #include "robots/loader/joint_chain.h"
@@ -15,10 +16,10 @@
 
 namespace limber {
 
-/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: "virtual:NAME"
-/// or "socketcan:IFACE".
+/// One CAN bus of the arm. `can` is the word a user changes to leave the simulator: see
+/// common/can_address.h.
 /// Class of CAN adapter, see adapter.h.
-enum class CanAdapter : std::uint8_t { kNative, kUsb, kSlcan };
+enum class CanAdapter : std::uint8_t { kNative, kUsb, kSlcan, kDamiaoSerial };
 
 struct BusConfig {
   std::string name;
@@ -207,7 +208,7 @@ struct Robot {
   /// wire.
   bool on_virtual_buses() const {
     for (const BusConfig& bus : buses) {
-      if (bus.can.rfind("virtual:", 0) != 0) return false;
+      if (!is_virtual(bus.can)) return false;
     }
     return !buses.empty();
   }

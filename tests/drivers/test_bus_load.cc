@@ -110,6 +110,14 @@ TEST(BusLoad, AReplyComesAfterTheDrivesDelay) {
   EXPECT_LT(least_round_trip_s(robot, 0), 175e-6 + 2 * 111e-6 + 50e-6) << "without any stuff bit";
 }
 
+// Its line is slower than the bus: 30 and 16 bytes of ten bits at 921,600 baud.
+TEST(BusLoad, ASerialAdaptersRecordsFollowOneAnother) {
+  Robot robot = seven_joints(false);
+  robot.buses[0].adapter = CanAdapter::kDamiaoSerial;
+  const double byte_s = 10.0 / 921'600;
+  EXPECT_NEAR(predicted_end_s(robot, 0), 2500e-6 + 7 * 30 * byte_s + 7 * 16 * byte_s, 1e-9);
+}
+
 // The longest classic frame, 29-bit identifier and eight bytes, has 67 + 64 + 29 = 160 bits.
 TEST(BusLoad, TheWindowLeavesRoomForAFrameOfAnotherDevice) {
   Robot robot = seven_joints(false);

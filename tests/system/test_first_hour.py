@@ -1,85 +1,41 @@
-"""docs/first_motion.md and docs/own_arm.md, followed: each of their commands, in order."""
+"""`limber first-hour` from the wires to the first push, with real processes and a simulated arm."""
 
-import os
-import re
-import shutil
+import json
 import subprocess
-from pathlib import Path
-
-import pytest
-
-from stack import ROOT
-
-ENVIRONMENT = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
-BLOCK = re.compile(r"^```\n(.*?)^```", re.DOTALL | re.MULTILINE)
+import sys
 
 
-def commands(page: str, number: int) -> list[str]:
-    """Of a block of a page, counted from 1, without comments."""
-    text = BLOCK.findall((ROOT / "docs" / page).read_text(encoding="utf-8"))[number - 1]
-    return [re.split(r"\s{2,}#", line)[0] for line in text.splitlines()]
-
-
-def follow(line: str, folder: Path) -> subprocess.CompletedProcess:
-    """As typed in a fresh clone, whose `out` is the test's own folder."""
-    command = ["bash", "-c", line]
-    done = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=300, env=ENVIRONMENT
+def led(answers: str, out, *words: str) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "limber", "first-hour", "desktop2r", "--out", str(out), *words]
+    return subprocess.run(
+        command, input=answers, capture_output=True, text=True, timeout=300, check=False
     )
-    assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
-    return done
 
 
-@pytest.fixture
-def clone(tmp_path):
-    for name in ("scenarios", "robots"):
-        (tmp_path / name).symlink_to(ROOT / name)
-    (tmp_path / "out").mkdir()
-    return tmp_path
+def verdicts(out) -> dict[str, str]:
+    content = json.loads((out / "first_hour.json").read_text(encoding="utf-8"))
+    return {name: step["verdict"] for name, step in content["steps"].items()}
 
 
-def stiffness(text: str, axis: str) -> float:
-    return float(re.search(rf"stiffness \{axis} +([\d.]+) N/m", text)[1])
+def test_from_the_wires_to_the_first_push(tmp_path):
+    """Ends where the person is not sure of the pose, goes on there; directions are skipped."""
+    out = tmp_path / "out"
+    first = led("\nn\n", out)
+    assert first.returncode == 1, first.stdout + first.stderr
+    assert "shoulder: damiao_mit:1 on arm: replies as 0x11" in first.stdout
+    assert "limber can motors zero" in first.stdout
+    assert verdicts(out) == {"wire": "passed", "motors": "passed", "zero": "failed"}
+    second = led("\n\ns\n\n\n", out)
+    assert second.returncode == 1, second.stdout + second.stderr  # directions are left
+    assert "motors: each motor" not in second.stdout
+    found = verdicts(out)
+    assert found.pop("directions") == "skipped"
+    assert set(found.values()) == {"passed"}, second.stdout
+    text = (out / "first_hour.md").read_text(encoding="utf-8")
+    assert "1.00 of it" in text and "the tip was pushed by" in text
 
 
-def test_a_stiffness_is_asked_for_measured_and_changed(clone):
-    (first,) = commands("first_motion.md", 1)
-    assert stiffness(follow(first, clone).stdout, "+y") == pytest.approx(500, rel=0.02)
-    *_, last = [follow(line, clone) for line in commands("first_motion.md", 2)]
-    assert stiffness(last.stdout, "+y") == pytest.approx(250, rel=0.02)
-    assert stiffness(last.stdout, "+x") == pytest.approx(500, rel=0.02)
-    follow("limber plot out/push", clone)
-    assert "push for" in follow("limber log events out/push", clone).stdout
-
-
-def test_a_running_arm_is_softened_pushed_and_moved(clone):
-    (run,) = commands("first_motion.md", 3)
-    line = f"{run} --out out/ready"
-    running = subprocess.Popen(
-        ["bash", "-c", f"exec {line}"],
-        cwd=clone,
-        stdout=subprocess.PIPE,
-        text=True,
-        env=ENVIRONMENT,
-    )
-    try:
-        follow("limber watch --once", clone)
-        watched, *sent = commands("first_motion.md", 4)
-        assert "openarm" in follow(watched, clone).stdout
-        for command in sent:
-            follow(command, clone)
-        (beyond,) = commands("first_motion.md", 5)
-        done = follow(beyond, clone)
-        assert "beyond" in done.stdout + done.stderr
-    finally:
-        running.send_signal(2)
-        told = running.communicate(timeout=300)[0]
-    assert "stopped" in told and running.returncode == 0, told
-
-
-def test_an_arm_of_ones_own_is_described_and_runs(clone):
-    new, check, lab = commands("own_arm.md", 1)
-    shutil.copy(ROOT / "robots" / "openarm" / "robot.urdf", clone / "my_arm.urdf")
-    new = new.replace("base_link", "world").replace("tool0", "link8")
-    for line in (new, check, f"{lab} --out out/first"):
-        follow(line, clone)
+def test_nobody_to_answer_is_no_consent(tmp_path):
+    done = led("", tmp_path / "out")
+    assert done.returncode == 2 and "a person at the terminal has to answer" in done.stderr
+    assert "zero" not in verdicts(tmp_path / "out")

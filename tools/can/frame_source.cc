@@ -27,7 +27,7 @@ class Listener {
  public:
   explicit Listener(const Robot& robot) {
     for (const BusConfig& bus : robot.buses) {
-      buses_.push_back(open_can_bus(bus.can, opens_fd(bus)));
+      buses_.push_back(open_bus(bus));
       ends_.push_back(buses_.back().get());
       last_ns_.push_back(0);
     }
@@ -93,7 +93,10 @@ ListeningLosses listen(const Robot& robot, const FrameSource& source, const Fram
 
 }  // namespace
 
-bool opens_fd(const BusConfig& bus) { return bus.fd || bus.can.rfind("virtual:", 0) == 0; }
+std::unique_ptr<CanBus> open_bus(const BusConfig& bus) {
+  const bool fd = bus.fd || is_virtual(bus.can);
+  return open_can_bus(bus.can, fd, Stamps::kOnArrival, bus.bitrate_bps);
+}
 
 std::optional<int> bus_of_interface(const Robot& robot, const std::string& interface) {
   for (std::size_t i = 0; i < robot.buses.size(); ++i) {

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "drivers/can/can_frame.h"
+#include "drivers/can/can_bus.h"
 #include "robots/loader/robot.h"
 
 namespace limber::bus_tools {
@@ -41,7 +42,7 @@ std::optional<int> bus_of_interface(const Robot& robot, const std::string& inter
 /// Which interfaces were left out, how many frames each, and what to do if one is a bus.
 std::string elsewhere_text(const Robot& robot, const ListeningLosses& losses);
 
-/// Whether FD frames can be opened there: always in user space, else if the bus carries them.
-bool opens_fd(const BusConfig& bus);
+/// To listen and replay: in user space with FD frames always, else if the bus carries them.
+std::unique_ptr<CanBus> open_bus(const BusConfig& bus);
 
 }  // namespace limber::bus_tools

@@ -23,7 +23,11 @@ std::string bit_rates(const BusConfig& bus) {
 std::string python_can(const BusConfig& bus) {
   const std::string fd = bus.fd ? ", fd=True" : "";
   const std::string name = candump_interface(bus.can);
-  if (bus.can.rfind("virtual:", 0) != 0)
+  const std::optional<CanAddress> address = can_address(bus.can);
+  if (address && address->carrier == CanCarrier::kDamiaoSerial) return "no interface of its own";
+  if (address && address->carrier == CanCarrier::kSlcan)
+    return fmt::format("can.Bus(interface=\"slcan\", channel=\"{}\")", name);
+  if (!is_virtual(bus.can))
     return fmt::format("can.Bus(interface=\"socketcan\", channel=\"{}\"{})", name, fd);
   return fmt::format("can.Bus(interface=\"udp_multicast\", channel=\"{}\", port={}, hop_limit=0{})",
                      virtual_bus_group(name), virtual_bus_port(), fd);

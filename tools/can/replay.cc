@@ -26,7 +26,7 @@ struct Planned {
 void require_virtual_buses(const Robot& robot, bool force) {
   std::string real;
   for (const BusConfig& bus : robot.buses) {
-    if (bus.can.rfind("virtual:", 0) != 0) real += (real.empty() ? "" : ", ") + bus.can;
+    if (!is_virtual(bus.can)) real += (real.empty() ? "" : ", ") + bus.can;
   }
   if (real.empty()) return;
   if (!force)
@@ -78,7 +78,7 @@ ReplayCount replay(const Robot& robot, const ReplayOptions& options,
   ReplayCount count;
   const std::vector<Planned> plan = read_plan(robot, options, &count);
   std::vector<std::unique_ptr<CanBus>> buses;
-  for (const BusConfig& bus : robot.buses) buses.push_back(open_can_bus(bus.can, opens_fd(bus)));
+  for (const BusConfig& bus : robot.buses) buses.push_back(open_bus(bus));
   std::int64_t due_ns = monotonic_ns();
   std::int64_t last_ns = plan.empty() ? 0 : plan.front().time_ns;
   for (const Planned& planned : plan) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robots/loader/adapter.h"
 #include "robots/loader/load_robot.h"
 
 namespace limber {
@@ -14,7 +15,8 @@ struct BusReport {
   double most_load = 0.0;  ///< every frame at its longest
   double end_s = 0.0;      ///< last reply after the start of a cycle, at the latest
   double window_s = 0.0;   ///< how long the driver waits for it
-  std::array<double, 3> highest_rate_hz = {};  ///< by class of adapter; 0: it cannot carry the bus
+  std::array<double, kAdapters.size()> highest_rate_hz =
+      {};  ///< by class of adapter; 0: it cannot carry the bus
 };
 
 struct ArmReport {

@@ -12,8 +12,10 @@ ENTER = "\n"
 
 class Keys:
     """Context manager. `single`: keys count at once; else a line each, of which the first letter
-    counts. Ctrl-C interrupts as ever.
+    counts, and those not read yet are the next one's. Ctrl-C interrupts as ever.
     """
+
+    _left = ""  # lines without a terminal
 
     def __init__(self) -> None:
         self.single = sys.stdin is not None and sys.stdin.isatty()
@@ -25,11 +27,15 @@ class Keys:
         if self.single:
             self._before = termios.tcgetattr(sys.stdin)
             tty.setcbreak(sys.stdin)
+        else:
+            self._waiting, Keys._left = Keys._left, ""
         return self
 
     def __exit__(self, *_error: object) -> None:
         if self._before is not None:
             termios.tcsetattr(sys.stdin, termios.TCSADRAIN, self._before)
+        else:
+            Keys._left = self._waiting
 
     def pressed(self) -> str | None:
         """The next key, in small letters, ENTER for none; None if there was none."""

@@ -98,7 +98,7 @@ IN_ROBOTS = [
     ("base: ", "basis: ", "is 'basis' a slip?"),
     ("tip: link8", "tip: hand", "no link 'hand'; there are: link0"),
     ("bitrate_bps: 1000000", "bitrate_bps: 1M", "expected a whole number from 10000"),
-    ('can: "virtual:', 'can: "usb:', "expected virtual:NAME or socketcan:INTERFACE"),
+    ('can: "virtual:', 'can: "usb:', "expected virtual:NAME, socketcan:INTERFACE, slcan:/dev/NAME"),
     ("protocol: damiao_mit", "protocol: damaio", "expected one of: damiao_mit, moteus, cia402"),
     ("gear_ratio", "gear", "is 'gear' a slip?"),
     ("watchdog:", "watchdogs:", "is 'watchdogs' a slip?"),

@@ -1,4 +1,4 @@
-"""The check by hand before the first motion."""
+"""The check by hand before the first motion, and the whole first hour."""
 
 from pathlib import Path
 from typing import Annotated
@@ -36,3 +36,22 @@ def joints(
 
     options = DriverOptions(tuple(bus or ()), not no_sim, private)
     raise typer.Exit(command.run(robot, options, Amounts(angle, length), json, console))
+
+
+@groups.identify.command("first-hour", epilog="Example: limber identify first-hour my_arm")
+def first_hour(
+    robot: Robot,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder of the record; default out/first_hour/ARM.")
+    ] = None,
+    begin: Annotated[
+        str | None,
+        typer.Option("--from", help="Go back to: wire, motors, zero, directions, hold or push."),
+    ] = None,
+) -> None:
+    """Lead from the wires to the first soft push: bus, motors, zeros, directions, HOLD with little
+    torque, push. Goes on where it ended; writes what was found, to attach to a question.
+    """
+    from limber.first_hour import guide
+
+    raise typer.Exit(guide.run(robot, out, begin, console))

@@ -53,8 +53,8 @@ app.add_typer(can.app, name="can")
 put_in_panels(app)
 app.add_typer(law.app, name="law", hidden=True)
 app.info.epilog = (
-    "Beside these: limber law (a control law of your own), limber motors (those on a bus), "
-    "limber ros2 (for ROS 2)."
+    "Beside these: limber first-hour (with a real arm), limber law (a control law of your own), "
+    "limber motors (those on a bus), limber ros2 (for ROS 2)."
 )
 # What proves limber and what teaches it lies beside a clone's sources, and is not installed.
 IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}

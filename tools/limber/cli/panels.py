@@ -25,6 +25,7 @@ ELSEWHERE = {
     "measure": "log measure",
     "incident": "log black-box",
     "directions": "identify joints",
+    "first-hour": "identify first-hour",
     "service": "export service",
     "ros2": "export ros2",
     "motors": "can motors",

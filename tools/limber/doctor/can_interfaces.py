@@ -1,6 +1,7 @@
-"""CAN interfaces of this machine against what a robot.yaml asks of its buses."""
+"""CAN interfaces and serial adapters of this machine, against what robot.yaml asks of its buses."""
 
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -33,9 +34,24 @@ class BusNeeds:
         return name if kind == "socketcan" else None
 
     @property
+    def device(self) -> Path | None:
+        """The serial line of an adapter that the kernel does not drive."""
+        kind, _, place = self.address.partition(":")
+        return Path(place.partition("@")[0]) if kind in ("slcan", "dmserial") else None
+
+    @property
     def hardware(self) -> tuple:
         """Buses that are brought up alike have this in common."""
         return self.bitrate, self.data_bitrate, self.sample_point
+
+    def cure(self) -> str:
+        """Of what is wrong with it: the commands."""
+        if self.device is not None:
+            return (
+                "plug it in: ls /dev/serial/by-id lists serial adapters by names that stay; "
+                "permission: sudo usermod -aG dialout $USER, then log in again"
+            )
+        return self.bring_up(self.interface or "canX")
 
     def bring_up(self, name: str) -> str:
         """The commands that bring an adapter up, on one line."""
@@ -83,7 +99,9 @@ def lines_to_bring_up(robot: str | None) -> Iterator[tuple[str, str]]:
 
 
 def problems(needs: BusNeeds) -> list[str]:
-    """What is wrong with the interface that a bus names; nothing if it is fit for use."""
+    """What is wrong with what a bus names; nothing if it is fit for use."""
+    if needs.device is not None:
+        return serial_problems(needs.device)
     name = needs.interface
     assert name is not None
     folder = SYSFS / name
@@ -96,6 +114,12 @@ def problems(needs: BusNeeds) -> list[str]:
     if queue < TX_QUEUE:
         found.append(f"its queue of {queue} frames refuses a burst")
     return found + compare(needs, link_data(name))
+
+
+def serial_problems(device: Path) -> list[str]:
+    if not device.exists():
+        return ["there is no such device"]
+    return [] if os.access(device, os.R_OK | os.W_OK) else ["no permission to open it"]
 
 
 def link_data(name: str) -> dict[str, Any]:

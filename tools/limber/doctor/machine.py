@@ -134,6 +134,9 @@ def _can(robot: str | None) -> Iterator[Finding]:
     yield from _other_interfaces({needs.interface for needs in wanted})
     for needs in wanted:
         yield _bus_interface(needs)
+    for needs in used.values():
+        if needs.device is not None:
+            yield _serial_adapter(needs)
     for buses, command in can_interfaces.lines_to_bring_up(robot):
         yield Finding("ok", "bring-up", f"an adapter for {buses}: {command}")
 
@@ -169,6 +172,13 @@ def _bus_interface(needs: can_interfaces.BusNeeds) -> Finding:
         return Finding("ok", name, "up, as robot.yaml has it")
     down = "" if "there is no such interface" in wrong else f"sudo ip link set {name} down && "
     return Finding("warn", name, "; ".join(wrong), down + needs.bring_up(name))
+
+
+def _serial_adapter(needs: can_interfaces.BusNeeds) -> Finding:
+    wrong = can_interfaces.problems(needs)
+    if wrong:
+        return Finding("warn", needs.address, wrong[0], needs.cure())
+    return Finding("ok", needs.address, "there, and may be opened")
 
 
 def _programs() -> Iterator[Finding]:

@@ -5,6 +5,8 @@ from rich.console import Console
 from limber.errors import InputError
 from limber.model.robot import Robot
 
+KINDS = ("socketcan:", "virtual:", "slcan:", "dmserial:")  # common/can_address.h
+
 
 def addresses(robot: Robot, overrides: tuple[str, ...]) -> dict[str, str]:
     """Name -> address, robot.yaml's or the one of --bus NAME=ADDR; refuses what can be neither."""
@@ -13,15 +15,18 @@ def addresses(robot: Robot, overrides: tuple[str, ...]) -> dict[str, str]:
         name, _, address = text.partition("=")
         if name not in chosen:
             raise InputError(f"--bus {text}: the robot's buses are {', '.join(chosen)}")
-        if not address.startswith(("socketcan:", "virtual:")):
-            raise InputError(f"--bus {text}: write {name}=socketcan:IFACE or {name}=virtual:NAME")
+        if not address.startswith(KINDS):
+            raise InputError(
+                f"--bus {text}: write {name}=socketcan:IFACE, {name}=virtual:NAME, "
+                f"{name}=slcan:/dev/NAME or {name}=dmserial:/dev/NAME"
+            )
         chosen[name] = address
     return chosen
 
 
 def real(chosen: dict[str, str]) -> list[str]:
-    """The addresses of the kernel's CAN, where a real arm may be."""
-    return [address for address in chosen.values() if address.startswith("socketcan:")]
+    """The addresses where a real arm may be."""
+    return [address for address in chosen.values() if not address.startswith("virtual:")]
 
 
 def warn_of_motion(chosen: dict[str, str], with_simulator: bool, console: Console) -> None:

@@ -63,6 +63,12 @@ def drop_ins(robot: str, overrides: tuple[str, ...] = ()) -> dict[str, str]:
             f"bus '{simulated[0]}' of {robot} is simulated ({chosen[simulated[0]]}), and a service "
             f"drives motors: --bus {simulated[0]}=socketcan:INTERFACE, or `can:` in robot.yaml"
         )
+    serial = [address for address in chosen.values() if not address.startswith("socketcan:")]
+    if serial:
+        raise InputError(
+            f"{serial[0]}: a service opens CAN sockets alone; bring the adapter up as an "
+            "interface (slcand), or run limber run --no-sim as yourself"
+        )
     interfaces = [address.removeprefix("socketcan:") for address in real(chosen)]
     devices = " ".join(f"sys-subsystem-net-devices-{escaped(each)}.device" for each in interfaces)
     words = "".join(f" --bus {override}" for override in overrides)
