@@ -81,8 +81,8 @@ TEST(WrongArm, ADriveThatReadsAWholeTurnOffIsHeldWhereItIs) {
 
 // The same of drives that count turns without power is a wrong zero: they stay off.
 TEST(WrongArm, AWholeTurnOfADriveThatKeepsThemIsOutOfRange) {
-  const LoadedRobot robot = load_robot("iiwa14");
-  LoadedRobot real = load_robot("iiwa14");
+  const LoadedRobot robot = load_robot("planar2r");
+  LoadedRobot real = load_robot("planar2r");
   real.robot.joints[1].drive.offset_rad += 2.0 * std::numbers::pi;
   Lab lab(robot, Scenario{}, LabOptions{&real, {}, {}});
   for (int cycle = 0; cycle < 1000; ++cycle) lab.step();
