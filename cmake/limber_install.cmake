@@ -66,7 +66,7 @@ function(limber_install_files)
   foreach(folder drivers/protocols drivers/gate dynamics controller/kinds controller/model controller/impedance controller/elastic)
     install(DIRECTORY ${folder}/ DESTINATION ${headers}/${folder} COMPONENT dev FILES_MATCHING PATTERN *.h)
   endforeach()
-  foreach(file common/config_error.h common/joints.h common/public.h common/types.h controller/laws/law.h controller/laws/law_plugin.h drivers/can/can_bus.h
+  foreach(file common/can_address.h common/config_error.h common/joints.h common/public.h common/types.h controller/laws/law.h controller/laws/law_plugin.h drivers/can/can_bus.h
       lab/lab_interface.h
       drivers/can/can_filter.h drivers/can/can_frame.h
       lcmtypes/gains_table.h robots/loader/emergency_stop_config.h robots/loader/hand_travel.h robots/loader/joint_chain.h robots/loader/robot.h
