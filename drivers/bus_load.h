@@ -12,7 +12,7 @@ namespace limber {
 double predicted_bus_load(const Robot& robot, int bus);
 
 /// The same with frames of the usual length: exact identifiers, the mean over typical data. What
-/// the driver counts agrees with it within 2 %.
+/// the driver counts agrees with it within 3 %.
 double expected_bus_load(const Robot& robot, int bus);
 
 /// When the driver has the last reply of a cycle at the latest, s after its start: every frame at

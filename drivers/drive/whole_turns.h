@@ -21,7 +21,8 @@ struct WholeTurns {
 /// none does, which is then out of range. Allowed inside the cycle.
 inline WholeTurns whole_turns(double theta, const JointConfig& joint) noexcept {
   const bool bounded = std::isfinite(joint.position_min) && std::isfinite(joint.position_max);
-  if (!joint.drive.single_turn || joint.has_antagonist || !bounded) return {};
+  const bool turns_about = joint.type == JointType::kRevolute && !joint.has_antagonist;
+  if (!joint.drive.single_turn || !turns_about || !bounded) return {};
   WholeTurns found;
   int fitting = 0;
   for (const int turns : {0, 1, -1}) {

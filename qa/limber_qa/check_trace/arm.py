@@ -44,6 +44,17 @@ class Motor:
     link_counts_per_turn: float | None = None
     torque_sensor: bool = False
 
+    def within_travel(self, angle: float) -> float:
+        """Of a drive that knows a single turn: the angle, or that a whole turn from it, which is in
+        the joint's travel.
+        """
+        if self.position is None or self.keys.get("keeps_turns"):
+            return angle
+        low, high = self.position
+        turned = (angle, angle + math.tau, angle - math.tau)
+        fitting = [one for one in turned if low <= one <= high]
+        return fitting[0] if len(fitting) == 1 else angle
+
 
 @dataclass(frozen=True)
 class Arm:

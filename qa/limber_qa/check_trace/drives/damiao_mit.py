@@ -56,7 +56,7 @@ def states(motor: Motor, trace: Trace) -> list[State]:
         found.append(
             State(
                 frame.time_ns,
-                motor.sign * (angle - motor.offset),
+                motor.within_travel(motor.sign * (angle - motor.offset)),
                 motor.sign * speed,
                 motor.sign * speed,
                 status == ENABLED,
@@ -85,7 +85,7 @@ def _command(motor: Motor, frame: Frame) -> Command:
         time_ns,
         kind_of(kp, kd, torque, resolution_Nm(motor)),
         motor.sign * torque,
-        motor.sign * (angle - motor.offset),
+        motor.within_travel(motor.sign * (angle - motor.offset)),
         motor.sign * speed,
         kp,
         kd,

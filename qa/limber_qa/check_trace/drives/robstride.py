@@ -57,7 +57,7 @@ def states(motor: Motor, trace: Trace) -> list[State]:
         found.append(
             State(
                 frame.time_ns,
-                motor.sign * (angle - motor.offset),
+                motor.within_travel(motor.sign * (angle - motor.offset)),
                 speed,
                 speed,
                 mode == RUNNING and not faults,
@@ -87,7 +87,7 @@ def _command(motor: Motor, number: int, frame: Frame) -> Command:
         time_ns,
         kind_of(kp, kd, torque, resolution_Nm(motor)),
         motor.sign * torque,
-        motor.sign * (_symmetric(data[0:2], MOST_RAD) - motor.offset),
+        motor.within_travel(motor.sign * (_symmetric(data[0:2], MOST_RAD) - motor.offset)),
         motor.sign * _symmetric(data[2:4], ends[SPEED]),
         kp,
         kd,

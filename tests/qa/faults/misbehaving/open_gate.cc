@@ -36,6 +36,7 @@ LoadedRobot driver_view(const LoadedRobot& robot) {
     joint.velocity_limit = joint.drive.range.velocity_rad_per_s;
     joint.position_min = -joint.drive.range.position_rad;
     joint.position_max = joint.drive.range.position_rad;
+    joint.drive.single_turn = false;
   }
   return view;
 }
