@@ -37,13 +37,17 @@ int main(int argc, char** argv) {
   const auto bus = open_can_bus(argc > 1 ? argv[1] : "virtual:desktop2r", false);
   for (const auto& [id, reply_id] : kMotors)
     bus->send(mit::encode_special(mit::Special::kEnable, id, false));
-  std::this_thread::sleep_for(50ms);
-  const auto start = take_replies(*bus);
+  std::map<unsigned, mit::Reply> start;
+  for (int wait = 0; wait < 100 && start.size() < kMotors.size(); ++wait) {  // a second at most
+    std::this_thread::sleep_for(10ms);
+    start.merge(take_replies(*bus));
+  }
   if (start.size() != kMotors.size()) {
     std::fprintf(stderr, "%zu of 2 motors answer: is `limber sim desktop2r` running?\n",
                  start.size());
     return 3;
   }
+  auto last = start;
   for (int cycle = 0; cycle < 200; ++cycle) {  // 2 s at 100 Hz
     for (const auto& [id, reply_id] : kMotors) {
       const mit::Command hold{.position_rad = start.at(reply_id).position_rad,
@@ -54,9 +58,9 @@ int main(int argc, char** argv) {
         bus->send(frame);
     }
     std::this_thread::sleep_for(10ms);
-    const auto now = take_replies(*bus);
+    for (const auto& [reply_id, reply] : take_replies(*bus)) last[reply_id] = reply;
     if (cycle % 50 != 49) continue;
-    for (const auto& [reply_id, reply] : now) {
+    for (const auto& [reply_id, reply] : last) {
       std::printf("motor %u: %+.3f rad from its start, %+.2f Nm  ", reply.id_nibble,
                   reply.position_rad - start.at(reply_id).position_rad, reply.torque_Nm);
     }
