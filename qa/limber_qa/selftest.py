@@ -190,6 +190,14 @@ def _run_part(name: str, command: list[str]) -> Verdict:
         return Verdict(name, process.returncode == 0, time.monotonic() - start, output)
 
 
+def _end_of(output: str) -> list[str]:
+    """Its last lines, and pytest's names of what failed, which long comparisons may push out."""
+    lines = output.splitlines()
+    end = lines[-FAILED_LINES:]
+    named = [line[:200] for line in lines[:-FAILED_LINES] if line.startswith(("FAILED ", "ERROR "))]
+    return [*named, *end]
+
+
 def run(names: list[str], console: Console) -> bool:
     """Runs all parts, also after one has failed; True if all passed."""
     commands = {name: PARTS[name].command() for name in names}
@@ -221,5 +229,5 @@ def run(names: list[str], console: Console) -> bool:
     console.print(f"{'all':10} {'':6} {time.monotonic() - begun:6.1f} s")
     for verdict in (verdict for verdict in verdicts if not verdict.passed):
         console.rule(f"{verdict.name} failed")
-        print("\n".join(verdict.output.splitlines()[-FAILED_LINES:]), flush=True)
+        print("\n".join(_end_of(verdict.output)), flush=True)
     return all(verdict.passed for verdict in verdicts)

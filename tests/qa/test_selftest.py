@@ -77,6 +77,16 @@ def test_one_failure_fails_all_and_stops_nothing(parts, tmp_path, capfd):
     assert "bad news" in summary  # where a log that keeps its end alone still shows it
 
 
+def test_what_failed_is_named_however_long_its_output_is(parts, capfd):
+    lines = "print('FAILED tests/a.py::one - ' + 'x' * 999, *range(500), sep=chr(10))"
+    parts(a=part(f"{lines}; import sys; sys.exit(1)", Lane.BUILDS))
+    assert not selftest.run(["a"], Console(width=100))
+    output = capfd.readouterr().out
+    summary = output[output.index("summary") :].splitlines()
+    assert any(line.startswith("FAILED tests/a.py::one") for line in summary)
+    assert max(map(len, summary)) <= 200 and "499" in summary and "400" not in summary
+
+
 def test_all_good_is_good(parts):
     parts(a=part(""), b=part("", Lane.BUILDS), c=part("", Lane.SIMULATED))
     assert selftest.run(list("abc"), Console(width=100))
