@@ -25,6 +25,9 @@ def test_from_the_wires_to_the_first_push(tmp_path):
     assert "shoulder: damiao_mit:1 on arm: replies as 0x11" in first.stdout
     assert "limber can motors zero" in first.stdout
     assert verdicts(out) == {"wire": "passed", "motors": "passed", "zero": "failed"}
+    again = led("\nn\n", out, "--from", "motors")  # each step may be done again
+    assert again.returncode == 1, again.stdout + again.stderr
+    assert verdicts(out)["motors"] == "passed" and verdicts(out)["zero"] == "failed"
     second = led("\n\ns\n\n\n", out)
     assert second.returncode == 1, second.stdout + second.stderr  # directions are left
     assert "motors: each motor" not in second.stdout

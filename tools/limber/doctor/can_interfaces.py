@@ -89,6 +89,8 @@ def lines_to_bring_up(robot: str | None) -> Iterator[tuple[str, str]]:
     alike: dict[tuple, tuple[BusNeeds, list[str]]] = {}
     for name in [robot] if robot else robot_names():
         for bus, needs in needs_of(name).items():
+            if needs.device is not None:
+                continue
             where = Path(name).name if robot is None else f"{Path(name).name} {bus}"
             key = (needs.hardware, needs.interface)
             names = alike.setdefault(key, (needs, []))[1]

@@ -49,7 +49,7 @@ STEPS = (
     Step(
         "motors",
         "each motor of robot.yaml, once",
-        lambda robot, folder, _: motors_step.check(robot, output_folder(folder / "motors")),
+        lambda robot, folder, _: motors_step.check(robot, folder),
     ),
     Step("zero", "angles against the arm", lambda r, _, console: zero_step.check(r, console), OFF),
     Step("directions", "each joint turned by hand", _directions, OFF),

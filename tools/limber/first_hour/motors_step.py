@@ -13,8 +13,9 @@ import yaml
 from limber.errors import RunError
 from limber.first_hour.record import PASSED, Found, failed
 from limber.model.robot import Robot
-from limber.paths import program
+from limber.paths import output_folder, program
 from limber.run import buses
+from limber.run.commands import next_folder
 from limber.run.processes import process_group
 
 SCAN_S = 60.0
@@ -99,7 +100,7 @@ def _answering(robot: Robot, folder: Path) -> Iterator[None]:
         return
     rate = f"{min(robot.rate_hz, SIMULATED_HZ):.9g}"
     words = ["--robot", str(robot.folder), "--rate", rate, "--realtime"]
-    with process_group(folder) as group:
+    with process_group(output_folder(next_folder("motors", folder))) as group:
         child = group.start("limber-sim", [str(program("limber-sim")), *words])
         group.wait_for_line(child, "\n", START_S)
         yield

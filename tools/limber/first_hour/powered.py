@@ -1,7 +1,6 @@
 """The runs with drives on, with little torque: held, then soft."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,7 @@ from limber.model.scenario import load_scenario
 from limber.output import write_new
 from limber.paths import output_folder
 from limber.run import buses, runner
-from limber.run.commands import summarize
+from limber.run.commands import next_folder, summarize
 from limber.run.options import RunOptions
 
 HOLD_S, JUDGED_S = 6.0, 2.0
@@ -121,8 +120,7 @@ def _run(
     console: Console,
 ) -> Log | Found:
     """The log; or what failed."""
-    place = next(path for path in _places(folder, name) if not path.exists())
-    output_folder(place)
+    place = output_folder(next_folder(name, folder))
     scenario = {
         "format": "limber-scenario/1",
         "name": f"{robot.name} {name}",
@@ -147,10 +145,3 @@ def _run(
         lines = [line for fault in summary.faults for line in fault.lines()]
         return failed(lines[0], f"see above and docs/troubleshooting.md; log: {place}", *lines[1:])
     return Log(finished.log)
-
-
-def _places(folder: Path, name: str) -> Iterator[Path]:
-    number = 0
-    while True:
-        number += 1
-        yield folder / f"{name}-{number}"

@@ -17,11 +17,11 @@ from limber.run.drive_words import with_words
 from limber.run.options import FinishedRun, RunOptions
 
 
-def next_folder(name: str) -> Path:
-    """out/NAME-<n> with the lowest n that is free."""
-    taken = [re.fullmatch(rf"{re.escape(name)}-(\d+)", path.name) for path in Path("out").glob("*")]
+def next_folder(name: str, inside: Path = Path("out")) -> Path:
+    """inside/NAME-<n> with the lowest n above all that are there."""
+    taken = [re.fullmatch(rf"{re.escape(name)}-(\d+)", path.name) for path in inside.glob("*")]
     number = 1 + max((int(match[1]) for match in taken if match), default=0)
-    return Path("out") / f"{name}-{number}"
+    return inside / f"{name}-{number}"
 
 
 def _load(path: Path, console: Console) -> Scenario:
