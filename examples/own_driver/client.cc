@@ -35,11 +35,11 @@ std::map<unsigned, mit::Reply> take_replies(CanBus& bus) {
 
 int main(int argc, char** argv) {
   const auto bus = open_can_bus(argc > 1 ? argv[1] : "virtual:desktop2r", false);
-  for (const auto& [id, reply_id] : kMotors)
-    bus->send(mit::encode_special(mit::Special::kEnable, id, false));
   std::map<unsigned, mit::Reply> start;
-  for (int wait = 0; wait < 100 && start.size() < kMotors.size(); ++wait) {  // a second at most
-    std::this_thread::sleep_for(10ms);
+  for (int attempt = 0; attempt < 50 && start.size() < kMotors.size(); ++attempt) {  // for a second
+    for (const auto& [id, reply_id] : kMotors)
+      bus->send(mit::encode_special(mit::Special::kEnable, id, false));
+    std::this_thread::sleep_for(20ms);
     start.merge(take_replies(*bus));
   }
   if (start.size() != kMotors.size()) {

@@ -67,7 +67,7 @@ def test_find_package(installed, tmp_path):
 
 SIMULATED = """
 limber sim desktop2r >sim.txt 2>&1 &
-for try in $(seq 100); do grep -q "motor" sim.txt && break; sleep 0.1; done
+for try in $(seq 100); do grep -q "realtime" sim.txt && break; sleep 0.1; done
 "$@"; code=$?
 kill %1; wait %1
 exit $code
