@@ -144,20 +144,13 @@ int SendBatch::flush(int descriptor) noexcept {
   return sent;
 }
 
-int prepare_receive(int descriptor, int buffer_bytes) {
+void prepare_receive(int descriptor) {
   const int on = 1;
   // Where a kernel has no stamps or loss counter, receive time is "now" and losses stay unseen:
   // worth running without.
   setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
   wait_for_stamps();
   setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
-  if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &buffer_bytes, sizeof(int)) != 0) {
-    setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof(int));
-  }
-  int doubled = 0;  // the kernel counts its own overhead in
-  socklen_t size = sizeof(doubled);
-  getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &doubled, &size);
-  return doubled / 2;
 }
 
 }  // namespace limber

@@ -85,9 +85,7 @@ class SendBatch {
   int count_ = 0;
 };
 
-/// Kernel receive stamps, loss counter, and a receive buffer of so many bytes; without the
-/// privilege for it (CAP_NET_ADMIN) as much as the system permits (net.core.rmem_max). Returns its
-/// size. Set-up only.
-int prepare_receive(int descriptor, int buffer_bytes = 4 << 20);
+/// Kernel receive stamps and loss counter. Set-up only.
+void prepare_receive(int descriptor);
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/open_files.h"
+#include "common/receive_buffer.h"
 
 namespace limber {
 
@@ -18,15 +19,14 @@ constexpr int kMostTaken = 128;
 LcmPort::LcmPort(const std::string& url, Use use)
     : url_(url),
       address_(parse_lcm_url(url)),
-      sockets_(open_multicast("user plane " + url, address_.group, address_.ttl)) {
+      sockets_(open_multicast("user plane " + url, address_.group, address_.ttl,
+                              address_.receive_buffer_bytes.value_or(kReceiveBuffer_bytes))) {
   require_open_files();
   if (use == Use::kPublishOnly) {
     sockets_.receiver = FileDescriptor();
     return;
   }
   hear_only(url_, sockets_, {});
-  const int bytes = address_.receive_buffer_bytes.value_or(kReceiveBuffer_bytes);
-  setsockopt(descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
 }
 
 bool LcmPort::send(Bytes datagram) noexcept {

@@ -8,13 +8,10 @@
 
 namespace limber {
 
-/// LCM's own default is too small.
-inline constexpr int kReceiveBuffer_bytes = 2 << 20;
-
 struct LcmAddress {
   sockaddr_in group{};
   int ttl = 0;
-  std::optional<int> receive_buffer_bytes;  ///< as asked for; else kReceiveBuffer_bytes or more
+  std::optional<int> receive_buffer_bytes;  ///< as asked for
 };
 
 /// Allowed is udpm://[GROUP[:PORT]] with at most one `ttl`, which is 0 unless LIMBER_ALLOW_REMOTE=1

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/config_error.h"
+#include "common/receive_buffer.h"
 
 namespace limber {
 namespace {
@@ -143,11 +144,13 @@ bool is_loopback(const std::string& interface) {
 
 }  // namespace
 
-FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group) {
+FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group,
+                                       int buffer_bytes) {
   FileDescriptor socket = open_udp(name);
   set(name, socket.get(), SOL_SOCKET, SO_REUSEADDR, 1);
   set(name, socket.get(), SOL_SOCKET, SO_REUSEPORT, 1);
   set(name, socket.get(), IPPROTO_IP, IP_MULTICAST_ALL, 0);
+  set_receive_buffer(socket.get(), buffer_bytes);
   // Bound to the group, not to any address: other groups on the same port stay out.
   if (bind(socket.get(), generic(&group), sizeof(group)) != 0) {
     refuse_with_errno(name, "cannot bind to port " + std::to_string(ntohs(group.sin_port)));
@@ -158,8 +161,10 @@ FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_i
   return socket;
 }
 
-MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl) {
-  MulticastSockets sockets{open_multicast_receiver(name, group), open_sender(name, ttl)};
+MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl,
+                                int buffer_bytes) {
+  MulticastSockets sockets{open_multicast_receiver(name, group, buffer_bytes),
+                           open_sender(name, ttl)};
   Filter filter = drop_own(name, sockets.sender.get());
   filter.push_back(kPass);
   attach(name, sockets.receiver.get(), &filter);

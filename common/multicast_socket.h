@@ -22,13 +22,15 @@ struct MulticastSockets {
 };
 
 /// Joins `group` on the interface to which the kernel routes it, where `sender` sends as well, at
-/// most `ttl` hops far. Throws ConfigError that begins with `name`, without a route with
-/// kMulticastRouteCommands. Set-up only.
-MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl);
+/// most `ttl` hops far, with a receive buffer of `buffer_bytes` (receive_buffer.h). Throws
+/// ConfigError that begins with `name`, without a route with kMulticastRouteCommands. Set-up only.
+MulticastSockets open_multicast(const std::string& name, const sockaddr_in& group, int ttl,
+                                int buffer_bytes);
 
 /// The receiver alone, which hears everybody in the group. Throws ConfigError likewise. Set-up
 /// only.
-FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group);
+FileDescriptor open_multicast_receiver(const std::string& name, const sockaddr_in& group,
+                                       int buffer_bytes);
 
 /// From here on `receiver` hears LCM's short messages on these channels alone; the kernel drops all
 /// others before they wake anybody up. `sender`'s it still does not hear. Throws ConfigError that

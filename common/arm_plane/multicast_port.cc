@@ -3,6 +3,7 @@
 #include "common/arm_plane/datagram_port.h"
 #include "common/lcm_url.h"
 #include "common/multicast_socket.h"
+#include "common/receive_buffer.h"
 #include "common/wait_readable.h"
 
 namespace limber {
@@ -12,10 +13,8 @@ class MulticastPort final : public DatagramPort {
  public:
   MulticastPort(const std::string& url, const LcmAddress& address)
       : group_(address.group),
-        sockets_(open_multicast("arm plane " + url, address.group, address.ttl)) {
-    const int bytes = address.receive_buffer_bytes.value_or(kReceiveBuffer_bytes);
-    setsockopt(sockets_.receiver.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
-  }
+        sockets_(open_multicast("arm plane " + url, address.group, address.ttl,
+                                address.receive_buffer_bytes.value_or(kReceiveBuffer_bytes))) {}
 
   bool send(std::span<const std::uint8_t> datagram) noexcept override {
     const auto sent = sendto(sockets_.sender.get(), datagram.data(), datagram.size(), 0,

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "common/config_error.h"
+#include "common/receive_buffer.h"
 #include "drivers/can/datagram_bus.h"
 #include "drivers/can/kernel_frame.h"
 
@@ -93,6 +94,7 @@ FileDescriptor open_bound(const std::string& interface, bool fd) {
   }
   const can_err_mask_t errors = CAN_ERR_MASK;
   setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors));
+  set_receive_buffer(socket.get(), kReceiveBuffer_bytes);
   prepare_receive(socket.get());
   if (bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     refuse(interface, std::string("cannot bind: ") + std::strerror(errno));

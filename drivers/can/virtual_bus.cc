@@ -13,6 +13,7 @@
 
 #include "common/config_error.h"
 #include "common/multicast_socket.h"
+#include "common/receive_buffer.h"
 #include "drivers/can/datagram_bus.h"
 #include "drivers/can/virtual_frame.h"
 
@@ -41,7 +42,7 @@ class VirtualBus final : public DatagramBus {
     group.sin_family = AF_INET;
     group.sin_port = htons(virtual_bus_port());
     inet_pton(AF_INET, virtual_bus_group(name).c_str(), &group.sin_addr);
-    MulticastSockets sockets = open_multicast("virtual:" + name, group, 0);
+    MulticastSockets sockets = open_multicast("virtual:" + name, group, 0, kReceiveBuffer_bytes);
     prepare_receive(sockets.receiver.get());
     receiver_ = std::move(sockets.receiver);
     sender_ = std::move(sockets.sender);

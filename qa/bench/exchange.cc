@@ -25,6 +25,7 @@
 #include "common/multicast_socket.h"
 #include "common/program.h"
 #include "common/realtime.h"
+#include "common/receive_buffer.h"
 #include "drivers/can/kernel_frame.h"
 #include "drivers/can/memory_bus.h"
 #include "drivers/can/virtual_bus.h"
@@ -196,7 +197,7 @@ class BareEnd {
     group_.sin_family = AF_INET;
     group_.sin_port = htons(virtual_bus_port());
     inet_pton(AF_INET, virtual_bus_group(name).c_str(), &group_.sin_addr);
-    sockets_ = open_multicast(name, group_, 0);
+    sockets_ = open_multicast(name, group_, 0, kReceiveBuffer_bytes);
   }
   /// One socket, which does not receive what it sends.
   void open_vcan(const std::string& name) {

@@ -16,7 +16,7 @@
 namespace limber {
 namespace {
 
-constexpr int kBuffer_bytes = 2 << 20;
+constexpr int kBuffer_bytes = 64 << 20;  // as far as the system permits; unused it costs nothing
 constexpr std::size_t kLongestDatagram = 65'536;
 /// In one call: what has been kept must be seen now and then.
 constexpr int kMostTaken = 256;
@@ -34,10 +34,9 @@ void append(std::vector<std::uint8_t>* bytes, std::uint32_t value) {
 }  // namespace
 
 PlaneReceiver::PlaneReceiver(const sockaddr_in& group)
-    : socket_(open_multicast_receiver("user plane", group)),
+    : socket_(open_multicast_receiver("user plane", group, kBuffer_bytes)),
       stop_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       room_(kLongestDatagram) {
-  setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &kBuffer_bytes, sizeof kBuffer_bytes);
   // The program's own thread handles its signals.
   sigset_t all{};
   sigset_t before{};

@@ -13,6 +13,7 @@
 #include "common/lcm_url.h"
 #include "common/multicast_socket.h"
 #include "common/open_files.h"
+#include "common/receive_buffer.h"
 
 namespace limber {
 namespace {
@@ -26,9 +27,10 @@ constexpr std::size_t kLongestDatagram = 65'507;
 FileDescriptor open_socket(const std::string& url) {
   require_open_files();
   const LcmAddress address = parse_lcm_url(url);
-  FileDescriptor socket = open_multicast_receiver("user plane " + url, address.group);
   const int wanted = address.receive_buffer_bytes.value_or(kBuffer_bytes);
-  const int bytes = prepare_receive(socket.get(), wanted);
+  FileDescriptor socket = open_multicast_receiver("user plane " + url, address.group, wanted);
+  prepare_receive(socket.get());
+  const int bytes = receive_buffer(socket.get());
   if (bytes < std::min(wanted, kSmall_bytes)) {
     spdlog::info(
         "note: the system permits a receive buffer of only {} kB, so messages are lost while this "

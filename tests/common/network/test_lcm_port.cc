@@ -1,6 +1,7 @@
 // A plane in LCM's wire format: what LCM's own library sends and hears, what is passed over, what
 // waits while the process is busy.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <lcm/lcm-cpp.hpp>
 #include <limber/joint_command_t.hpp>
@@ -13,6 +14,9 @@
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "common/lcm_port.h"
+#include "common/lcm_url.h"
+#include "common/multicast_socket.h"
+#include "common/receive_buffer.h"
 #include "tests/drivers/can/private_network.h"
 #include "tools/allocations/allocations.h"
 
@@ -44,6 +48,29 @@ class LcmPortTest : public ::testing::Test {
   }
   std::vector<std::int64_t> heard;
 };
+
+// A receiver is joined before its program reads: what comes at once then is kept, from the first
+// message on. The kernel's own buffer has room for 256 of these.
+TEST_F(LcmPortTest, KeepsWhatComesWhileItsProgramIsBusy) {
+  constexpr int kMessages = 1000;
+  const sockaddr_in group = parse_lcm_url(kUrl).group;
+  const MulticastSockets sockets = open_multicast("busy", group, 0, kReceiveBuffer_bytes);
+  const FileDescriptor alone = open_multicast_receiver("busy", group, kReceiveBuffer_bytes);
+  LcmPort port(kUrl);
+  subscribe(port, 2 * kMessages);
+  lcm::LCM lcm(kUrl);
+  for (std::int64_t seq = 0; seq < kMessages; ++seq) {
+    const mode_request_t message = request(seq);
+    lcm.publish("MODE_REQUEST", &message);
+  }
+  for (const int socket : {sockets.receiver.get(), alone.get()}) {
+    int waiting = 0;
+    for (char byte = 0; recv(socket, &byte, 1, MSG_DONTWAIT) >= 0;) ++waiting;
+    EXPECT_EQ(waiting, kMessages);
+  }
+  handle_all(port);
+  EXPECT_EQ(heard.size(), std::size_t{kMessages});
+}
 
 TEST_F(LcmPortTest, HearsWhatLcmSends) {
   LcmPort port(kUrl);
