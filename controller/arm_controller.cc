@@ -145,6 +145,8 @@ void ArmController::watch_motion(const joint_state_t& state, double dt_s) noexce
                                terms.B,          terms.J,  cycle_.walls()};
   if (const int joint = load_watch_.wrong(state, model, dt_s); joint >= 0)
     supervisor_.raise(Event::kStrayed, joint);
+  if (const int joint = load_watch_.overdriven(); joint >= 0)
+    supervisor_.raise(Event::kOverdriven, joint);
   const EncoderWatch::Model arm{cycle_.gravity(), terms.CTv, terms.M_total};
   if (const int joint = encoder_watch_.stopped(state, arm, dt_s); joint >= 0)
     supervisor_.raise(Event::kEncoderStopped, joint);

@@ -51,6 +51,7 @@ constexpr Transition kTransitions[] = {
     {Mode::kHold, Event::kTorqueInvalid, Mode::kFault, Status::REASON_TORQUE_INVALID},
     {Mode::kHold, Event::kDriveNotOn, Mode::kFault, Status::REASON_DRIVE_NOT_ON},
     {Mode::kHold, Event::kStrayed, Mode::kFault, Status::REASON_STRAYED},
+    {Mode::kHold, Event::kOverdriven, Mode::kFault, Status::REASON_OVERDRIVEN},
     {Mode::kHold, Event::kEncoderStopped, Mode::kFault, Status::REASON_ENCODER_STOPPED},
     {Mode::kHold, Event::kEnergy, Mode::kFault, Status::REASON_ENERGY},
     {Mode::kActive, Event::kStateLost, Mode::kFault, Status::REASON_STATE_LOST},
@@ -59,6 +60,7 @@ constexpr Transition kTransitions[] = {
     {Mode::kActive, Event::kNewSession, Mode::kFault, Status::REASON_SESSION_CHANGED},
     {Mode::kActive, Event::kTorqueInvalid, Mode::kFault, Status::REASON_TORQUE_INVALID},
     {Mode::kActive, Event::kStrayed, Mode::kFault, Status::REASON_STRAYED},
+    {Mode::kActive, Event::kOverdriven, Mode::kFault, Status::REASON_OVERDRIVEN},
     {Mode::kActive, Event::kEncoderStopped, Mode::kFault, Status::REASON_ENCODER_STOPPED},
     {Mode::kActive, Event::kEnergy, Mode::kFault, Status::REASON_ENERGY},
     {Mode::kSoftStop, Event::kStateLost, Mode::kFault, Status::REASON_STATE_LOST},
@@ -67,6 +69,7 @@ constexpr Transition kTransitions[] = {
     {Mode::kSoftStop, Event::kNewSession, Mode::kFault, Status::REASON_SESSION_CHANGED},
     {Mode::kSoftStop, Event::kTorqueInvalid, Mode::kFault, Status::REASON_TORQUE_INVALID},
     {Mode::kSoftStop, Event::kStrayed, Mode::kFault, Status::REASON_STRAYED},
+    {Mode::kSoftStop, Event::kOverdriven, Mode::kFault, Status::REASON_OVERDRIVEN},
     {Mode::kSoftStop, Event::kEncoderStopped, Mode::kFault, Status::REASON_ENCODER_STOPPED},
     {Mode::kSoftStop, Event::kEnergy, Mode::kFault, Status::REASON_ENERGY},
 

@@ -45,12 +45,13 @@ enum class Event : std::uint8_t {
   kTorqueInvalid,   ///< the law's result was not finite
   kDriveNotOn,      ///< the drives were asked for and did not come
   kStrayed,         ///< held, but it moves away
+  kOverdriven,      ///< a motor makes a multiple of the torque that it reports
   kEncoderStopped,  ///< it must be moving, but its encoder does not count
   kEnergy,          ///< the arm moves with energy that its torques have not given it
   kClientSilent,    ///< the goal's time is over
   kEstopPressed,
 };
-inline constexpr int kEvents = 19;
+inline constexpr int kEvents = 20;
 
 struct Transition {
   Mode from;

@@ -21,7 +21,7 @@ constexpr double kWarm_s = 60.0;  // after this the process holds all that it ne
 constexpr std::int64_t kGrowth_kB = 1024;
 
 /// Whether a fault of a drive (scenario_event_t) can be the reason of a trip (joint_state_t). A
-/// frozen encoder deceives the law, and what gives it away differs.
+/// frozen encoder deceives the law, and what gives it away differs; it may be the jump at its end.
 bool explains(int injected, int cause) {
   using State = joint_state_t;
   switch (injected) {
@@ -30,7 +30,7 @@ bool explains(int injected, int cause) {
     case scenario_event_t::FAULT_FROZEN_ENCODER:  // REQUESTED: by the controller, ENCODER_STOPPED
       return cause == State::FAULT_REQUESTED || cause == State::FAULT_FEEDBACK ||
              cause == State::FAULT_POSITION || cause == State::FAULT_VELOCITY ||
-             cause == State::FAULT_REPLY_LOST;
+             cause == State::FAULT_REPLY_LOST || cause == State::FAULT_REPLY_INVALID;
     default:  // an error, or a watchdog that commands no longer feed
       return cause == State::FAULT_DRIVE_ERROR;
   }

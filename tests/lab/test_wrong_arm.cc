@@ -89,6 +89,50 @@ TEST(WrongArm, AWholeTurnOfADriveThatKeepsThemIsOutOfRange) {
   EXPECT_TRUE(lab.state().joint_flags[1] & joint_state_t::JOINT_OUT_OF_RANGE);
 }
 
+// HOLD carries it with a fraction of the torque, as if a stand did the rest; then a law with the
+// whole weight moves it. A range that is too small is found in HOLD.
+TEST(WrongArm, AMotorThatMakesAMultipleIsFoundAsTheLawBegins) {
+  struct Case {
+    const char* robot;
+    std::size_t joint;
+    double scale;
+    int reason;
+  };
+  using Status = controller_status_t;
+  for (const auto& [name, joint, scale, reason] :
+       {Case{"desktop2r", 0, 4.0, +Status::REASON_OVERDRIVEN},
+        Case{"desktop2r", 0, 2.5, +Status::REASON_OVERDRIVEN},
+        Case{"desktop2r", 0, 0.25, +Status::REASON_STRAYED},
+        Case{"openarm", 0, 4.0, +Status::REASON_OVERDRIVEN},
+        Case{"yam", 2, 2.5, +Status::REASON_STRAYED},
+        Case{"yam", 2, 0.25, +Status::REASON_STRAYED}}) {
+    const LoadedRobot robot = load_robot(name);
+    LoadedRobot real = load_robot(name);
+    real.robot.joints[joint].drive.torque_constant_Nm_per_A *= scale;
+    Scenario scenario;
+    scenario.name = "wrong torque range";
+    mode_request_t request{};
+    request.client = kScenarioClient;
+    request.request = mode_request_t::REQUEST_HOLD;
+    scenario.timeline.push_back({300'000'000, request});
+    request.request = mode_request_t::REQUEST_ACTIVE;
+    scenario.timeline.push_back({2'000'000'000, request});
+    scenario.plant = std::move(real);
+    Lab lab(robot, scenario);
+    double most = 0.0;
+    sim_truth_t start{};
+    while (lab.controller_status().mode != Status::MODE_FAULT && lab.time_ns() < 5'000'000'000) {
+      lab.step();
+      if (start.num_joints == 0) start = lab.truth();
+      for (int i = 0; i < start.num_joints; ++i)
+        most = std::max(most, std::abs(lab.truth().q[i] - start.q[i]));
+    }
+    EXPECT_EQ(lab.controller_status().reason, reason) << name << ' ' << joint << ' ' << scale;
+    EXPECT_EQ(lab.controller_status().reason_joint, static_cast<int>(joint)) << name;
+    EXPECT_LE(most, 1.1 * kMost_rad) << name << ' ' << joint << ' ' << scale;
+  }
+}
+
 TEST(WrongArm, SwappedNeighboursDoNotMoveIt) {
   const LoadedRobot robot = openarm();
   for (std::size_t i = 0; i + 1 < robot.robot.joints.size(); ++i) {

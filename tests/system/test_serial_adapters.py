@@ -12,7 +12,7 @@ from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.joint_state_t import joint_state_t as State
 from stack import ROOT
 
-SLOW = {"rate_hz": 50, "watchdog": {"timeout_s": 0.3, "reaction": "damp"}}
+SLOW = {"rate_hz": 50, "watchdog": {"timeout_s": 1.0, "reaction": "damp"}}
 SOFT = {"K_q_Nm_per_rad": [4, 2], "K_x_translation_N_per_m": 30}
 
 

@@ -52,7 +52,7 @@ def in_terminal(
 
 
 def test_the_demo_tells_its_message(tmp_path):
-    code, written = in_terminal("demo", "--lockstep", "--seconds", "8", "--out", str(tmp_path))
+    code, written = in_terminal("demo", "--seconds", "8", "--out", str(tmp_path))
     text = ANSI.sub("", written)
     assert code == 0, text[-3000:]
     for sentence in (

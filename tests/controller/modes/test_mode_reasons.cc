@@ -18,6 +18,7 @@ const std::map<Event, int> kReasons = {
     {Event::kTorqueInvalid, +Status::REASON_TORQUE_INVALID},
     {Event::kDriveNotOn, +Status::REASON_DRIVE_NOT_ON},
     {Event::kStrayed, +Status::REASON_STRAYED},
+    {Event::kOverdriven, +Status::REASON_OVERDRIVEN},
     {Event::kEncoderStopped, +Status::REASON_ENCODER_STOPPED},
     {Event::kEnergy, +Status::REASON_ENERGY},
     {Event::kClientSilent, +Status::REASON_CLIENT_SILENT},

@@ -31,6 +31,7 @@ const std::map<Event, std::string> kExpected = {
     {Event::kTorqueInvalid, "...FFF.."},
     {Event::kDriveNotOn, "...F...."},
     {Event::kStrayed, "...FFF.."},
+    {Event::kOverdriven, "...FFF.."},
     {Event::kEncoderStopped, "...FFF.."},
     {Event::kEnergy, "...FFF.."},
     {Event::kClientSilent, "....S..."},

@@ -155,6 +155,18 @@ def test_a_controllers_fault_is_told_with_its_own_number(tmp_path, run):
     assert fault.title.endswith("shoulder: moved by 0.104 rad since the drives came on")
 
 
+def test_a_motor_that_makes_a_multiple_is_told_with_the_factor(tmp_path, run):
+    state, status = state_of(), status_of()
+    weight_Nm = run.robot.dynamics.gravity_torque(state["q"][-1:, :2])[0][1]
+    state["tau_applied"][:, 1] = weight_Nm / 4.0
+    status["mode"][140:] = Status.MODE_FAULT
+    status["reason"][140:], status["reason_joint"][140:] = Status.REASON_OVERDRIVEN, 1
+    log = log_of(tmp_path / "log", JOINT_STATE=state, CONTROLLER_STATUS=status)
+    (fault,) = find_faults(log, run.robot, end_s=SECONDS)
+    assert fault.problem.code == "controller.OVERDRIVEN"
+    assert fault.title.endswith(f"elbow: its weight of {weight_Nm:.3g} N m is 4 times the torque")
+
+
 def test_what_somebody_requested_is_no_fault(tmp_path, run):
     state = state_of()
     state["fault"][1000:2000] = State.FAULT_REQUESTED

@@ -302,6 +302,19 @@ def _stands(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
     return f"{float(theta[-1]):.4g} {evidence.unit(onset.joint)} for {stood_s:.3g} s"
 
 
+def _factor(evidence: Evidence, rows: Rows, onset: _Onset) -> str:
+    """Of the torque that carried the joint when it was slow last."""
+    joints = len(evidence.robot.joints)
+    slow = np.abs(rows["v"][:, onset.joint]) < AT_REST
+    on = rows["drive_state"] == messages.message_class("joint_state_t").DRIVE_ON
+    if not np.any(slow & on):
+        return ""
+    rest = rows[slow & on][-1]
+    weight_Nm = evidence.robot.dynamics.gravity_torque(rest["q"][None, :joints])[0][onset.joint]
+    reported_Nm = float(rest["tau_applied"][onset.joint])
+    return f"its weight of {weight_Nm:.3g} N m is {weight_Nm / reported_Nm:.2g} times the torque"
+
+
 def _energy(evidence: Evidence, _rows: Rows, onset: _Onset) -> str:
     last = evidence.status[max(onset.row - 1, 0) : onset.row + 1]
     both = np.minimum(last["kinetic_energy_J"], last["unexplained_energy_J"])
@@ -322,6 +335,7 @@ MEASURED: dict[str, Callable[[Evidence, Rows, _Onset], str]] = {
     "driver.BUS": _bus,
     "driver.EMERGENCY_STOP": _stop,
     "controller.STRAYED": _strayed,
+    "controller.OVERDRIVEN": _factor,
     "controller.ENCODER_STOPPED": _stands,
     "controller.ENERGY": _energy,
 }
