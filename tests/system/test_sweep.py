@@ -171,19 +171,26 @@ def test_no_kill_loses_a_run_or_does_it_twice(bench):
 
 
 def test_ctrl_c_ends_in_good_order_and_the_same_words_go_on(bench):
-    client = bench.begin("stopped", "--processes", "2")
+    """Half of the runs have a law that the controller refuses: rows as all others."""
+    laws = ("--vary", "gains.law=cartesian_impedance,admittance")
+    client = bench.begin("stopped", *laws, "--processes", "2")
     bench.until(lambda: bench.done("stopped"), client)
     os.killpg(client.pid, signal.SIGINT)  # as a terminal does
     told = bench.end(client, 130)
     assert "runs are kept; go on with: limber sweep stopped --resume" in told, told
     assert len(told.splitlines()) == 2, told  # how far it came, and the command
     kept = len(bench.done("stopped"))
-    told = bench.end(bench.begin("stopped"), 2)
+    told = bench.end(bench.begin("stopped", *laws), 2)
     assert told == "limber: stopped holds a sweep already: --resume goes on with it\n"
-    told = bench.end(bench.begin("stopped", "--resume", "--seed", "2"), 2)
+    told = bench.end(bench.begin("stopped", *laws, "--resume", "--seed", "2"), 2)
     assert told == "limber: stopped is another sweep: seed: 1 there, 2 here; give another --out\n"
-    told = bench.end(bench.begin("stopped", "--resume"), 0)
+    told = bench.end(bench.begin("stopped", *laws, "--resume"), 0)
     assert f"{kept} of {RUNS} runs are there" in told
+    rows = parquet.read_table(bench.whole("stopped")).to_pylist()
+    refused = [row for row in rows if row["gains.law"] == "admittance"]
+    assert len(refused) == RUNS / 2 and {row["outcome"] for row in refused} == {"refused"}
+    assert all("request." in row["reason"] for row in refused), refused[0]
+    assert "refused" not in {row["outcome"] for row in rows if row not in refused}
 
 
 def test_a_worker_of_another_version_is_refused_by_name(bench):

@@ -14,12 +14,9 @@ from limber.errors import InputError
     "sweep", epilog="Example: limber identify sweep push --vary gains.K_x=100..2000 --runs 200"
 )
 def sweep(
-    what: Annotated[
-        Path, typer.Argument(help="Scenario file; with --resume or --replay a sweep's folder.")
-    ],
+    what: Annotated[Path, typer.Argument(help="Scenario file, or a sweep's folder.")],
     vary: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=LOW..HIGH", help="Also KEY=LOW..HIGH:log and KEY=A,B,C."),
+        list[str] | None, typer.Option(help="KEY=LOW..HIGH, KEY=LOW..HIGH:log or KEY=A,B,C.")
     ] = None,
     runs: Annotated[int, typer.Option(min=1, max=1_000_000, help="How many.")] = 100,
     method: Annotated[str, typer.Option(help="lhs, grid or monte-carlo.")] = "lhs",
@@ -39,10 +36,9 @@ def sweep(
 
     if replay is not None:
         raise typer.Exit(commands.replay(what, replay, out, console))
-    if what.is_dir() and not resume:
-        raise InputError(f"{what} is a folder: --resume goes on with its sweep")
-    folder = what
     if not what.is_dir():
         sweep = define(what, vary or [], method, runs, seed, overshoot)
-        folder = commands.begin(sweep, out, resume)
-    commands.carry_out(folder, on, processes, console)
+        what = commands.begin(sweep, out, resume)
+    elif not resume:
+        raise InputError(f"{what} is a folder: --resume goes on with its sweep")
+    commands.carry_out(what, on, processes, console)

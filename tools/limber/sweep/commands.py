@@ -112,5 +112,5 @@ def _conclude(sweep: Sweep, table: Table, folder: Path, console: Console) -> Non
         shown.add_row(outcome, f"{count}", f"{count / sweep.runs:.1%}", often)
     console.print(shown)
     picture.draw(sweep, found, folder / PICTURE)
-    console.print(f"runs and picture: {folder / WHOLE}, {folder / PICTURE}", soft_wrap=True)
-    console.print(f"one of them again: limber sweep {folder} --replay 0", soft_wrap=True)
+    told = f"{folder / WHOLE}, {folder / PICTURE}; one again: limber sweep {folder} --replay 0"
+    console.print(told, soft_wrap=True)

@@ -102,10 +102,8 @@ class Sweep:
                 differ = sorted(key for key in now | then if now.get(key) != then.get(key))
                 now, then = ({key: of.get(key) for key in differ} for of in (now, then))
             if now != then:
-                raise InputError(
-                    f"{folder} is another sweep: {name}: {then} there, {now} here; "
-                    "give another --out"
-                )
+                why = f"{name}: {then} there, {now} here; give another --out"
+                raise InputError(f"{folder} is another sweep: {why}")
 
 
 def load(folder: Path) -> Sweep:
@@ -180,9 +178,6 @@ def _yaml(content: dict[str, Any]) -> bytes:
 
 
 def _kept(folder: Path) -> dict[str, Any]:
-    file = existing_file(folder / FILE, "sweep's folder, with sweep.json")
-    try:
-        kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise InputError(f"{file} cannot be read: {error}") from error
-    return kept
+    return read_yaml(
+        existing_file(folder / FILE, "sweep's folder, with sweep.json")
+    )  # JSON is YAML

@@ -18,8 +18,7 @@ from limber.paths import captured, program
 from limber.sweep.definition import Files, versions, write_files
 
 HOLDS, BEYOND, FAULT, REFUSED = OUTCOMES = ("holds", "out of tolerance", "fault", "refused")
-# What ends a lab from outside: not the scenario's doing.
-KILLED = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+CRASHES = (signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE)  # again and again; no kill from outside
 
 
 def one_run(
@@ -28,8 +27,7 @@ def one_run(
     """The row. Raises RunError for what the machine is to blame for; all else is in the row."""
     if versions() != sweep_versions:
         raise RunError(f"this worker has {versions()}; the sweep {sweep_versions}")
-    scratch = get_worker().local_directory  # Dask empties it after a kill
-    with TemporaryDirectory(prefix="limber-sweep-", dir=scratch) as folder:
+    with TemporaryDirectory(dir=get_worker().local_directory) as folder:  # emptied after a kill
         try:
             scenario = load_scenario(write_files(files, Path(folder)))
             row = judge(_lab(scenario), scenario, overshoot)
@@ -45,10 +43,8 @@ def _lab(scenario: Scenario) -> Path:
     if done.returncode == 0:
         return log
     last = (done.stderr.strip().splitlines() or ["no output"])[-1].removeprefix("limber-lab: ")
-    if done.returncode == WRONG_INPUT:
+    if done.returncode == WRONG_INPUT or -done.returncode in CRASHES:
         raise InputError(last)
-    if done.returncode < 0 and -done.returncode not in KILLED:
-        raise InputError(f"limber-lab ended by {signal.Signals(-done.returncode).name}: {last}")
     raise RunError(f"limber-lab ended with exit code {done.returncode}: {last}")
 
 

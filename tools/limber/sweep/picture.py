@@ -34,8 +34,8 @@ def draw(sweep: Sweep, rows: pyarrow.Table, path: Path) -> None:
     outcomes = np.array(rows["outcome"].to_pylist())
     n = len(axes)
     with plt.rc_context({**STYLE, "axes.labelsize": 7.5}):
-        size = (3.4 * n + 2, 2.7 * n + 1)
-        figure, grid = plt.subplots(n, n, figsize=size, squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(n, n, squeeze=False, layout="constrained")
+        figure.set_size_inches(3.4 * n + 2, 2.7 * n + 1)
         for row, column in itertools.product(range(n), range(n)):
             ax = grid[row, column]
             if column > row:

@@ -27,9 +27,7 @@ def client_of(address: str | None, processes: int | None) -> Iterator[Client]:
     try:
         client = Client(address, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
-        raise RunError(
-            f"no scheduler answers at {address}: start `dask scheduler` there"
-        ) from error
+        raise RunError(f"no scheduler answers at {address}; `dask scheduler` is one") from error
     with client:
         _require_limber(client, address)
         yield client
