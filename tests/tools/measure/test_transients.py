@@ -24,10 +24,10 @@ def truth(along: np.ndarray, t: np.ndarray, angular: bool) -> np.ndarray:
     return made
 
 
-def pushed(angular: bool, moved: float = MOVED) -> MeasuredPush:
+def pushed(angular: bool, moved: float = MOVED, ramp_s: float = 0.0) -> MeasuredPush:
     direction = np.zeros(6)
     direction[4 if angular else 1] = 1.0
-    push = Push(AT, 5 * direction, 0.0, LONG)
+    push = Push(AT, 5 * direction, ramp_s, LONG)
     return MeasuredPush(push, 5 * direction, moved * direction, direction, np.eye(6), 0, 0, 0)
 
 
@@ -52,7 +52,8 @@ def test_two_poles(ratio, angular):
 def test_a_creeping_tip_has_no_overshoot_and_one_that_stands_has_no_way():
     t = np.arange(1.5, 3.2, 1e-3)
     creeping = MOVED * (1 - np.exp(-np.maximum(t - AT, 0) / 0.1))
-    over, settling_s = transient(truth(creeping, t, False), pushed(False))
-    assert over == 0.0
-    assert settling_s == pytest.approx(0.1 * np.log(20), abs=1.5e-3)
+    for ramp_s in (0.0, 0.1):
+        over, settling_s = transient(truth(creeping, t, False), pushed(False, ramp_s=ramp_s))
+        assert over == 0.0
+        assert settling_s == pytest.approx(0.1 * np.log(20) - ramp_s, abs=1.5e-3)
     assert transient(truth(0 * t, t, False), pushed(False, moved=0.0)) is None

@@ -44,6 +44,10 @@ def test_places_of_keys():
     assert changed("gains.ramp_s", 1)["timeline"][0]["gains"]["ramp_s"] == 1
     assert changed("timeline.2.push.force_N.1", 7)["timeline"][2]["push"]["force_N"] == [0, 7, 0]
     assert changed("payload.mass_kg", 2)["timeline"][3] == {"at_s": 0, "payload": {"mass_kg": 2}}
+    content = changed("seed", 5)
+    content["timeline"].append({"at_s": 2.5, "gains": {"ramp_s": 1}})
+    put(content, "gains.ramp_s", 2, {})
+    assert content["timeline"][3]["gains"] == {"ramp_s": 2}, "the one that has it"
     joints = {"one": {"friction": {}}, "two": {}, "three": {"friction": {}}}
     key = "plant_overrides.joints.*.friction.coulomb_Nm"
     found = changed(key, 0.5, joints)["plant_overrides"]["joints"]

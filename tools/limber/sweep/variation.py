@@ -8,8 +8,7 @@ from typing import Any
 from limber.errors import InputError
 
 FORMS = "KEY=LOW..HIGH, KEY=LOW..HIGH:log or KEY=A,B,C"
-# Shorter than what the scenario calls it.
-ALIASES = {
+ALIASES = {  # shorter than what the scenario calls it
     "gains.K_x": "gains.K_x_translation_N_per_m",
     "payload_kg": "payload.mass_kg",
     "plant.payload_kg": "payload.mass_kg",
