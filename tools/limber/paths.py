@@ -106,8 +106,7 @@ def cache_folder() -> Path:
 
 
 # Packages of optional parts, by the module that is imported.
-EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap"}
-EXTRAS |= {"distributed": "sweep"}
+EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap", "distributed": "sweep"}
 EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun", "gymnasium": "gym", "cyclonedds": "ros2"}
 # For the Debian package: what Debian has, and what it lacks, as in pyproject.toml. The latter goes
 # into an environment of the user's that has Debian's packages, too; there `python -m limber`.

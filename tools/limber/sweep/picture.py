@@ -91,8 +91,7 @@ class _Axis:
             axis.set_major_formatter(StrMethodFormatter("{x:g}"))
             axis.set_minor_formatter(NullFormatter())
         if self._listed:
-            words = [str(value) for value in self._listed]
-            ax.set(**{f"{name}ticks": range(len(words)), f"{name}ticklabels": words})
+            ax.set(**{f"{name}ticks": range(len(self._listed)), f"{name}ticklabels": self._listed})
 
 
 def _bars(ax: Axes, axis: _Axis, outcomes: np.ndarray) -> None:

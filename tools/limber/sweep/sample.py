@@ -36,8 +36,7 @@ def _grid(vary: tuple[Variation, ...], runs: int) -> Floats:
     while ranges and lists * (most + 1) ** ranges <= runs:
         most += 1
     if runs < lists or (ranges and most < 2):
-        least = lists * 2**ranges
-        raise InputError(f"--runs {runs}: this grid has {least} runs or more")
+        raise InputError(f"--runs {runs}: this grid has {lists * 2**ranges} runs or more")
     axes = [
         (np.arange(len(v.values)) + 0.5) / len(v.values) if v.values else np.linspace(0, 1, most)
         for v in vary
