@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -45,6 +46,24 @@ LoadedRobot read_plant(const YamlMap& yaml, const LoadedRobot& robot) {
   LoadedRobot real = load_plant(robot.robot.folder, yaml);
   check_plant_sensors(yaml, robot.robot, real.robot);
   return real;
+}
+
+/// `true`, `false`, or how much of robot.yaml's friction the simulated arm has.
+double read_friction(const YamlMap& yaml) {
+  const std::string text = yaml.text_or("friction", "true");
+  if (std::isalpha(static_cast<unsigned char>(text[0])) != 0)
+    return yaml.boolean_or("friction", true) ? 1.0 : 0.0;
+  return yaml.number("friction", {0.0, 10.0});
+}
+
+void scale_friction(double factor, Robot* robot) {
+  for (JointConfig& joint : robot->joints) {
+    for (FrictionConfig* friction : {&joint.friction, &joint.link_friction}) {
+      friction->coulomb_Nm *= factor;
+      friction->static_Nm *= factor;
+      friction->viscous_Nms_per_rad *= factor;
+    }
+  }
 }
 
 WireOptions read_wire(const YamlMap& yaml, std::uint64_t seed) {
@@ -166,12 +185,17 @@ Scenario load_scenario(const YamlMap& yaml, const LoadedRobot& robot, const LawC
                             ? Integrator::kOde
                             : Integrator::kReference;
   scenario.step_s = read_step(yaml, robot.robot.rate_hz);
-  scenario.friction = yaml.boolean_or("friction", true);
+  scenario.friction_factor = read_friction(yaml);
+  scenario.friction = scenario.friction_factor > 0.0;
   scenario.allow_unstable = yaml.boolean_or("allow_unstable", false);
   scenario.wire = read_wire(yaml, scenario.seed);
   scenario.stand = yaml.boolean_or("stand", true);
   const char* overrides = yaml.has("plant_overrides") ? "plant_overrides" : "reality";
   if (yaml.has(overrides)) scenario.plant = read_plant(yaml.map(overrides), robot);
+  if (scenario.friction && scenario.friction_factor != 1.0) {
+    if (!scenario.plant) scenario.plant = robot;
+    scale_friction(scenario.friction_factor, &scenario.plant->robot);
+  }
   scenario.start_q = read_start(yaml, robot.robot);
   scenario.objects = read_objects(yaml, robot.robot);
   scenario.measure = read_measure(yaml);

@@ -58,8 +58,9 @@ struct Scenario {
   Integrator integrator = Integrator::kOde;
   double step_s = 250e-6;  ///< integration step; a whole number of them makes a control period
   bool friction = true;
-  bool allow_unstable = false;  ///< gains known to be unstable act, with a warning; else refused
-  bool record = true;           ///< `limber run` keeps a log
+  double friction_factor = 1.0;  ///< times robot.yaml's, in `plant`; 0: none
+  bool allow_unstable = false;   ///< gains known to be unstable act, with a warning; else refused
+  bool record = true;            ///< `limber run` keeps a log
   MeasureTolerances measure;
   WireOptions wire;
   bool stand = true;  ///< the arm is carried at its start pose until the drives hold it

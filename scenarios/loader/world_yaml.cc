@@ -70,7 +70,7 @@ scenario_event_t read_payload(const YamlMap& entry) {
     return event;
   }
   const YamlMap yaml = entry.map("payload");
-  event.payload_mass_kg = yaml.number("mass_kg", {1e-3, 100.0});
+  event.payload_mass_kg = yaml.number("mass_kg", {0.0, 100.0});
   read_three(yaml, "position_m", {-1.0, 1.0}, event.payload_position);
   yaml.finish();
   return event;

@@ -197,6 +197,22 @@ TEST(LoadScenario, DefaultsAreALockstepRunFromHome) {
             +mode_request_t::REQUEST_ACTIVE);
 }
 
+TEST(LoadScenario, AFactorOfFrictionIsThatOfTheSimulatedArm) {
+  const LoadedRobot robot = load_robot("desktop2r");
+  const FrictionConfig& believed = robot.robot.joints[0].friction;
+  ASSERT_GT(believed.coulomb_Nm, 0.0);
+  const Scenario less = load_text("duration_s: 2\nfriction: 0.5\n", robot);
+  EXPECT_TRUE(less.friction);
+  EXPECT_EQ(less.friction_factor, 0.5);
+  const FrictionConfig& real = less.plant->robot.joints[0].friction;
+  EXPECT_EQ(real.coulomb_Nm, 0.5 * believed.coulomb_Nm);
+  EXPECT_EQ(real.static_Nm, 0.5 * believed.static_Nm);
+  EXPECT_EQ(real.viscous_Nms_per_rad, 0.5 * believed.viscous_Nms_per_rad);
+  EXPECT_EQ(real.bristle_rad, believed.bristle_rad);
+  EXPECT_FALSE(load_text("duration_s: 2\nfriction: 1\n", robot).plant);
+  EXPECT_FALSE(load_text("duration_s: 2\nfriction: 0\n", robot).friction);
+}
+
 TEST(LoadScenario, EveryKindOfADrivesFault) {
   const LoadedRobot robot = load_robot("desktop2r");
   const std::map<std::string, int> kinds = {

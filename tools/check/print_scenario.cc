@@ -91,7 +91,8 @@ std::string scenario_text(const Scenario& scenario, const LoadedRobot& robot) {
       "{}: {}, {:g} s, {}, {} integrator at {:g} ms, friction {}, seed {}\n", scenario.name,
       robot.robot.name, scenario.duration_s, mode_name(scenario), integrator_name(scenario),
       scenario.step_s * 1e3, scenario.friction ? "on" : "off", scenario.seed);
-  if (scenario.plant) text += "  the simulated arm differs from robot.yaml (plant_overrides)\n";
+  if (scenario.plant)
+    text += "  the simulated arm differs from robot.yaml (plant_overrides, friction)\n";
   for (const TimedMessage& timed : scenario.timeline) {
     text += fmt::format("  {:8.3f} s  {}\n", static_cast<double>(timed.time_ns) * 1e-9,
                         describe(timed));

@@ -149,6 +149,7 @@ json::Members scenario_members(const Scenario& scenario, const LoadedRobot& robo
       {"integrator", json::text(ode ? "ode" : "reference")},
       {"step_s", json::number(scenario.step_s)},
       {"friction", json::flag(scenario.friction)},
+      {"friction_factor", json::number(scenario.friction_factor)},
       {"seed", fmt::format("{}", scenario.seed)},
       {"record", json::flag(scenario.record)},
       {"law_files", json::texts(scenario.law_files)},

@@ -94,6 +94,7 @@ WRONG = [
     (["identify", "joints", "openarm", "--bus", "leg=virtual:x"], "buses are arm"),
     (["identify", "joints", "openarm", "--json", "nowhere/x.json"], "nowhere does not exist"),
     (["identify", "first-hour", "openarm", "--from", "lunch"], "wire, motors, zero, directions"),
+    (["sweep"], "'what'"),
     (["sim"], "'robot'"),
     (["sim", "unheard_of"], "planar2r"),
     (["run", "{dir}/good.yaml", "--rate", "0"], "--rate"),

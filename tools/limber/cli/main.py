@@ -24,6 +24,7 @@ from limber.cli import (
     monitor,
     motors,
     run,
+    sweep,  # noqa: F401 - fills groups.identify
 )
 from limber.cli.options import console
 from limber.cli.panels import Commands, put_in_panels
@@ -54,7 +55,7 @@ put_in_panels(app)
 app.add_typer(law.app, name="law", hidden=True)
 app.info.epilog = (
     "Beside these: limber first-hour (with a real arm), limber law (a control law of your own), "
-    "limber motors (those on a bus), limber ros2 (for ROS 2)."
+    "limber motors (those on a bus), limber ros2 (for ROS 2), limber sweep (many runs)."
 )
 # What proves limber and what teaches it lies beside a clone's sources, and is not installed.
 IN_A_CLONE = {"dev": "limber_qa.cli", "lecture": "limber_lecture.cli"}

@@ -26,6 +26,7 @@ ELSEWHERE = {
     "incident": "log black-box",
     "directions": "identify joints",
     "first-hour": "identify first-hour",
+    "sweep": "identify sweep",
     "service": "export service",
     "ros2": "export ros2",
     "motors": "can motors",

@@ -12,6 +12,8 @@ from limber.measure.sound import damaged
 from limber.model.scenario import Scenario
 from limber.problems import problem
 
+LOST_REPLIES = "replies lost on the bus"
+
 
 def health_results(
     log: Log,
@@ -70,14 +72,13 @@ def _driver(status: np.void, scenario: Scenario) -> list[Result]:
         Result("cycles without an answer", int(status["commands_missing"])),
         at_most("commands refused", sum(refused.values()), "", 0, why),
     ]
-    lost = "replies lost on the bus"
+    unjudged = Result(LOST_REPLIES, replies)
     if status["lockstep"]:
-        judged = Result(lost, replies) if scenario.faults else at_most(lost, replies, "", 0)
-        return [*results, judged]
+        return [*results, unjudged if scenario.faults else at_most(LOST_REPLIES, replies, "", 0)]
     note = f"of {cycles}; started more than a tenth of a period late"
     return [
         *results,
-        Result(lost, replies),
+        unjudged,
         Result("late cycles", int(status["late_cycles"]), note=note),
         Result("overruns", int(status["overrun_cycles"]), note="took longer than the period"),
         Result("lateness, median", float(status["lateness_p50_ns"]) * 1e-3, "µs"),

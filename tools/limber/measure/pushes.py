@@ -158,6 +158,7 @@ def _measure(
     if scenario.friction:
         joints, observed = scenario.robot.joints, gains.friction_observed
         held = np.array([j.link_friction if observed else j.friction for j in joints])
+        held = scenario.friction_factor * held
         bound = statics.greatest_friction_force(G, C, direction, held)
     if scenario.friction and not gains.friction_observed:
         torque = rests.change(truth, "tau_friction")[:n]

@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from limber.errors import InputError
+from limber.errors import InputError, RunError
 from limber.paths import captured, existing_file, program, robot_folder, scenario_file
 
 
@@ -35,7 +35,8 @@ def resolved(arguments: list[str]) -> dict[str, Any]:
     done = run_checker(arguments)
     if done.returncode != 0:
         told = done.stderr.strip() or f"limber-check failed (exit code {done.returncode})"
-        raise InputError(told.removeprefix("limber-check: "))
+        kind = InputError if done.returncode > 0 else RunError  # killed
+        raise kind(told.removeprefix("limber-check: "))
     found: dict[str, Any] = json.loads(done.stdout)
     return found
 

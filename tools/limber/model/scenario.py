@@ -93,6 +93,7 @@ class Scenario:
     duration_s: float
     seed: int
     friction: bool
+    friction_factor: float  # times robot.yaml's, in the simulated arm
     record: bool
     law_files: list[str]  # laws of one's own
     pushes: list[Push]
@@ -161,6 +162,7 @@ def _scenario(found: dict[str, Any], path: Path) -> Scenario:
         duration_s=found["duration_s"],
         seed=found["seed"],
         friction=found["friction"],
+        friction_factor=found.get("friction_factor", 1.0),  # younger than some logs
         record=found["record"],
         law_files=found["law_files"],
         pushes=[_push(entry["at_s"], entry["push"]) for entry in timeline if "push" in entry],
