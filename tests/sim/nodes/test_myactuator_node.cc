@@ -128,8 +128,8 @@ TEST_F(MyactuatorNodeTest, AfterATimeOutTheFirstFrameIsSentBackAndTheSecondActs)
   EXPECT_TRUE(node_.enabled()) << "as if nothing had been";
   wait(21 * kMs);
   EXPECT_EQ(unasked(), kTimedOut);
-  EXPECT_EQ(send("141#9200000000000000"), "241#9200000000000000");
   turn(1.0);
+  EXPECT_EQ(send("141#9200000000000000"), "241#9200000000000000") << "sent back";
   EXPECT_EQ(send("141#9200000000000000"), "241#9200000060160000") << "57.28 degrees";
 }
 
