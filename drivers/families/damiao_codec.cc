@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "drivers/families/damiao_family.h"
+#include "drivers/families/mit_commands.h"
 #include "drivers/protocols/mit.h"
 
 namespace limber {
@@ -41,17 +41,12 @@ const char* remedy(mit::DriveError error) noexcept {
 class DamiaoCodec final : public DriveCodec {
  public:
   DamiaoCodec(const JointConfig& joint, bool fd)
-      : drive_(joint.drive),
-        fd_(fd),
-        most_torque_(std::max(std::min(joint.torque_limit_Nm, drive_.range.torque_Nm) -
-                                  mit::half_count(drive_.range.torque_Nm, kBits),
-                              0.0)) {}
+      : drive_(joint.drive), fd_(fd), commands_(joint, drive_.command_id, fd) {}
 
-  /// The rounding error of the torque field is added to the next torque (first-order noise
-  /// shaping): the mean over the cycles is exact although a count is up to 14 mN m, and there is no
-  /// exact zero. Neither that nor rounding carries a torque over the joint's limit.
-  bool command(const DriveCommand& command, const DriveMemory& memory, CanFrame* frame,
-               DriveCommand* sent) noexcept override;
+  bool command(const DriveCommand& command, const DriveMemory& /*memory*/, CanFrame* frame,
+               DriveCommand* sent) noexcept override {
+    return commands_.encode(command, frame, sent);
+  }
   CanFrame disable() noexcept override { return special(mit::Special::kDisable); }
   CanFrame clear_error() noexcept override { return special(mit::Special::kClearError); }
   CanFrame enable(const DriveMemory& /*memory*/) noexcept override {
@@ -73,30 +68,11 @@ class DamiaoCodec final : public DriveCodec {
 
   DriveConfig drive_;
   bool fd_;
-  double most_torque_;  ///< N m: the limit less what rounding may add
-  double carry_ = 0.0;  ///< rounding error not sent yet, N m
+  MitCommands commands_;
 };
 
-bool DamiaoCodec::command(const DriveCommand& command, const DriveMemory& /*memory*/,
-                          CanFrame* frame, DriveCommand* sent) noexcept {
-  const double tau = command.torque_Nm + carry_;
-  const double wanted = std::isfinite(tau) ? std::clamp(tau, -most_torque_, most_torque_) : tau;
-  mit::Command decoded;
-  if (!mit::encode_command({command.angle_rad, command.speed_rad_per_s, command.kp_Nm_per_rad,
-                            command.kd_Nms_per_rad, wanted},
-                           drive_.range, drive_.command_id, fd_, mit::Quantiser::kRound, frame) ||
-      !mit::decode_command(*frame, drive_.range, &decoded)) {
-    carry_ = 0.0;
-    return false;
-  }
-  carry_ = wanted - decoded.torque_Nm;
-  *sent = {decoded.position_rad, decoded.velocity_rad_per_s, decoded.kp_Nm_per_rad,
-           decoded.kd_Nms_per_rad, decoded.torque_Nm};
-  return true;
-}
-
 CanFrame DamiaoCodec::special(mit::Special special) noexcept {
-  carry_ = 0.0;
+  commands_.start_afresh();
   return mit::encode_special(special, drive_.command_id, fd_);
 }
 

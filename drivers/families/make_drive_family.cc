@@ -4,6 +4,7 @@
 #include "drivers/families/cia402_family.h"
 #include "drivers/families/damiao_family.h"
 #include "drivers/families/moteus_family.h"
+#include "drivers/families/myactuator_family.h"
 #include "drivers/families/robstride_family.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
@@ -32,6 +33,11 @@ constexpr std::array kFamilies = {
     Row{"robstride",
         [](const JointConfig& joint, bool, double) -> DriveFamily {
           return {robstride_codec(joint), robstride_startup(joint), robstride_intruders(joint)};
+        }},
+    Row{"myactuator",
+        [](const JointConfig& joint, bool, double period_s) -> DriveFamily {
+          return {myactuator_codec(joint, period_s), myactuator_startup(joint),
+                  myactuator_intruders(joint)};
         }},
 };
 

@@ -13,6 +13,7 @@ std::span<const Family> families() {
       Family{"moteus", "planar2r", with_motion_of_moteus},
       Family{"cia402", "iiwa14", with_motion_of_cia402},
       Family{"robstride", "edulite_a3", with_motion_of_robstride},
+      Family{"myactuator", "axol", with_motion_of_myactuator},
   };
   return kFamilies;
 }

@@ -29,5 +29,7 @@ CanFrame with_motion_of_cia402(const CanFrame& reply, const JointConfig& joint, 
                                const MotionChange& change);
 CanFrame with_motion_of_robstride(const CanFrame& reply, const JointConfig& joint, bool fd,
                                   const MotionChange& change);
+CanFrame with_motion_of_myactuator(const CanFrame& reply, const JointConfig& joint, bool fd,
+                                   const MotionChange& change);
 
 }  // namespace limber::faults

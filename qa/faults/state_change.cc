@@ -8,6 +8,7 @@
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
+#include "drivers/protocols/myactuator.h"
 #include "drivers/protocols/robstride.h"
 #include "qa/faults/families.h"
 
@@ -69,6 +70,15 @@ CanFrame with_motion_of_robstride(const CanFrame& reply, const JointConfig& join
   state.position_rad += change.angle_rad;
   state.velocity_rad_per_s += change.speed_rad_per_s;
   return robstride::encode_state(state, joint.drive.range, robstride::Type::kState);
+}
+
+CanFrame with_motion_of_myactuator(const CanFrame& reply, const JointConfig& joint, bool /*fd*/,
+                                   const MotionChange& change) {
+  myactuator::Motion motion;
+  if (!myactuator::decode_motion(reply, joint.drive.range, &motion)) return reply;
+  motion.position_rad += change.angle_rad;
+  motion.velocity_rad_per_s += change.speed_rad_per_s;
+  return myactuator::encode_motion(motion, joint.drive.range, mit::Quantiser::kRound);
 }
 
 CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,

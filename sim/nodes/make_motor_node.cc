@@ -5,6 +5,7 @@
 #include "sim/nodes/cia402_node.h"
 #include "sim/nodes/damiao_node.h"
 #include "sim/nodes/moteus_node.h"
+#include "sim/nodes/myactuator_node.h"
 #include "sim/nodes/robstride_node.h"
 
 namespace limber::sim {
@@ -31,6 +32,10 @@ constexpr std::array kNodes = {
     Row{"robstride",
         [](const JointConfig& joint, bool) -> Node {
           return std::make_unique<RobstrideNode>(joint);
+        }},
+    Row{"myactuator",
+        [](const JointConfig& joint, bool) -> Node {
+          return std::make_unique<MyactuatorNode>(joint);
         }},
 };
 

@@ -68,7 +68,8 @@ TEST(Lab, EveryArmRunsOnItsWire) {
   for (const char* name :
        {"push.yaml", "desktop2r_push.yaml", "planar2r_push.yaml", "ideal7_push.yaml",
         "iiwa14_push.yaml", "panda_push.yaml", "baxter_push.yaml", "antagonist2r_stiffness.yaml",
-        "edulite_a3_push.yaml", "yam_push.yaml", "trlc_dk1_push.yaml", "rebot_b601_dm_push.yaml"}) {
+        "edulite_a3_push.yaml", "yam_push.yaml", "trlc_dk1_push.yaml", "rebot_b601_dm_push.yaml",
+        "axol_push.yaml"}) {
     Stage stage(name);
     stage.run_to(1.0);
     const driver_status_t before = stage.lab.driver_status();

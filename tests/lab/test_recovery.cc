@@ -58,6 +58,7 @@ TEST(Recovery, ADriveThatFailedIsEnabledAgain) {
   for (const auto& [robot, joint] : {std::pair{"openarm", "joint2"},
                                      {"panda", "joint2"},
                                      {"ideal7", "joint_2"},
+                                     {"axol", "shoulder_2"},
                                      {"testbench", "joint"}}) {
     const Course course = run(robot, 10.0,
                               "  - {at_s: 0.3, mode: hold}\n"

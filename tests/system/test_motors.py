@@ -11,11 +11,14 @@ import pytest
 from local_drive import multicast_group
 
 ARMS = {
+    "axol": ("myactuator", (1, 2, 3, 4, 5)),
     "desktop2r": ("damiao_mit", (1, 2)),
     "edulite_a3": ("robstride", (1, 2, 3, 4, 5, 6)),
     "planar2r": ("moteus", (1, 2)),
     "testbench": ("cia402", (1,)),
 }
+
+OTHERS = {"axol": ["damiao_mit:6", "damiao_mit:7"]}  # on the same bus
 
 
 @pytest.fixture
@@ -66,13 +69,14 @@ def test_scan_finds_the_motors_and_no_others(motors, robot):
     call = motors(robot)
     done = call("scan")
     assert done.returncode == 0, done.stderr
-    assert listed(done) == [f"{family}:{number}" for number in numbers]
+    expected = [f"{family}:{number}" for number in numbers]
+    assert listed(done) == OTHERS.get(robot, []) + expected
     shown = call("show", f"{family}:1")
     assert shown.returncode == 0, shown.stderr
     assert "not answered" not in shown.stdout and len(shown.stdout.splitlines()) >= 8
 
 
-@pytest.mark.parametrize(("robot", "number"), [("desktop2r", 5), ("edulite_a3", 100)])
+@pytest.mark.parametrize(("robot", "number"), [("desktop2r", 5), ("edulite_a3", 100), ("axol", 30)])
 def test_number_and_zero(motors, robot, number):
     family = ARMS[robot][0]
     call = motors(robot)
@@ -99,7 +103,10 @@ def test_makers_tools_are_named_where_they_are_needed(motors):
     ("words", "said"),
     [
         (["scan", "telepathy:0"], "virtual:NAME"),
-        (["show", "virtual:nobody", "damiao:3"], "damiao_mit, robstride, moteus, cia402"),
+        (
+            ["show", "virtual:nobody", "damiao:3"],
+            "damiao_mit, robstride, myactuator, moteus, cia402",
+        ),
         (["show", "virtual:nobody", "moteus:3"], "need --fd"),
         (["zero", "virtual:nobody", "damiao_mit:x"], "1 to 127"),
     ],

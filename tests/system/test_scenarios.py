@@ -56,6 +56,7 @@ def numbers(folder) -> dict[str, dict]:
         "yam_push",
         "trlc_dk1_push",
         "rebot_b601_dm_push",
+        "axol_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):

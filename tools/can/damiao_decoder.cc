@@ -2,11 +2,10 @@
 
 #include <array>
 
+#include "tools/can/mit_fields.h"
+
 namespace limber::bus_tools {
 namespace {
-
-constexpr int kAngleBits = 16;
-constexpr int kOtherBits = 12;
 
 /// Names and formats of the maker's manual; what is not listed is shown by number.
 struct RegisterRow {
@@ -124,14 +123,7 @@ Reading DamiaoDecoder::read_command(const CanFrame& frame) const {
   mit::Command command;
   if (!mit::decode_command(frame, drive_.range, &command))
     return {name_, Direction::kCommand, "unreadable", {{"", bytes(frame), ""}}};
-  return {name_,
-          Direction::kCommand,
-          "MIT command",
-          {{"position", number(command.position_rad), "rad"},
-           {"velocity", number(command.velocity_rad_per_s), "rad/s"},
-           {"kp", number(command.kp_Nm_per_rad), "N m/rad"},
-           {"kd", number(command.kd_Nms_per_rad), "N m s/rad"},
-           {"torque", number(command.torque_Nm), "N m"}}};
+  return {name_, Direction::kCommand, "MIT command", mit_values(command)};
 }
 
 Reading DamiaoDecoder::read_request(const mit::RegisterRequest& request) {
@@ -159,20 +151,10 @@ Reading DamiaoDecoder::read_reply(const CanFrame& frame) {
     return {name_, Direction::kReply, "unreadable", {{"", bytes(frame), ""}}};
   std::string status = mit::error_text(reply.error);
   if (status.empty()) status = "status " + hex(static_cast<std::uint32_t>(reply.error), 1);
-  // Drives truncate: half a count more is what they measured, on average.
-  const double position = reply.position_rad + mit::half_count(range.position_rad, kAngleBits);
-  const double velocity =
-      reply.velocity_rad_per_s + mit::half_count(range.velocity_rad_per_s, kOtherBits);
-  const double torque = reply.torque_Nm + mit::half_count(range.torque_Nm, kOtherBits);
-  Reading reading{name_,
-                  Direction::kReply,
-                  "state",
-                  {{"", status, ""},
-                   {"position", number(position), "rad"},
-                   {"velocity", number(velocity), "rad/s"},
-                   {"torque", number(torque), "N m"},
-                   {"T_mos", std::to_string(reply.mos_temperature_degC), "degC"},
-                   {"T_rotor", std::to_string(reply.rotor_temperature_degC), "degC"}}};
+  Reading reading{name_, Direction::kReply, "state", mit_values(reply, range)};
+  reading.values.insert(reading.values.begin(), {"", status, ""});
+  reading.values.push_back({"T_mos", std::to_string(reply.mos_temperature_degC), "degC"});
+  reading.values.push_back({"T_rotor", std::to_string(reply.rotor_temperature_degC), "degC"});
   if (reply.id_nibble != (drive_.command_id & 0xF))
     reading.values.push_back({"WRONG ID", hex(reply.id_nibble, 1), ""});
   return reading;

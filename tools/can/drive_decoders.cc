@@ -7,6 +7,7 @@
 #include "tools/can/canopen_decoder.h"
 #include "tools/can/damiao_decoder.h"
 #include "tools/can/moteus_decoder.h"
+#include "tools/can/myactuator_decoder.h"
 #include "tools/can/robstride_decoder.h"
 
 namespace limber::bus_tools {
@@ -48,6 +49,13 @@ constexpr std::array kDecoders = {
           return std::make_unique<RobstrideDecoder>(motor);
         },
         .add_messages = add_robstride_messages,
+    },
+    DriveDecoders{
+        .protocol = "myactuator",
+        .make = [](const Motor& motor, const BusFacts&) -> Decoder {
+          return std::make_unique<MyactuatorDecoder>(motor);
+        },
+        .add_messages = add_myactuator_messages,
     },
 };
 

@@ -8,11 +8,13 @@ namespace limber::motor_tools {
 
 extern const MotorTool* const kDamiaoTool;
 extern const MotorTool* const kRobstrideTool;
+extern const MotorTool* const kMyactuatorTool;
 extern const MotorTool* const kMoteusTool;
 extern const MotorTool* const kCanopenTool;
 
 std::span<const MotorTool* const> all_tools() noexcept {
-  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMoteusTool, kCanopenTool};
+  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMyactuatorTool, kMoteusTool,
+                                  kCanopenTool};
   return kAll;
 }
 

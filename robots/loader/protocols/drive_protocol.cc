@@ -43,8 +43,9 @@ std::string link_protocol_words() {
 
 void refuse_foreign_keys(const YamlMap& yaml, const DriveProtocol& protocol) {
   for (const DriveProtocol* other : drive_protocols()) {
-    for (const char* key : other->keys) {
-      if (other != &protocol && yaml.has(key))
+    for (const std::string key : other->keys) {
+      const bool own = std::ranges::find(protocol.keys, key) != protocol.keys.end();
+      if (!own && yaml.has(key))
         yaml.refuse(key, fmt::format("is for motors with protocol: {} only", other->word));
     }
   }

@@ -9,13 +9,11 @@ extern const DriveProtocol kDamiaoMit;
 extern const DriveProtocol kMoteus;
 extern const DriveProtocol kCia402;
 extern const DriveProtocol kRobstride;
+extern const DriveProtocol kMyactuator;
 
 std::span<const DriveProtocol* const> drive_protocols() noexcept {
   static constexpr std::array kAll = {
-      &kDamiaoMit,
-      &kMoteus,
-      &kCia402,
-      &kRobstride,
+      &kDamiaoMit, &kMoteus, &kCia402, &kRobstride, &kMyactuator,
   };
   return kAll;
 }

@@ -9,7 +9,7 @@ import pytest
 from limber.errors import InputError
 from limber_qa.check_trace.arm import read_arm
 from limber_qa.check_trace.candump import Trace, read_trace
-from limber_qa.check_trace.drives import cia402, damiao_mit, moteus, robstride
+from limber_qa.check_trace.drives import cia402, damiao_mit, moteus, myactuator, robstride
 from limber_qa.check_trace.events import Kind
 from limber_qa.check_trace.judge import judge
 
@@ -17,6 +17,7 @@ TURN_rad = 2 * math.pi
 DM4310 = next(motor for motor in read_arm("openarm").motors if motor.name == "joint5")
 IDEAL = read_arm("planar2r").motors[0]
 IIWA = read_arm("iiwa14").motors[0]
+X8 = read_arm("axol").motors[0]  # 129 N m
 RS00 = read_arm("edulite_a3").motors[0]  # 14 N m, 33 rad/s; counts the other way
 
 MODES = ((10, 0), (1, 33), (0, 0))  # and fault
@@ -123,6 +124,61 @@ def test_robstride_states(tmp_path):
     assert good.position == pytest.approx(-0.75, abs=4 * math.pi / 32767)
     assert good.velocity == pytest.approx(0.5, abs=33 / 32767)
     assert (failed.enabled, failed.failed) == (False, True)
+
+
+X8_V42 = replace(X8, keys={"firmware": "V4.2", "model": "X8"})
+X6_V44 = replace(X8, keys={"firmware": "V4.4", "model": "X6"})
+
+
+@pytest.mark.parametrize(
+    ("drive", "frame", "count_Nm", "kd"),
+    [(X8_V42, "401#8A3C7A41EB4CC8D4", 24, 5), (X6_V44, "401#8A2F7A41EB07A854", 60, 50)],
+)
+def test_myactuator_command(tmp_path, drive, frame, count_Nm, kd):
+    """p 1.0, v -2.0, kp 60, kd 1.5, t 2.5 truncated, in the ranges of either firmware."""
+    motor = on_can0(drive)
+    frames = (frame, "401#7FFF7FF0004CC7FF", "402#7FFF7FF0000007FF")
+    hold, damp = myactuator.commands(motor, trace(tmp_path, *frames))
+    assert hold.kind is Kind.HOLD
+    assert hold.position == pytest.approx(1.0, abs=26 / 65535)
+    assert hold.velocity == pytest.approx(-2.0, abs=90 / 4095)
+    assert hold.kp == pytest.approx(60, abs=500 / 4095)
+    assert hold.kd == pytest.approx(1.5, abs=kd / 4095)
+    assert hold.torque == pytest.approx(2.5, abs=2 * count_Nm / 4095)
+    assert damp.kind is Kind.DAMP
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        ("401#7FFF7FF0000007FF", Kind.FOLLOW),
+        ("141#7700000000000000", Kind.ENABLE),
+        ("141#8000000000000000", Kind.DISABLE),
+        ("141#9A00000000000000", Kind.REQUEST),
+        ("141#B300000014000000", Kind.REQUEST),
+        ("141#A100000064000000", Kind.INVALID),
+        ("401#7FFF7FF0000007", Kind.INVALID),
+        ("141##17700000000000000", Kind.INVALID),
+    ],
+)
+def test_myactuator_kinds(tmp_path, frame, kind):
+    (command,) = myactuator.commands(on_can0(X8), trace(tmp_path, frame))
+    assert command.kind is kind
+
+
+def test_myactuator_states(tmp_path):
+    """The manual's state, off, before the brake is released, after it, in error, and timed out."""
+    state = "501#01E66582EB550000"
+    frames = (
+        *("241#8000000000000000", state, "241#7700000000000000", state),
+        *("241#9A1E0001E0010400", state),
+        *("241#9A1E0001E0010000", "241#F100000000000000", state, "502#02E66582EB550000"),
+    )
+    found = myactuator.states(on_can0(X8_V42), trace(tmp_path, *frames))
+    assert [one.enabled for one in found] == [False, True, False, False]
+    assert [one.failed for one in found] == [False, False, True, True]
+    assert found[0].position == pytest.approx(10, abs=1e-3)
+    assert found[0].velocity == pytest.approx(1.032, abs=1e-3)
 
 
 def test_moteus_command(tmp_path):

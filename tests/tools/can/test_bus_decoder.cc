@@ -138,6 +138,44 @@ TEST_F(Robstride, Replies) {
   EXPECT_EQ(said(decoder, "028002FD#87A37E8B8D8C0181").find("elbow"), std::string::npos);
 }
 
+// --- MyActuator: motor 1, of V4.2 ----------------------------------------------------------------
+
+struct Myactuator : ::testing::Test {
+  static Robot of_v42() {
+    Robot robot = one_motor("myactuator", 0x401, 0x501);
+    robot.joints[0].drive.range = {12.5, 45.0, 24.0, 500.0, 5.0};
+    return robot;
+  }
+  Robot robot = of_v42();
+  BusDecoder decoder{robot, 0};
+};
+
+// 35388, 1956, 491, 1228 and 2260 counts; the manual's state, and half a count more.
+TEST_F(Myactuator, Motion) {
+  EXPECT_EQ(said(decoder, "401#8A3C7A41EB4CC8D4"),
+            "elbow command motion: position 0.99966 rad, velocity -2.011 rad/s, kp 59.951 N m/rad, "
+            "kd 1.4994 N m s/rad, torque 2.4908 N m");
+  EXPECT_EQ(said(decoder, "501#01E66582EB550000"),
+            "elbow reply state: position 10 rad, velocity 1.033 rad/s, torque 10.01 N m");
+  EXPECT_EQ(said(decoder, "501#02E66582EB550000").substr(0, 23), "elbow reply unreadable:");
+  EXPECT_EQ(said(decoder, "402#8A3C7A41EB4CC8D4").find("elbow command"), std::string::npos);
+}
+
+TEST_F(Myactuator, Orders) {
+  EXPECT_EQ(said(decoder, "141#7700000000000000"), "elbow command release brake: ");
+  EXPECT_EQ(said(decoder, "141#9A00000000000000"), "elbow command status: ");
+  EXPECT_EQ(said(decoder, "241#9A320001E5010400"),
+            "elbow reply status: under-voltage, brake released, supply 48.5 V, T 50 degC");
+  EXPECT_EQ(said(decoder, "141#B3000000E8030000"), "elbow command time-out: 1000 ms");
+  EXPECT_EQ(said(decoder, "141#2003000001000000"), "elbow command function: 3 1");
+  EXPECT_EQ(said(decoder, "241#B20000002E893401"), "elbow reply version: 20220206");
+  EXPECT_EQ(said(decoder, "241#B558385332563130"), "elbow reply model: X8S2V10");
+  EXPECT_EQ(said(decoder, "241#92000000A08C0000"), "elbow reply angle: 6.2832 rad");
+  EXPECT_EQ(said(decoder, "241#F100000000000000"), "elbow reply time-out is over: ");
+  EXPECT_EQ(said(decoder, "141#A100000064000000"), "elbow command order A1: ");
+  EXPECT_EQ(said(decoder, "141#8000").substr(0, 25), "elbow command unreadable:");
+}
+
 // --- moteus: servo 4 -----------------------------------------------------------------------------
 
 struct Moteus : ::testing::Test {

@@ -15,7 +15,9 @@ def test_a_word_or_its_beginning(word):
 
 @pytest.mark.parametrize("word", ["", "steam", "Moteus"])
 def test_any_other_word_lists_them(word):
-    with pytest.raises(InputError, match="there are damiao_mit, moteus, cia402, robstride"):
+    with pytest.raises(
+        InputError, match="there are damiao_mit, moteus, cia402, robstride, myactuator"
+    ):
         protocols.protocol(word)
 
 

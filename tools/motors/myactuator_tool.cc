@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "drivers/protocols/myactuator.h"
+#include "tools/motors/motor_tool.h"
+
+namespace limber::motor_tools {
+namespace {
+
+using myactuator::Order;
+
+constexpr double kMyactuatorReset_s = 2.0;  // 1.1 s, and some more
+
+std::string version_text(std::uint32_t version) {
+  if (version == 0) return "its time-out is over";  // the request itself, sent back
+  return fmt::format("firmware {} ({})", version,
+                     myactuator::name_of(myactuator::firmware_of(version)));
+}
+
+class MyactuatorTool final : public MotorTool {
+ public:
+  std::string_view protocol() const noexcept override { return "myactuator"; }
+  int last_number() const noexcept override { return myactuator::kLastMotor; }
+
+  CanFrame presence(int number, bool /*fd*/) const noexcept override {
+    return myactuator::order_frame(Order::kVersion, number);
+  }
+  std::optional<Found> found(const CanFrame& frame) const override {
+    const int number = static_cast<int>(frame.id) - static_cast<int>(myactuator::kAnswerId);
+    if (number < 1 || number > myactuator::kLastMotor ||
+        !myactuator::answers(frame, Order::kVersion, number))
+      return std::nullopt;
+    return Found{number, version_text(myactuator::value_of(frame))};
+  }
+  /// Time-outs and errors.
+  bool sends_unasked(const CanFrame& frame) const noexcept override {
+    const int number = static_cast<int>(frame.id) - static_cast<int>(myactuator::kAnswerId);
+    return number >= 1 && number <= myactuator::kLastMotor &&
+           (myactuator::answers(frame, Order::kTimedOut, number) ||
+            myactuator::answers(frame, Order::kStatus, number));
+  }
+
+  std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
+    myactuator::ModelText model;
+    for (const int block : {1, 2})
+      model.add(ask(wire, number, myactuator::model_frame(number, block)));
+    const auto version = myactuator::value_of(read(wire, number, Order::kVersion));
+    const double angle = myactuator::decode_angle(read(wire, number, Order::kAngle));
+    const auto status = myactuator::decode_status(read(wire, number, Order::kStatus));
+    const std::string errors = myactuator::errors_text(status.errors);
+    return {{"model", std::string(model.text()), ""},
+            {"firmware", std::to_string(version), ""},
+            {"its ranges", myactuator::name_of(myactuator::firmware_of(version)), ""},
+            {"position", bus_tools::number(angle), "rad"},
+            {"supply", bus_tools::number(status.supply_V), "V"},
+            {"temperature", std::to_string(status.temperature_degC), "degC"},
+            {"brake", status.brake_released ? "released" : "locked", ""},
+            {"errors", errors.empty() ? "none" : errors, ""}};
+  }
+
+  /// Whether its brake is released: nothing tells more.
+  bool enabled(Wire* wire, int number, bool /*fd*/) const override {
+    return myactuator::decode_status(read(wire, number, Order::kStatus)).brake_released;
+  }
+
+  void set_number(Wire* wire, int number, int wanted, bool fd) const override {
+    static_cast<void>(ask(wire, number,
+                          myactuator::function_frame(myactuator::Function::kSetNumber, number,
+                                                     static_cast<std::uint32_t>(wanted))));
+    reset(wire, number);
+    const auto there = [&](const CanFrame& answer) {
+      const auto motor = found(answer);
+      return motor && motor->number == wanted;
+    };
+    if (!wire->ask(presence(wanted, fd), there))
+      throw std::runtime_error(fmt::format("number {} does not answer", wanted));
+  }
+
+  void set_zero(Wire* wire, int number, bool /*fd*/) const override {
+    static_cast<void>(read(wire, number, Order::kSetZero));
+    reset(wire, number);
+    const double angle = myactuator::decode_angle(read(wire, number, Order::kAngle));
+    if (!(std::abs(angle) < kAtZero_rad))
+      throw std::runtime_error(fmt::format("its angle is {:g} rad, not 0", angle));
+  }
+
+ private:
+  static CanFrame ask(Wire* wire, int number, const CanFrame& request) {
+    const auto order = static_cast<Order>(request.data[0]);
+    const auto mine = [&](const CanFrame& frame) {
+      return myactuator::answers(frame, order, number);
+    };
+    // The first frame after a time-out is only sent back.
+    static_cast<void>(wire->ask(myactuator::order_frame(Order::kVersion, number), [&](auto& frame) {
+      return myactuator::answers(frame, Order::kVersion, number);
+    }));
+    const auto answer = wire->ask(request, mine);
+    if (!answer)
+      throw std::runtime_error(fmt::format("order {:02X} is not answered", request.data[0]));
+    return *answer;
+  }
+  static CanFrame read(Wire* wire, int number, Order order) {
+    return ask(wire, number, myactuator::order_frame(order, number));
+  }
+  static void reset(Wire* wire, int number) {
+    wire->send(myactuator::order_frame(Order::kReset, number), kMyactuatorReset_s,
+               [](const CanFrame&) {});
+  }
+};
+
+const MyactuatorTool kMyactuator;
+
+}  // namespace
+
+extern const MotorTool* const kMyactuatorTool;
+const MotorTool* const kMyactuatorTool = &kMyactuator;
+
+}  // namespace limber::motor_tools
