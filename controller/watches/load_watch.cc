@@ -21,11 +21,8 @@ LoadWatch::LoadWatch(const Robot& robot)
       r_(friction_Nm_),
       carried_(friction_Nm_),
       tau_(friction_Nm_),
-      ratio_(friction_Nm_),
-      held_tau_(friction_Nm_),
       held_r_(friction_Nm_),
-      held_q_(friction_Nm_),
-      unlike_s_(friction_Nm_) {
+      scales_(robot.joints.size()) {
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
     friction_Nm_[i] = friction_bound(joint);
@@ -37,20 +34,19 @@ LoadWatch::LoadWatch(const Robot& robot)
 
 int LoadWatch::wrong(const joint_state_t& state, const Model& model, double dt_s) noexcept {
   const bool held = time_s_ < kEnd_s;
-  const bool followed = moved_ && followed_s_ < kFollowed_s && !ratio_.isZero(0.0);
-  if (!watched_ || !(held || followed)) {
+  if (!watched_ || !(held || follows_scales())) {
     relax(dt_s);
     return -1;
   }
   observe(state, model, dt_s);
   if (!held) {
-    followed_s_ += dt_s;
+    *law_s_ += dt_s;
     follow(VectorJ::Zero(r_.size()), dt_s);
-    if (followed_s_ >= kBegin_s) judge_supported(state, dt_s);
+    if (*law_s_ >= kBegin_s) judge_scales(state, dt_s);
     return -1;
   }
   follow(r_, dt_s);
-  if (time_s_ >= kBegin_s) note_supported(state, model);
+  if (time_s_ >= kBegin_s) hold_scales(state, model);
   const int joint = judge(model);
   wrong_s_ = joint < 0 ? 0.0 : wrong_s_ + dt_s;
   return time_s_ >= kBegin_s && wrong_s_ >= kLasting_s ? joint : -1;
@@ -76,32 +72,27 @@ void LoadWatch::observe(const joint_state_t& state, const Model& model, double d
   const VectorJ tau = sensed + by_motor_.cwiseProduct(applied - sensed);
   const VectorJ gained = model.M * dv + by_motor_.cwiseProduct(model.B.cwiseProduct(dv));
   r_ += (gained - (tau - model.gravity - model.Cv + r_) * dt_s) / kMemory_s;
-  tau_ += (tau - tau_) * std::min(dt_s / kMemory_s, 1.0);
+  tau_ += (tau - tau_) * dt_s / kMemory_s;
 }
 
-void LoadWatch::note_supported(const joint_state_t& state, const Model& model) noexcept {
+bool LoadWatch::follows_scales() const noexcept {
+  return law_s_ && *law_s_ < kFollowed_s && std::ranges::any_of(scales_, &ScaleWatch::suspected);
+}
+
+void LoadWatch::hold_scales(const joint_state_t& state, const Model& model) noexcept {
   for (Eigen::Index i = 0; i < r_.size(); ++i) {
-    const double g = model.gravity[i];
-    const double least = std::max(kSeems * std::abs(g), friction_Nm_[i]);
-    const bool seems = r_[i] * g > 0.0 && std::abs(r_[i]) >= least;
-    const bool pulls = tau_[i] * g > 0.0 && model.walls[i] == 0.0 && by_motor_[i] > 0.0;
-    ratio_[i] = seems && pulls ? r_[i] / tau_[i] : 0.0;
+    ScaleWatch& joint = scales_[static_cast<std::size_t>(i)];
+    joint.forget();
+    if (by_motor_[i] > 0.0 && model.walls[i] == 0.0)
+      joint.hold(seen(state, i), model.gravity[i], friction_Nm_[i]);
   }
-  held_tau_ = tau_;
   held_r_ = r_;
-  held_q_ = Eigen::Map<const VectorJ>(state.q, r_.size());
-  unlike_s_.setZero();
 }
 
-void LoadWatch::judge_supported(const joint_state_t& state, double dt_s) noexcept {
+void LoadWatch::judge_scales(const joint_state_t& state, double dt_s) noexcept {
   for (Eigen::Index i = 0; i < r_.size(); ++i) {
-    if (ratio_[i] == 0.0) continue;
-    const bool like = std::abs(r_[i] - ratio_[i] * tau_[i]) <= kModelShare * std::abs(r_[i]);
-    unlike_s_[i] = like ? 0.0 : unlike_s_[i] + dt_s;
-    if (unlike_s_[i] >= kLasting_s) ratio_[i] = 0.0;  // it was supported
-    const bool moved = std::abs(state.q[i] - held_q_[i]) >= kMovedBy;
-    const bool grown = tau_[i] / held_tau_[i] >= kGrown;
-    if (like && (moved || grown)) overdriven_ = static_cast<int>(i);
+    if (scales_[static_cast<std::size_t>(i)].overdriven(seen(state, i), dt_s))
+      overdriven_ = static_cast<int>(i);
   }
 }
 

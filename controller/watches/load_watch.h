@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <limber/joint_state_t.hpp>
+#include <optional>
+#include <vector>
 
 #include "common/types.h"
+#include "controller/watches/scale_watch.h"
 #include "robots/loader/robot.h"
 
 namespace limber::controller {
@@ -31,15 +34,8 @@ namespace limber::controller {
 /// on, while the arm is held, and found if it holds for kLasting_s: a blow, or cycles that came
 /// late, leave r in less.
 ///
-/// A motor that makes s > 1 times the torque that it reports, by a wrong range or a firmware that
-/// has changed it, looks like a stand: at rest it carries g with g / s, so r = (s - 1) tau. A stand
-/// is left behind once a law moves the arm, or carries less when tau grows; this does not. So a
-/// joint whose r was kSeems of its weight at least in HOLD, and tau_friction, is followed for
-/// kFollowed_s then, from kBegin_s on, until for kLasting_s
-///
-///   abs(r - (r / tau in HOLD) tau) > kModelShare abs(r)
-///
-/// and is overdriven if before it has moved by kMovedBy, or tau has become kGrown times as much.
+/// A joint that seems to be carried is followed for kFollowed_s once a law moves the arm, from
+/// kBegin_s on: a motor that makes more than it reports looks the same in HOLD (ScaleWatch).
 ///
 /// tau is the motor's, and M with its rotor; behind a torque sensor the sensor's, and M without it.
 /// Arms with springs in joints without sensor are not watched.
@@ -51,9 +47,6 @@ class LoadWatch {
   static constexpr double kLasting_s = 0.03;
   static constexpr double kModelShare = 0.25;
   static constexpr double kOffset = 0.1;  ///< of the payload's centre from the tip, m
-  static constexpr double kSeems = 0.4;
-  static constexpr double kGrown = 1.4;
-  static constexpr double kMovedBy = 0.03;  ///< rad (m for prismatic joints)
   static constexpr double kFollowed_s = 5.0;
 
   /// For set-up.
@@ -63,15 +56,16 @@ class LoadWatch {
 
   /// The drives follow from the next state on.
   void begin() noexcept {
-    time_s_ = followed_s_ = 0.0;
-    answered_ = moved_ = false;
-    ratio_.setZero();
+    time_s_ = 0.0;
+    law_s_.reset();
+    answered_ = false;
+    for (ScaleWatch& joint : scales_) joint.forget();
     overdriven_ = -1;
   }
   /// A law moves the arm now: what supported it may be left behind or pushed against.
   void end() noexcept {
     time_s_ = kEnd_s;
-    moved_ = true;
+    if (!law_s_) law_s_ = 0.0;
   }
   /// The model at a state: N m, kg m^2, and the tip's Jacobian.
   struct Model {
@@ -90,7 +84,7 @@ class LoadWatch {
   /// Once a cycle otherwise: r fades.
   void relax(double dt_s) noexcept {
     r_ *= std::max(0.0, 1.0 - dt_s / kMemory_s);
-    follow(overdriven_ < 0 ? r_ : held_r_, dt_s);
+    follow(r_, dt_s);
   }
   /// The torque that carries the arm, within the joints' limits, N m: what the drives are to hold
   /// with when the controller gives up. It is g - r, but r counts no faster than the joints' torque
@@ -106,11 +100,16 @@ class LoadWatch {
   bool follows(const joint_state_t& state, double dt_s) noexcept;
   void observe(const joint_state_t& state, const Model& model, double dt_s) noexcept;
   int judge(const Model& model) const noexcept;
-  void note_supported(const joint_state_t& state, const Model& model) noexcept;
-  void judge_supported(const joint_state_t& state, double dt_s) noexcept;
+  bool follows_scales() const noexcept;
+  ScaleWatch::Seen seen(const joint_state_t& state, Eigen::Index joint) const noexcept {
+    return {r_[joint], tau_[joint], state.q[joint]};
+  }
+  void hold_scales(const joint_state_t& state, const Model& model) noexcept;
+  void judge_scales(const joint_state_t& state, double dt_s) noexcept;
   void follow(const VectorJ& r, double dt_s) noexcept {
     const VectorJ most = rate_Nm_per_s_ * dt_s;
-    carried_ += (r - carried_).cwiseMax(-most).cwiseMin(most);
+    const VectorJ& target = overdriven_ < 0 ? r : held_r_;
+    carried_ += (target - carried_).cwiseMax(-most).cwiseMin(most);
   }
 
   bool watched_;
@@ -124,17 +123,11 @@ class LoadWatch {
   bool answered_ = false;   ///< every joint, in the state before
   VectorJ v_;               ///< of the state before
   VectorJ r_;
-  VectorJ carried_;  ///< of r, by what is not the motors, in carrying()
-  VectorJ tau_;      ///< as late as r
-  // Of joints that seemed to be supported in HOLD, r / tau there, else 0; and what
-  // was there.
-  VectorJ ratio_;
-  VectorJ held_tau_;
-  VectorJ held_r_;
-  VectorJ held_q_;
-  bool moved_ = false;       ///< by a law
-  double followed_s_ = 0.0;  ///< since then
-  VectorJ unlike_s_;         ///< r / tau is another, without a break
+  VectorJ carried_;                 ///< of r, by what is not the motors, in carrying()
+  VectorJ tau_;                     ///< as late as r
+  VectorJ held_r_;                  ///< in HOLD
+  std::vector<ScaleWatch> scales_;  ///< by joint
+  std::optional<double> law_s_;     ///< that a law moves the arm, followed
   int overdriven_ = -1;
 };
 

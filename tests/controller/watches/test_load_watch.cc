@@ -7,68 +7,12 @@
 #include <functional>
 #include <limits>
 
-#include "controller/watches/load_watch.h"
+#include "tests/controller/watches/load_bench.h"
 
 namespace limber::controller::test_load_watch {
 namespace {
 
-constexpr double kStep_s = 1.0 / 64.0;
-constexpr double kFriction_Nm = 0.5;
-constexpr double kLimit_Nm = 8.0;
-constexpr double kRate_Nm_per_s = 40.0;
-
-Robot two_joints() {
-  Robot robot;  // gravity along -z
-  robot.joints.resize(2);
-  for (JointConfig& joint : robot.joints) {
-    joint.torque_limit_Nm = kLimit_Nm;  // a twentieth is less than the friction
-    joint.torque_rate_limit_Nm_per_s = kRate_Nm_per_s;
-    joint.friction.coulomb_Nm = kFriction_Nm;
-  }
-  return robot;
-}
-
-VectorJ vector(double a, double b) {
-  VectorJ out(2);
-  out << a, b;
-  return out;
-}
-
-/// At rest, unless told otherwise: weight 2 and 1 N m, tip 0.5 and 0.25 m in front of the joints.
-struct Bench {
-  explicit Bench(const Robot& robot = two_joints()) : watch(robot) {
-    M << 0.5, 0.1, 0.1, 0.2;
-    J.row(2) << 0.5, 0.25;
-    state.num_joints = 2;
-    state.period_ns = std::int64_t{1'000'000'000} / 64;
-    watch.begin();
-  }
-  int next(double dt_s = kStep_s) { return watch.wrong(state, {g, Cv, M, B, J, walls}, dt_s); }
-  void apply(const VectorJ& tau) { Eigen::Map<VectorJ>(state.tau_applied, 2) = tau; }
-  /// The joint that is found within half a second of this torque from outside, -1: none.
-  int found(const VectorJ& outside_Nm) {
-    apply(g - outside_Nm);
-    for (int k = 0; k < 32; ++k)
-      if (const int joint = next(); joint >= 0) return joint;
-    EXPECT_NEAR((watch.residual() - outside_Nm).norm(), 0.0, 1e-9);
-    return -1;
-  }
-
-  /// What is found when it is as it is for as long as it has to: two steps.
-  int lasting() {
-    EXPECT_EQ(next(), -1);
-    return next();
-  }
-
-  LoadWatch watch;
-  joint_state_t state{};
-  VectorJ g = vector(2.0, 1.0);
-  VectorJ Cv = vector(0.0, 0.0);
-  VectorJ B = vector(0.1, 0.05);
-  MatrixJ M = MatrixJ::Zero(2, 2);
-  Matrix6J J = Matrix6J::Zero(6, 2);
-  VectorJ walls = vector(0.0, 0.0);
-};
+using namespace load_bench;
 
 TEST(LoadWatch, FollowsATorqueFromOutsideWithTheMemoryAsTimeConstant) {
   Bench bench;
@@ -272,94 +216,6 @@ TEST(LoadWatch, AnArmThatALawMovesIsNotWeighed) {
   for (int k = 0; k < 7; ++k) ASSERT_EQ(bench.next(), -1);
   bench.watch.end();
   for (int k = 0; k < 20; ++k) ASSERT_EQ(bench.next(), -1);
-}
-
-/// HOLD and a law with motors that make `scale` times the torque that they report, and so carry the
-/// arm with so much less. Returns how far the first joint gets.
-struct Overdriven : Bench {
-  explicit Overdriven(double scale) : scale_(scale) {
-    g = vector(6.0, 3.0);
-    apply(g / scale_);
-    for (int k = 0; k < 32; ++k) EXPECT_EQ(next(), -1);
-  }
-  /// Under a law, with the torque that it reports so many times that in HOLD.
-  double moves_until_found(double share = 1.0, double most = 0.2) {
-    watch.end();
-    apply(share * g / scale_);
-    // What it makes more accelerates it.
-    const VectorJ a = (share - 1.0) * (M + MatrixJ(B.asDiagonal())).inverse() * g;
-    const double start = state.q[0];
-    while (watch.overdriven() < 0 && state.q[0] < start + most) {
-      state.q[0] += 0.001;
-      Eigen::Map<VectorJ>(state.v, 2) += a * kStep_s;
-      EXPECT_EQ(next(), -1);
-    }
-    return state.q[0] - start;
-  }
-  double scale_;
-};
-
-TEST(LoadWatch, AMotorThatMakesAMultipleIsFoundOnceItHasMoved) {
-  for (const double scale : {1.8, 2.5, 4.0, 10.0}) {
-    Overdriven arm(scale);
-    EXPECT_EQ(arm.watch.overdriven(), -1) << "a stand may carry it";
-    EXPECT_NEAR(arm.moves_until_found(), LoadWatch::kMovedBy, 0.0011) << scale;
-    EXPECT_EQ(arm.watch.overdriven(), 0);
-  }
-}
-
-TEST(LoadWatch, OrOnceItsTorqueHasGrown) {
-  EXPECT_LE(Overdriven(4.0).moves_until_found(1.5), 0.0201) << "in a third of a second";
-  EXPECT_NEAR(Overdriven(4.0).moves_until_found(1.3), LoadWatch::kMovedBy, 0.0011);
-}
-
-TEST(LoadWatch, LessThanTwoFifthsOfTheWeightIsAPoorModel) {
-  EXPECT_GE(Overdriven(1.6).moves_until_found(), 0.2) << "3/8 of its weight are missing";
-  EXPECT_LE(Overdriven(1.7).moves_until_found(), 0.06);
-}
-
-// The law lifts the arm off its stand, or presses it on: either way r / tau is another.
-TEST(LoadWatch, AStandThatIsLeftBehindIsNone) {
-  for (const double share : {1.0, 0.5, 0.1}) {
-    Overdriven arm(4.0);  // so much less torque, at first
-    arm.watch.end();
-    arm.apply(share == 0.5 ? 0.5 * arm.g : share * arm.g);
-    if (share < 0.25) arm.apply(-0.2 * arm.g);
-    for (int k = 0; k < 64; ++k) {
-      arm.state.q[0] += 0.002;
-      ASSERT_EQ(arm.next(), -1);
-      ASSERT_EQ(arm.watch.overdriven(), -1) << share << " " << k;
-    }
-    arm.apply(arm.g / 4.0);
-    for (int k = 0; k < 64; ++k) arm.next();
-    EXPECT_EQ(arm.watch.overdriven(), -1) << "it was a stand, and stays one";
-  }
-}
-
-TEST(LoadWatch, WhatFrictionMayHoldIsNoMultiple) {
-  Overdriven arm(4.0);
-  arm.watch.begin();
-  arm.g = vector(0.6, 0.3);  // three quarters of it are less than the friction
-  arm.apply(arm.g / 4.0);
-  for (int k = 0; k < 32; ++k) ASSERT_EQ(arm.next(), -1);
-  EXPECT_GE(arm.moves_until_found(), 0.2);
-}
-
-TEST(LoadWatch, AnOverdrivenArmIsCarriedWithWhatCarriedIt) {
-  Overdriven arm(4.0);
-  arm.moves_until_found();
-  for (int k = 0; k < 64; ++k) arm.watch.relax(kStep_s);
-  EXPECT_NEAR((arm.watch.carrying(arm.g) - arm.g / 4.0).norm(), 0.0, 1e-3);
-  arm.watch.begin();
-  EXPECT_EQ(arm.watch.overdriven(), -1);
-}
-
-TEST(LoadWatch, IsFollowedForFiveSeconds) {
-  Overdriven arm(4.0);
-  arm.watch.end();
-  arm.apply(arm.g / 4.0);
-  for (int k = 0; k < 64 * 5; ++k) ASSERT_EQ(arm.next(), -1);
-  EXPECT_GE(arm.moves_until_found(), 0.2) << "by then nobody remembers HOLD";
 }
 
 TEST(LoadWatch, ANumberThatIsNoneIsWrong) {
