@@ -7,6 +7,8 @@ namespace limber {
 
 /// What sockets get unless their URL asks for another.
 inline constexpr int kReceiveBuffer_bytes = 4 << 20;
+/// What programs get that take every message. Memory is used only by what waits.
+inline constexpr int kCaptureBuffer_bytes = 64 << 20;
 
 /// A receive buffer of so many bytes; without the privilege for it (CAP_NET_ADMIN) as much as the
 /// system permits (net.core.rmem_max). Before the socket is bound: with what the kernel gives a new

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -17,24 +18,40 @@ namespace {
 // model feeds forward.
 constexpr double kMost_rad = 0.1;
 
-/// Two seconds in HOLD: the greatest motion of a joint since the drives came on.
-double motion(const LoadedRobot& believed, const LoadedRobot& real) {
+void request(std::int8_t mode, std::int64_t time_ns, Scenario* scenario) {
+  mode_request_t message{};
+  message.client = kScenarioClient;
+  message.request = mode;
+  scenario->timeline.push_back({time_ns, message});
+}
+
+/// HOLD after 0.3 s.
+Scenario held() {
   Scenario scenario;
   scenario.name = "wrong arm";
-  mode_request_t hold{};
-  hold.client = kScenarioClient;
-  hold.request = mode_request_t::REQUEST_HOLD;
-  scenario.timeline.push_back({300'000'000, hold});
-  Lab lab(believed, scenario, LabOptions{&real, {}, {}});
-  sim_truth_t start{};
+  request(mode_request_t::REQUEST_HOLD, 300'000'000, &scenario);
+  return scenario;
+}
+
+/// The greatest motion of a joint until then.
+double motion_until(const std::function<bool()>& over, Lab* lab) {
+  lab->step();
+  const sim_truth_t start = lab->truth();
   double most = 0.0;
-  for (int cycle = 0; cycle < 2500; ++cycle) {
-    lab.step();
-    if (cycle == 0) start = lab.truth();
+  while (!over()) {
+    lab->step();
     for (int i = 0; i < start.num_joints; ++i)
-      most = std::max(most, std::abs(lab.truth().q[i] - start.q[i]));
+      most = std::max(most, std::abs(lab->truth().q[i] - start.q[i]));
   }
   return most;
+}
+
+/// Two seconds in HOLD.
+double motion(const LoadedRobot& believed, const LoadedRobot& real) {
+  const Scenario scenario = held();
+  Lab lab(believed, scenario, LabOptions{&real, {}, {}});
+  int cycles = 1;
+  return motion_until([&cycles] { return cycles++ == 2500; }, &lab);
 }
 
 LoadedRobot openarm() { return load_robot("openarm"); }
@@ -109,24 +126,14 @@ TEST(WrongArm, AMotorThatMakesAMultipleIsFoundAsTheLawBegins) {
     const LoadedRobot robot = load_robot(name);
     LoadedRobot real = load_robot(name);
     real.robot.joints[joint].drive.torque_constant_Nm_per_A *= scale;
-    Scenario scenario;
-    scenario.name = "wrong torque range";
-    mode_request_t request{};
-    request.client = kScenarioClient;
-    request.request = mode_request_t::REQUEST_HOLD;
-    scenario.timeline.push_back({300'000'000, request});
-    request.request = mode_request_t::REQUEST_ACTIVE;
-    scenario.timeline.push_back({2'000'000'000, request});
+    Scenario scenario = held();
+    request(mode_request_t::REQUEST_ACTIVE, 2'000'000'000, &scenario);
     scenario.plant = std::move(real);
     Lab lab(robot, scenario);
-    double most = 0.0;
-    sim_truth_t start{};
-    while (lab.controller_status().mode != Status::MODE_FAULT && lab.time_ns() < 5'000'000'000) {
-      lab.step();
-      if (start.num_joints == 0) start = lab.truth();
-      for (int i = 0; i < start.num_joints; ++i)
-        most = std::max(most, std::abs(lab.truth().q[i] - start.q[i]));
-    }
+    const auto over = [&lab] {
+      return lab.controller_status().mode == Status::MODE_FAULT || lab.time_ns() >= 5'000'000'000;
+    };
+    const double most = motion_until(over, &lab);
     EXPECT_EQ(lab.controller_status().reason, reason) << name << ' ' << joint << ' ' << scale;
     EXPECT_EQ(lab.controller_status().reason_joint, static_cast<int>(joint)) << name;
     EXPECT_LE(most, 1.1 * kMost_rad) << name << ' ' << joint << ' ' << scale;

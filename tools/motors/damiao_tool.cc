@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "drivers/protocols/mit.h"
@@ -65,9 +64,7 @@ class DamiaoTool final : public MotorTool {
   void set_zero(Wire* wire, int number, bool fd) const override {
     wire->send(mit::encode_special(mit::Special::kSetZero, as_id(number), fd), kDamiaoStore_s,
                [](const CanFrame&) {});
-    const double angle = mit::bits_float(read(wire, number, kDamiaoPosition, fd));
-    if (!(std::abs(angle) < kAtZero_rad))
-      throw std::runtime_error(fmt::format("its angle is {:g} rad, not 0", angle));
+    require_zero(mit::bits_float(read(wire, number, kDamiaoPosition, fd)));
   }
 
  private:

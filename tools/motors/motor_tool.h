@@ -20,9 +20,6 @@ struct Found {
   std::string details;  ///< "replies as 0x11"
 };
 
-/// An angle this near to 0 is one that has just been set to 0.
-inline constexpr double kAtZero_rad = 0.01;
-
 class MotorTool {
  public:
   virtual ~MotorTool() = default;
@@ -52,6 +49,11 @@ class MotorTool {
   virtual void set_number(Wire* wire, int number, int wanted, bool fd) const = 0;
   /// Makes where it is its zero, stored and read back. Likewise.
   virtual void set_zero(Wire* wire, int number, bool fd) const = 0;
+
+ protected:
+  // What was set, read back; throw std::runtime_error if it is not so.
+  void require_number(Wire* wire, int wanted, bool fd) const;
+  static void require_zero(double angle_rad);
 };
 
 std::span<const MotorTool* const> all_tools() noexcept;

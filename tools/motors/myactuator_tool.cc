@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "drivers/protocols/myactuator.h"
@@ -70,20 +69,13 @@ class MyactuatorTool final : public MotorTool {
                           myactuator::function_frame(myactuator::Function::kSetNumber, number,
                                                      static_cast<std::uint32_t>(wanted))));
     reset(wire, number);
-    const auto there = [&](const CanFrame& answer) {
-      const auto motor = found(answer);
-      return motor && motor->number == wanted;
-    };
-    if (!wire->ask(presence(wanted, fd), there))
-      throw std::runtime_error(fmt::format("number {} does not answer", wanted));
+    require_number(wire, wanted, fd);
   }
 
   void set_zero(Wire* wire, int number, bool /*fd*/) const override {
     static_cast<void>(read(wire, number, Order::kSetZero));
     reset(wire, number);
-    const double angle = myactuator::decode_angle(read(wire, number, Order::kAngle));
-    if (!(std::abs(angle) < kAtZero_rad))
-      throw std::runtime_error(fmt::format("its angle is {:g} rad, not 0", angle));
+    require_zero(myactuator::decode_angle(read(wire, number, Order::kAngle)));
   }
 
  private:

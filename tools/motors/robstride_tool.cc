@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cmath>
 #include <stdexcept>
 
 #include "drivers/protocols/robstride.h"
@@ -83,12 +82,7 @@ class RobstrideTool final : public MotorTool {
     wire->send(robstride::encode_set_id(as_number(number), as_number(wanted)), kRobstrideSave_s,
                [](const CanFrame&) {});
     save(wire, wanted);
-    const auto there = [&](const CanFrame& answer) {
-      const auto motor = found(answer);
-      return motor && motor->number == wanted;
-    };
-    if (!wire->ask(presence(wanted, fd), there))
-      throw std::runtime_error(fmt::format("number {} does not answer", wanted));
+    require_number(wire, wanted, fd);
   }
 
   void set_zero(Wire* wire, int number, bool /*fd*/) const override {
@@ -96,9 +90,8 @@ class RobstrideTool final : public MotorTool {
                [](const CanFrame&) {});
     save(wire, number);
     const robstride::ParameterAnswer answer = read(wire, number, Parameter::kPosition);
-    const double angle = std::bit_cast<float>(answer.raw);
-    if (answer.refused || !(std::abs(angle) < kAtZero_rad))
-      throw std::runtime_error(fmt::format("its angle is {:g} rad, not 0", angle));
+    if (answer.refused) throw std::runtime_error("its angle cannot be read back");
+    require_zero(std::bit_cast<float>(answer.raw));
   }
 
  private:

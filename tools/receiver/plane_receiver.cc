@@ -12,11 +12,11 @@
 
 #include "common/arm_plane/lcm_datagram.h"
 #include "common/multicast_socket.h"
+#include "common/receive_buffer.h"
 
 namespace limber {
 namespace {
 
-constexpr int kBuffer_bytes = 64 << 20;  // as far as the system permits; unused it costs nothing
 constexpr std::size_t kLongestDatagram = 65'536;
 /// In one call: what has been kept must be seen now and then.
 constexpr int kMostTaken = 256;
@@ -34,7 +34,7 @@ void append(std::vector<std::uint8_t>* bytes, std::uint32_t value) {
 }  // namespace
 
 PlaneReceiver::PlaneReceiver(const sockaddr_in& group)
-    : socket_(open_multicast_receiver("user plane", group, kBuffer_bytes)),
+    : socket_(open_multicast_receiver("user plane", group, kCaptureBuffer_bytes)),
       stop_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       room_(kLongestDatagram) {
   // The program's own thread handles its signals.

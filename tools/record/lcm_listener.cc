@@ -18,7 +18,6 @@
 namespace limber {
 namespace {
 
-constexpr int kBuffer_bytes = 64 << 20;
 /// Below this a pause of a fraction of a second costs messages at 1 kHz. `limber doctor` wants as
 /// much.
 constexpr int kSmall_bytes = 2 << 20;
@@ -27,7 +26,7 @@ constexpr std::size_t kLongestDatagram = 65'507;
 FileDescriptor open_socket(const std::string& url) {
   require_open_files();
   const LcmAddress address = parse_lcm_url(url);
-  const int wanted = address.receive_buffer_bytes.value_or(kBuffer_bytes);
+  const int wanted = address.receive_buffer_bytes.value_or(kCaptureBuffer_bytes);
   FileDescriptor socket = open_multicast_receiver("user plane " + url, address.group, wanted);
   prepare_receive(socket.get());
   const int bytes = receive_buffer(socket.get());

@@ -3,7 +3,7 @@
 import pytest
 from rich.console import Console
 
-from limber.doctor import adapter_files
+from limber.doctor import adapter_files, can_interfaces
 from limber.errors import InputError
 
 DESKTOP = "desktop2r"  # one classic bus, `arm`
@@ -13,7 +13,8 @@ PLANAR = "planar2r"  # one bus with CAN-FD, moteus' sample points
 @pytest.fixture
 def plug(tmp_path, monkeypatch):
     """Plugs an adapter in: an interface or a serial line at a USB port, or elsewhere."""
-    monkeypatch.setattr(adapter_files, "CLASSES", tmp_path / "class")
+    monkeypatch.setattr(can_interfaces, "SYSFS", tmp_path / "class" / "net")
+    monkeypatch.setattr(adapter_files, "SERIAL", tmp_path / "class" / "tty")
 
     def make(
         name: str, port: str, serial: str | None = None, usb: bool = True, **more: str

@@ -11,13 +11,13 @@ from pathlib import Path
 
 from rich.console import Console
 
-from limber.doctor.can_interfaces import RESTART_MS, TX_QUEUE, BusNeeds, needs_of
+from limber.doctor.can_interfaces import RESTART_MS, TX_QUEUE, BusNeeds, needs_of, present
 from limber.errors import InputError
 from limber.model.robot import load_robot
 from limber.output import write_again
 from limber.paths import output_folder
 
-CLASSES = Path("/sys/class")
+SERIAL = Path("/sys/class/tty")
 LONGEST = 15  # characters of an interface's name
 KERNELS_OWN = re.compile(r"(v|sl)?can\d+")  # names that the kernel gives to whoever comes first
 NET, TTY = "net", "tty"
@@ -60,15 +60,10 @@ class Adapter:
 
 def adapters() -> dict[tuple[str, str], Adapter]:
     """(subsystem, name) -> all that may carry CAN."""
-    found = {}
-    for subsystem, patterns in ((NET, ("*",)), (TTY, ("ttyACM*", "ttyUSB*"))):
-        for pattern in patterns:
-            for entry in sorted((CLASSES / subsystem).glob(pattern)):
-                if subsystem == NET and _text(entry / "type") != "280":  # ARPHRD_CAN
-                    continue
-                if (adapter := _adapter(subsystem, entry)) is not None:
-                    found[subsystem, entry.name] = adapter
-    return found
+    lines = sorted([*SERIAL.glob("ttyACM*"), *SERIAL.glob("ttyUSB*")])
+    entries = [(NET, entry) for entry in present()] + [(TTY, entry) for entry in lines]
+    made = {(kind, entry.name): _adapter(kind, entry) for kind, entry in entries}
+    return {key: adapter for key, adapter in made.items() if adapter is not None}
 
 
 def _adapter(subsystem: str, entry: Path) -> Adapter | None:

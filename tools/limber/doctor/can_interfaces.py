@@ -16,6 +16,7 @@ from limber.paths import robot_names
 TX_QUEUE = 64  # frames: more than a cycle of the largest arm
 RESTART_MS = 100  # after bus-off
 SYSFS = Path("/sys/class/net")
+ARPHRD_CAN = "280"  # linux/if_arp.h
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,12 @@ def lines_to_bring_up(robot: str | None) -> Iterator[tuple[str, str]]:
                 names.append(where)
     for needs, names in alike.values():
         yield ", ".join(names), needs.bring_up(needs.interface or "canX")
+
+
+def present() -> list[Path]:
+    """Folders in sysfs of all CAN interfaces."""
+    types = sorted(SYSFS.glob("*/type"))
+    return [path.parent for path in types if path.read_text().strip() == ARPHRD_CAN]
 
 
 def problems(needs: BusNeeds) -> list[str]:

@@ -24,7 +24,6 @@ LIMITS = (
     "sudo usermod -aG limber $USER, and log in again"
 )
 MEMBER = "sudo usermod -aG limber $USER, and log in again"  # of the Debian package's group
-ARPHRD_CAN = "280"  # linux/if_arp.h
 SMALL_DISK_BYTES = 1 << 30
 PROGRAMS = tuple(
     f"limber-{name}"
@@ -143,11 +142,10 @@ def _can(robot: str | None) -> Iterator[Finding]:
 
 def _other_interfaces(but: set[str | None]) -> Iterator[Finding]:
     """Those here that no robot in question names."""
-    found = [path.parent for path in can_interfaces.SYSFS.glob("*/type")]
-    found = [path for path in found if (path / "type").read_text().strip() == ARPHRD_CAN]
+    found = can_interfaces.present()
     if not found and not but:
         yield Finding("ok", "CAN interface", "none here: fine for a simulated arm")
-    for interface in sorted(found):
+    for interface in found:
         if interface.name not in but:
             yield _can_interface(interface)
 
