@@ -106,17 +106,23 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
     if (state.age_cycles[i] > 0) continue;
     auto& [friction_Nm, limit_Nm, stretch_Nm, rest] = joints_[static_cast<std::size_t>(i)];
     const double M_ii = model.M(i, i);
-    const double load_Nm = state.tau_applied[i] - model.gravity[i];
+    const auto load = [&](bool sudden) -> double {
+      return sudden ? state.tau_applied[i] - model.gravity[i] : -observer_.residual()[i];
+    };
     if (!rest || !rest->continues(state, i)) {
       const double speed = rest ? rest->theta_dot : 0.0;
       const bool sudden =
           std::abs(speed) >= std::max(kSudden, (limit_Nm + friction_Nm) / M_ii * dt_s);
       rest = {state.theta[i], state.q[i],   state.theta_dot[i],         state.v[i],
-              load_Nm,        state.tau[i], std::to_array(state.theta), observer_.residual(),
+              load(sudden),   state.tau[i], std::to_array(state.theta), observer_.residual(),
               sudden,         speed};
       continue;
     }
-    if (observed_s_ < kSettled_s) rest->residual = observer_.residual();
+    const double load_Nm = load(rest->sudden);
+    if (observed_s_ < kSettled_s) {
+      rest->residual = observer_.residual();
+      if (!rest->sudden) rest->load_Nm = load_Nm;
+    }
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);

@@ -17,20 +17,23 @@ namespace limber::controller {
 /// a wall holds the joint. It is not if the joint cannot have come to rest, or cannot have stayed
 /// there. From the reading's last change on,
 ///
-///   M_ii v' = tau - g - balanced - tau_friction sign(v),   v(0) = v_0, the speed reported before
+///   M_ii v' = load - balanced - tau_friction sign(v),   v(0) = v_0, the speed reported before
+///   load = -r_i, what drives the joint by the momentum residual r, which knows the motion of the
+///          other joints
 ///
-/// where `balanced` is the part of tau - g between zero and what it was then: that much a load or a
+/// where `balanced` is the part of load between zero and what it was then: that much a payload or a
 /// wall held, and may still hold or have let go since. A joint that truly stops is seen to slow
 /// down, so that v_0 is next to nothing. Found is
 ///
 ///   - a sudden stop: v_0 is kSudden at least, and more than torque limit and friction together can
 ///     brake within a cycle. Nothing gives way so little that it stops an arm within a cycle to the
 ///     bit. So friction is left out, and integral v dt >= kCoasted is enough, after kStood_s: a
-///     drive may read its encoder less often than it answers;
+///     drive may read its encoder less often than it answers. The jump of speed is in r, too: load
+///     is tau - g here;
 ///   - else integral v dt >= kExpected while the arm moves: another joint by kOthers at least, as
-///   it
-///     does when this one swings unseen, and does not when the whole arm leans against something. A
-///     wrist that hangs on to nothing may turn without moving another joint: not found.
+///     it does when this one swings unseen, and does not when the whole arm leans against
+///     something. A wrist that hangs on to nothing may turn without moving another joint: not
+///     found.
 ///
 /// A hand or a wall may push joint k along and hold this joint to a single count meanwhile, while
 /// its torque grows. Added to tau_friction is what such a contact may hold, the most over k of
@@ -41,7 +44,7 @@ namespace limber::controller {
 /// has gone since, which is kOthers at least, no faster than kYields. The unseen swing of this
 /// joint alone drives k by M_ki a_i, and M_ki^2 < M_kk M_ii: so that it is found before it has
 /// gone kExpected / (1 - kHeldShare) = 0.1 rad. What r is kSettled_s after a reset hung on the arm
-/// before.
+/// before: both of the push and of `balanced`.
 ///
 /// A joint with a spring K, an encoder on either side of it and a torque sensor is found in a third
 /// way, with no regard to friction or load: while neither reading changes by a bit, the spring is
@@ -62,7 +65,7 @@ class EncoderWatch {
   static constexpr double kStood_s = 0.01;
   static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
   static constexpr double kOthers = 0.01;  ///< likewise
-  static constexpr double kYields = 0.5;   ///< rad/s (m/s)
+  static constexpr double kYields = 2.5;   ///< rad/s (m/s)
   static constexpr double kFeltShare = 0.7;
   static constexpr double kHeldShare = 0.7;
   static constexpr double kStretchShare = 0.01;
@@ -99,7 +102,7 @@ class EncoderWatch {
     double q;
     double theta_dot;
     double v;
-    double load_Nm;                         ///< tau - g then
+    double load_Nm;                         ///< then
     double spring_Nm;                       ///< of the sensor then, less what changes slowly
     std::array<double, kMaxJoints> thetas;  ///< of all joints then
     VectorJ residual;                       ///< likewise, N m

@@ -54,6 +54,16 @@ TEST(Soak, AcceptedRequestsCarryNoJointPastItsLimits) {
   }
 }
 
+// With these seeds one joint of yam stands, held by a hand, while a law and the other joints'
+// motion load it: no stopped encoder.
+TEST(Soak, APushedArmHasNoStoppedEncoder) {
+  const LoadedRobot yam = load_robot(source_path("robots/yam"));
+  for (const auto& [seed, arm_minutes] : {std::pair{1, 0.25}, {6, 0.8}}) {
+    const soak::SoakResult result = minutes(arm_minutes, static_cast<std::uint64_t>(seed), yam);
+    EXPECT_TRUE(result.violations.empty()) << seed << ": " << result.violations.front();
+  }
+}
+
 // An arm whose speed limit any goal exceeds trips without a fault: the soak must say so.
 TEST(Soak, ATripThatNobodyInjectedIsAViolation) {
   LoadedRobot slow = planar2r();
