@@ -196,6 +196,12 @@ void ArmKernel<N>::gravity_gradient(MatrixJ* slope) const noexcept {
 }
 
 template <int N>
+void ArmKernel<N>::gravity_slope(VectorJ* slope) const noexcept {
+  const Row3<N> l = linear_momentum();
+  for (int i = 0; i < size_; ++i) (*slope)[i] = S_.ang.at(i).cross(gravity_).dot(l.at(i));
+}
+
+template <int N>
 [[gnu::always_inline]] inline void ArmKernel<N>::mass_rows(MatrixJ* M) const noexcept {
   const Row6<N> P = momentum_of<N>(carried_m_, carried_h_, from_tip<N>(I_O_), S_);
   for (int j = 0; j < size_; ++j) {

@@ -59,6 +59,8 @@ class ArmKernel {
   double potential_energy() const noexcept;
   void gravity(VectorJ* g) const noexcept;
   void gravity_gradient(MatrixJ* slope) const noexcept;
+  /// Its diagonal.
+  void gravity_slope(VectorJ* slope) const noexcept;
 
   /// I_O of each body.
   void weigh() noexcept;

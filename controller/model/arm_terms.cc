@@ -34,7 +34,8 @@ ArmTerms::ArmTerms(int joints)
       Minv_JT(MatrixJ6::Zero(joints, 6)),
       Cv(VectorJ::Zero(joints)),
       CTv(Cv),
-      g(Cv) {}
+      g(Cv),
+      g_slope(Cv) {}
 
 ArmModel::ArmModel(const KDL::Chain& chain, const double gravity[3],
                    const std::vector<double>& rotor_inertia)
@@ -72,6 +73,7 @@ void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
                              const TermsDue& due, ArmTerms* terms) noexcept {
   kernel->place(q);
   kernel->gravity(&terms->g);
+  kernel->gravity_slope(&terms->g_slope);
   terms->X_BT = tip_of(*kernel);
   if (due.jacobian) kernel->jacobian(&terms->J);
   terms->V_BT.noalias() = terms->J * v;
@@ -176,6 +178,7 @@ void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
         terms->X_BT = tip_of(kernel);
         kernel.jacobian(&terms->J);
         kernel.gravity(&terms->g);
+        kernel.gravity_slope(&terms->g_slope);
       },
       kernel_);
 }

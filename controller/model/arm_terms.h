@@ -37,6 +37,7 @@ struct ArmTerms {
   VectorJ Cv;        ///< Coriolis and centrifugal torque, N m
   VectorJ CTv;       ///< C^T v = (dM/dt) v - C v: what momentum has and acceleration has not, N m
   VectorJ g;         ///< torque that holds the arm still against gravity, N m
+  VectorJ g_slope;   ///< dg_i/dq_i: turned by x about its axis alone, g_i cos x + g_slope_i sin x
 
   /// v^T M_total v / 2, J.
   double kinetic_energy(const VectorJ& v) const noexcept { return 0.5 * v.dot(M_total * v); }

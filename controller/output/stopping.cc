@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limber/controller_status_t.hpp>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "controller/elastic/joint_springs.h"
@@ -31,7 +32,8 @@ constexpr double kFirm = 0.4;
 constexpr double kMovesFrom = 0.02;  // of the speed that can be stopped; dither is slower
 constexpr double kStays = 0.25;      // of what a joint's torque changes, for the sake of others
 constexpr double kThrownBack = 0.5;  // of the velocity limit, once the torque has unwound
-constexpr double kLightFrom = 0.1;   // of the velocity limit, within two cycles
+constexpr double kHeavy = 0.5;  // of the torque limit, left by the weight: it must not be thrown
+constexpr double kLightFrom = 0.1;  // of the velocity limit, within two cycles
 // Of the velocity limit: from here on a force that drives the joint counts, in full at the second.
 constexpr double kFast = 0.5;
 constexpr double kFastest = 0.8;
@@ -93,6 +95,7 @@ Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
   }
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
+    turns_rigidly_.push_back(joint.rigid() && joint.type != JointType::kPrismatic);
     if (!joint.rigid()) K_J_[i] = springs.at_rest()[i];
     position_min_[i] = joint.position_min;
     position_max_[i] = joint.position_max;
@@ -125,13 +128,25 @@ bool Stopping::firm(Eigen::Index i, const ArmTerms& terms) const noexcept {
   return K_J_[i] >= kFirm / (kMemory_s * kMemory_s) * terms.M_total(i, i);
 }
 
+double Stopping::weight_over(double way, Eigen::Index i, double sign,
+                             const ArmTerms& terms) const noexcept {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  if (!turns_rigidly_[static_cast<std::size_t>(i)] || !(way > 0.0)) return terms.g[i];
+  const double x = std::min(way, kTurn);
+  const double mean =
+      (terms.g[i] * std::sin(x) + sign * terms.g_slope[i] * (1.0 - std::cos(x))) / x;
+  return sign * std::min(sign * mean, sign * terms.g[i]);
+}
+
 void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
                            const ArmTerms& terms, const VectorJ& load, const VectorJ& tau,
                            Rows* rows) const noexcept {
   const double u = std::max(sign * state.v_reported[i], sign * state.theta_dot_reported[i]);
   const double d = sign > 0.0 ? position_max_[i] - state.q[i] : state.q[i] - position_min_[i];
   const double M = terms.M_total(i, i);
-  const double braking = std::max(torque_[i] + sign * load[i], kLeastBraking * torque_[i]);
+  const double weight_Nm = weight_over(d, i, sign, terms);
+  const double braking =
+      std::max(torque_[i] + sign * (load[i] - terms.g[i] + weight_Nm), kLeastBraking * torque_[i]);
   Speed most = stoppable(d, speed_gain_per_s_, kShareOfTorque * braking / M);
   std::int32_t limit = controller_status_t::LIMIT_POSITION;
   if (!(most.value < velocity_[i])) {
@@ -144,8 +159,10 @@ void Stopping::bound_joint(Eigen::Index i, double sign, const ArmState& state,
   const bool known = observed_s_ > kKnown_s;
   const double a = sign * (tau[i] - load[i]) / M;
   const bool pushed = known && u > kMovesFrom * most.value && a > kJudgedFrom * a_most;
-  const bool thrown =
-      known && u < 0.0 && a > 0.0 && u + 0.5 * a * a / jerk > kThrownBack * velocity_[i];
+  const bool heavy = braking < kHeavy * torque_[i];
+  const double back =
+      heavy ? std::min(kThrownBack * velocity_[i], most.value) : kThrownBack * velocity_[i];
+  const bool thrown = known && u < 0.0 && a > 0.0 && u + 0.5 * a * a / jerk > back;
   const double step = 2.0 * state.period_s;
   const bool light = step * torque_[i] > kThrownBack * velocity_[i] * M &&
                      u + step * a > kLightFrom * velocity_[i];

@@ -14,7 +14,8 @@ namespace limber::controller {
 /// Bounds the acceleration of each joint towards an end, or towards its velocity limit, whatever
 /// the law, a goal or a feed-forward wrench demands. With u the joint's speed that way, d the way
 /// left to the end, a the acceleration that half of the joint's torque brakes with (beyond what
-/// carries the weight), and j a third of what the torque's rate limit makes of it as jerk:
+/// carries the weight; where that grows on the way, as with the angle of a rigid joint it does, its
+/// mean over the way), and j a third of what the torque's rate limit makes of it as jerk:
 ///
 ///   u_most(d) = min(0.9 velocity limit, s(d; kappa, a))           speed that can be stopped in d
 ///   a_most    = d/dt u_most + s(u_most - u; gamma, j)             acceleration that keeps to it
@@ -43,11 +44,12 @@ namespace limber::controller {
 /// torque allows, and in full where it drives a joint that nears its velocity limit; until it is
 /// known, only joints that move are judged. A joint that is braked is judged the other way, too,
 /// where its torque would throw it back faster than half of the limit before it has unwound,
-/// a^2 / 2j later; so is a joint at rest, if it is so light that its torque can bring it there
-/// within two cycles. What torque and rate limits keep from all that is made up for by the joints
-/// that can, by least squares: they brake themselves, or change their torque less. Joints do not if
-/// their spring is softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint
-/// that leaves its end is not pushed.
+/// a^2 / 2j later, or faster than can be stopped if its weight takes most of its torque; so is a
+/// joint at rest, if it is so light that its torque can bring it there within two cycles. What
+/// torque and rate limits keep from all that is made up for by the joints that can, by least
+/// squares: they brake themselves, or change their torque less. Joints do not if their spring is
+/// softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end
+/// is not pushed.
 ///
 /// Judged by the velocities that the drives report; of motor and link, where a spring is between
 /// them, the one that is faster that way.
@@ -72,6 +74,10 @@ class Stopping {
   struct Rows;
   void bound_joint(Eigen::Index joint, double sign, const ArmState& state, const ArmTerms& terms,
                    const VectorJ& load, const VectorJ& tau, Rows* rows) const noexcept;
+  /// g of the joint, now or in the mean over the next `way` in the direction of `sign`: what leaves
+  /// less to brake with.
+  double weight_over(double way, Eigen::Index joint, double sign,
+                     const ArmTerms& terms) const noexcept;
   /// Whether motor and link move as one within kMemory_s.
   bool firm(Eigen::Index joint, const ArmTerms& terms) const noexcept;
   void bound_energy(const ArmState& state, const ArmTerms& terms, Rows* rows) const noexcept;
@@ -79,6 +85,7 @@ class Stopping {
                        const ArmTerms& terms, const Reach& reach, VectorJ* a,
                        VectorJ* tau) const noexcept;
 
+  std::vector<bool> turns_rigidly_;
   VectorJ position_min_;
   VectorJ position_max_;
   VectorJ velocity_;

@@ -185,6 +185,9 @@ TEST(Kernel, GravityGradientIsTheDerivativeOfGravity) {
       const VectorJ column = (model.gravity(q + step) - model.gravity(q - step)) / (2.0 * h);
       EXPECT_LT((slope.col(i) - column).norm(), 1e-8 * (1.0 + slope.norm())) << n << " joints";
     }
+    ArmTerms terms(n);
+    model.evaluate(q, q, &terms);
+    EXPECT_LT((terms.g_slope - slope.diagonal()).norm(), 1e-12 * (1.0 + slope.norm()));
   }
 }
 

@@ -92,6 +92,31 @@ TEST_F(OneJoint, WhatCarriesTheWeightStays) {
   EXPECT_NEAR(shaped(-0.9, 7.9, 15.0), 6.0 + 1.0, 1e-9);
 }
 
+// Turned by x its weight is 16 sin x: none at 0, but 10 (1 - cos d) / d in the mean over the way d
+// to the end. Half of what is left brakes, so much sooner than without weight.
+TEST_F(OneJoint, TheWeightOfTheWayToTheEndIsKnownBefore) {
+  constexpr double kWay = 2.0;
+  constexpr double kWeight_Nm = 16.0;
+  const auto speed_that_stops = [](double torque_Nm) {
+    const double a = 0.5 * torque_Nm / 0.5;
+    return std::sqrt(2.0 * a * (kWay - a / (2.0 * 8.0 * 8.0)));
+  };
+  const double mean_Nm = kWeight_Nm * (1.0 - std::cos(kWay)) / kWay;
+  const double light = speed_that_stops(20.0);
+  const double heavy = speed_that_stops(20.0 - mean_Nm);
+  ASSERT_LT(heavy + 1.0, light);
+  EXPECT_EQ(shaped(0.0, heavy, -15.0), -15.0) << "it brakes as hard";
+  EXPECT_GT(shaped(0.0, heavy, 1.0), 0.0) << "without weight there is time";
+  terms.g_slope << -kWeight_Nm;  // it falls towards that end
+  EXPECT_NEAR(shaped(0.0, heavy, 1.0), -0.5 * (20.0 - mean_Nm), 1e-9);
+  EXPECT_EQ(acted, +Status::LIMIT_POSITION);
+  terms.g_slope << kWeight_Nm;
+  EXPECT_GT(shaped(0.0, heavy, 1.0), 0.0) << "a weight that brakes is not counted on";
+  robot.joints[0].type = JointType::kPrismatic;
+  terms.g_slope << -kWeight_Nm;
+  EXPECT_GT(shaped(0.0, heavy, 1.0), 0.0) << "a rail's is the same everywhere";
+}
+
 // 20 N m bring 0.005 kg m^2 to half of 8 rad/s in 1 ms: judged at rest, too. 0.5 kg m^2 are not.
 TEST_F(OneJoint, ALightJointIsJudgedBeforeItMoves) {
   EXPECT_EQ(shaped(0.0, 0.0, 15.0), 15.0);
