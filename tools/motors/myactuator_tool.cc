@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "drivers/protocols/myactuator.h"
+#include "robots/loader/protocols/myactuator_series.h"
 #include "tools/motors/motor_tool.h"
 
 namespace limber::motor_tools {
@@ -41,22 +42,37 @@ class MyactuatorTool final : public MotorTool {
             myactuator::answers(frame, Order::kStatus, number));
   }
 
-  std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
+  Measured measure(Wire* wire, int number, bool /*fd*/) const override {
+    const double angle = myactuator::decode_angle(read(wire, number, Order::kAngle));
+    const auto status = myactuator::decode_status(read(wire, number, Order::kStatus));
+    return {.angle_rad = angle,
+            .temperature_degC = static_cast<double>(status.temperature_degC),
+            .supply_V = status.supply_V,
+            .state = state_text(status)};
+  }
+
+  std::vector<Setting> settings(Wire* wire, int number, bool /*fd*/) const override {
     myactuator::ModelText model;
     for (const int block : {1, 2})
       model.add(ask(wire, number, myactuator::model_frame(number, block)));
     const auto version = myactuator::value_of(read(wire, number, Order::kVersion));
-    const double angle = myactuator::decode_angle(read(wire, number, Order::kAngle));
-    const auto status = myactuator::decode_status(read(wire, number, Order::kStatus));
-    const std::string errors = myactuator::errors_text(status.errors);
-    return {{"model", std::string(model.text()), ""},
-            {"firmware", std::to_string(version), ""},
-            {"its ranges", myactuator::name_of(myactuator::firmware_of(version)), ""},
-            {"position", bus_tools::number(angle), "rad"},
-            {"supply", bus_tools::number(status.supply_V), "V"},
-            {"temperature", std::to_string(status.temperature_degC), "degC"},
-            {"brake", status.brake_released ? "released" : "locked", ""},
-            {"errors", errors.empty() ? "none" : errors, ""}};
+    const auto firmware = myactuator::firmware_of(version);
+    const auto add = [](const char* name, const std::string& value, const char* key) {
+      return Setting{name, value, Setting::Use::kOther, Format::kText, key};
+    };
+    std::vector<Setting> settings = {
+        {"model", std::string(model.text()), Setting::Use::kModel},
+        {"firmware", std::to_string(version)},
+        add("ranges of its firmware", myactuator::name_of(firmware), "motors.*.firmware")};
+    if (is_listed(model.series()))
+      settings.push_back(add("series", fmt::format("X{}", model.series()), "motors.*.model"));
+    if (firmware == myactuator::Firmware::kV42)
+      settings.push_back(add("torque of a command, at most (N m)", "24", "most.torque_Nm"));
+    return settings;
+  }
+  std::string_view not_read() const noexcept override {
+    return "motion mode has no settings that can be read: time-out, zero and gains of the other "
+           "modes are not here, and restore writes nothing";
   }
 
   /// Whether its brake is released: nothing tells more.
@@ -79,6 +95,11 @@ class MyactuatorTool final : public MotorTool {
   }
 
  private:
+  static std::string state_text(const myactuator::Status& status) {
+    const std::string errors = myactuator::errors_text(status.errors);
+    return std::string(status.brake_released ? "brake released" : "brake locked") +
+           (errors.empty() ? "" : ", " + errors);
+  }
   static CanFrame ask(Wire* wire, int number, const CanFrame& request) {
     const auto order = static_cast<Order>(request.data[0]);
     const auto mine = [&](const CanFrame& frame) {
