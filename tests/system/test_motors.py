@@ -7,6 +7,7 @@ import struct
 import can
 import pytest
 from local_drive import multicast_group, sending
+from motor_bus import forgetful_drive, frames_of
 
 ARMS = {
     "axol": ("myactuator", (1, 2, 3, 4, 5)),
@@ -53,10 +54,49 @@ def test_number_and_zero(motors, robot, number):
     assert abs(float(shown.splitlines()[-1].split()[1])) < 0.01
 
 
+@pytest.mark.parametrize(
+    ("robot", "motor", "frame"),
+    [
+        ("desktop2r", "damiao_mit:1", "7FF#0100552303000000"),
+        ("axol", "myactuator:1", "141#B400000000000000"),
+        ("edulite_a3", "robstride:1", "1700FD01#0102030405060200"),
+    ],
+)
+def test_bit_rate(motors, robot, motor, frame):
+    """Emulated drives have theirs at once, but RobStride's wait for the power."""
+    call = motors(robot)
+    others = [word for word in listed(call("scan")) if word != motor]
+    same = call("set-baud", motor, "1000000")
+    assert same.returncode == 0 and "neither hears nor answers at another" in same.stdout
+    assert ("stored and read back" in same.stdout) == (motor == "damiao_mit:1")
+    wrong = call("set-baud", motor, "333333")
+    assert wrong.returncode == 2 and "500000" in wrong.stderr
+    with frames_of(robot) as heard:
+        done = call("set-baud", motor, "500000")
+    assert done.returncode == 0, done.stderr
+    sent = [f"{one.arbitration_id:03X}#{bytes(one.data).hex().upper()}" for one in heard]
+    assert frame in [
+        word.removeprefix("0") if one.is_extended_id else word
+        for one, word in zip(heard, sent, strict=True)
+    ]
+    waits = motor.startswith("robstride")
+    assert ("when its supply was off" in done.stdout) == waits
+    assert listed(call("scan")) == ([motor, *others] if waits else others)
+
+
+def test_a_bit_rate_that_does_not_stick(limber):
+    """Of a drive that answers to the new code and has the old one (openarm, issue 471)."""
+    with forgetful_drive("forgetful"):
+        done = limber("motors", "set-baud", "virtual:forgetful", "damiao_mit:1", "5000000")
+    assert done.returncode == 3 and "can_br reads 0, not 9" in done.stderr
+
+
 def test_makers_tools_are_named_where_they_are_needed(motors):
     call = motors("planar2r")
     done = call("zero", "moteus:1")
     assert done.returncode == 3 and "moteus_tool" in done.stderr
+    done = call("set-baud", "moteus:1", "1000000")
+    assert done.returncode == 3 and "use its maker's tool" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,10 @@ constexpr std::pair<std::uint8_t, const char*> kDamiaoRobotKeys[] = {
     {21, "motors.*.mit_range.position_rad"},
     {22, "motors.*.mit_range.velocity_rad_per_s"},
     {23, "motors.*.mit_range.torque_Nm"}};
+constexpr std::uint8_t kDamiaoBitRate = 35;
+constexpr BitRate kDamiaoBitRates[] = {
+    {125'000, 0},   {200'000, 1},   {250'000, 2},   {500'000, 3},   {1'000'000, 4},
+    {2'000'000, 5}, {2'500'000, 6}, {3'200'000, 7}, {4'000'000, 8}, {5'000'000, 9}};
 constexpr int kDamiaoBits = 12;         // of velocity and torque in a state
 constexpr double kDamiaoStore_s = 0.1;  // flash takes some time
 
@@ -108,6 +112,26 @@ class DamiaoTool final : public RegisterTool {
     wire->send(mit::encode_special(mit::Special::kSetZero, as_id(number), fd), kDamiaoStore_s,
                [](const CanFrame&) {});
     require_zero(mit::bits_float(read(wire, number, kDamiaoPosition, fd)));
+  }
+
+  std::span<const BitRate> bit_rates() const noexcept override { return kDamiaoBitRates; }
+  /// Some firmware has the new rate at once, and then stores it at that rate only. Source:
+  /// jia-xie/python-damiao-driver, pull request 9.
+  std::string set_bit_rate(Wire* wire, int number, const BitRate& rate, bool fd) const override {
+    wire->send(
+        mit::encode_register_write(as_id(number), as_register(kDamiaoBitRate), rate.code, fd),
+        Wire::kAnswer_s, [](const CanFrame&) {});
+    auto now = try_read(wire, number, kDamiaoBitRate, fd);
+    if (!now)
+      return "it has its new rate, not stored yet: bring the bus up at that rate and repeat this";
+    if (*now == rate.code) {
+      store(wire, number, fd);
+      now = read(wire, number, kDamiaoBitRate, fd);
+    }
+    if (*now != rate.code)
+      throw std::runtime_error(fmt::format(
+          "can_br reads {}, not {}: some firmware takes it on a CAN-FD bus only", *now, rate.code));
+    return "stored and read back; it counts at the latest when its supply was off";
   }
 
  private:

@@ -91,6 +91,26 @@ int set_zero(const Arguments& given) {
   return kExitDone;
 }
 
+int set_bit_rate(const Arguments& given) {
+  const Motor motor = motor_of(given.motor);
+  BitRate wanted{};
+  std::string words;
+  for (const BitRate& rate : motor.tool->bit_rates()) {
+    if (rate.bps == given.wanted) wanted = rate;
+    words += (words.empty() ? "" : ", ") + std::to_string(rate.bps);
+  }
+  if (wanted.bps == 0 && !words.empty())
+    throw ConfigError(fmt::format("{} motors have {}", motor.tool->protocol(), words));
+  Wire wire = open_to(motor, given.bus);
+  require_off(motor, &wire, given.bus.fd);
+  const std::string done = motor.tool->set_bit_rate(&wire, motor.number, wanted, given.bus.fd);
+  std::printf(
+      "%s: %s\nAt its new rate it neither hears nor answers at another: set all motors of the bus, "
+      "then the interface (ip link) and robot.yaml.\n",
+      given.motor.c_str(), done.c_str());
+  return kExitDone;
+}
+
 int dump_all(const Arguments& given) {
   std::vector<BusChoice> buses;
   for (const std::string& address : given.buses) buses.push_back({address, given.bus.fd});
@@ -128,20 +148,22 @@ void define(CommandLine& program, Arguments* given) {
   auto& shown = add(program, "show", "what a motor has stored and measures", show, given);
   auto& numbered = add(program, "set-id", "another number, stored", set_number, given);
   auto& zeroed = add(program, "zero", "where it is becomes its zero, stored", set_zero, given);
+  auto& rated = add(program, "set-baud", "another bit rate", set_bit_rate, given);
   auto& dumped = add(program, "dump", "the settings of all motors as YAML", dump_all, given);
   auto& restored = add(program, "restore", "a dump's settings back", restore_all, given);
   auto& watched = add(program, "watch", "what motors measure that are off", watch_all, given);
-  for (auto* command : {&listed, &shown, &numbered, &zeroed, &watched})
+  for (auto* command : {&listed, &shown, &numbered, &zeroed, &rated, &watched})
     command->text("bus", &given->bus.address, kBus).required();
-  for (auto* command : {&shown, &numbered, &zeroed})
+  for (auto* command : {&shown, &numbered, &zeroed, &rated})
     command->text("motor", &given->motor, "FAMILY:NUMBER, such as damiao_mit:3").required();
   watched.texts("motor", &given->motors, "FAMILY:NUMBER; none: all that answer");
   dumped.texts("bus", &given->buses, kBus).required();
-  for (auto* command : {&listed, &shown, &numbered, &zeroed, &watched, &dumped})
+  for (auto* command : {&listed, &shown, &numbered, &zeroed, &rated, &watched, &dumped})
     command->flag("--fd", &given->bus.fd, "a CAN-FD bus");
   dumped.text("--out", &given->file, "a file for it");
   listed.flag("--yaml", &given->yaml, "with what robot.yaml needs of each");
   numbered.integer("new", &given->wanted, 1, 127, "the new number").required();
+  rated.integer("rate", &given->wanted, 1, 10'000'000, "bit/s; of the data on CAN-FD").required();
   restored.text("file", &given->file, "as dump wrote it").required();
 }
 

@@ -124,7 +124,8 @@ class MoteusTool final : public MotorTool {
       static_cast<void>(moteus::decode_text(*frame, &text));  // of the frame that is kept
       return std::string(text);
     };
-    while (!ask(moteus::encode_text_poll(address(number))).empty()) {  // of somebody before
+    const CanFrame poll = moteus::encode_text_poll(address(number));
+    for (int polls = 0; polls < kMostPolls && !ask(poll).empty(); ++polls) {  // of somebody before
     }
     std::string answer = ask(moteus::encode_line(line + '\n', address(number)));
     for (int polls = 0, empty = 0; polls < kMostPolls && empty < kMostEmptyPolls; ++polls) {
@@ -132,7 +133,7 @@ class MoteusTool final : public MotorTool {
       if (answer.starts_with("ERR") && answer.ends_with('\n'))
         throw std::runtime_error(fmt::format("it refuses '{}': {}", line,
                                              answer.substr(0, answer.find_first_of("\r\n"))));
-      const std::string more = ask(moteus::encode_text_poll(address(number)));
+      const std::string more = ask(poll);
       empty = more.empty() ? empty + 1 : 0;
       answer += more;
     }

@@ -41,6 +41,12 @@ struct Setting {
   std::string robot_key = {};
 };
 
+/// A bit rate that a motor can have: of the data in CAN-FD frames, if it has those.
+struct BitRate {
+  std::int64_t bps;
+  std::uint8_t code;  ///< of the protocol
+};
+
 /// What a motor measures, behind its gear; NaN: its protocol does not tell.
 struct Measured {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -92,6 +98,12 @@ class MotorTool {
   virtual void set_number(Wire* wire, int number, int wanted, bool fd) const = 0;
   /// Makes where it is its zero, stored and read back. Likewise.
   virtual void set_zero(Wire* wire, int number, bool fd) const = 0;
+
+  /// Those that its protocol sets; empty: the maker's tool does.
+  virtual std::span<const BitRate> bit_rates() const noexcept { return {}; }
+  /// Sets one of them; what has become of it, in words. Throws std::runtime_error if the drive
+  /// refuses it.
+  virtual std::string set_bit_rate(Wire* wire, int number, const BitRate& rate, bool fd) const;
 
  protected:
   // What was set, read back; throw std::runtime_error if it is not so.

@@ -52,6 +52,11 @@ void MotorTool::write(Wire* /*wire*/, int /*number*/, const Setting& setting, do
 }
 bool MotorTool::store(Wire* /*wire*/, int /*number*/, bool /*fd*/) const { return false; }
 
+std::string MotorTool::set_bit_rate(Wire* /*wire*/, int /*number*/, const BitRate& /*rate*/,
+                                    bool /*fd*/) const {
+  throw std::runtime_error("its protocol sets no bit rate: use its maker's tool");
+}
+
 Wire::Accept MotorTool::comes_from(int number) const {
   return [this, number](const CanFrame& frame) {
     const auto motor = found(frame);

@@ -11,6 +11,7 @@ namespace {
 
 using myactuator::Order;
 
+constexpr BitRate kMyactuatorBitRates[] = {{500'000, 0}, {1'000'000, 1}};
 constexpr double kMyactuatorReset_s = 2.0;  // 1.1 s, and some more
 
 std::string version_text(std::uint32_t version) {
@@ -92,6 +93,18 @@ class MyactuatorTool final : public MotorTool {
     static_cast<void>(read(wire, number, Order::kSetZero));
     reset(wire, number);
     require_zero(myactuator::decode_angle(read(wire, number, Order::kAngle)));
+  }
+
+  std::span<const BitRate> bit_rates() const noexcept override { return kMyactuatorBitRates; }
+  /// Without a usable answer: the drive may send it at either rate.
+  std::string set_bit_rate(Wire* wire, int number, const BitRate& rate, bool fd) const override {
+    static_cast<void>(read(wire, number, Order::kVersion));  // the next one is not only sent back
+    wire->send(myactuator::bit_rate_frame(number, rate.code), Wire::kAnswer_s,
+               [](const CanFrame&) {});
+    return wire->ask(presence(number, fd), comes_from(number))
+               ? "it answers here still: if this is not the rate that you gave, it counts when its "
+                 "supply was off. It cannot be read back"
+               : "it no longer answers here, as it should: it has its new rate";
   }
 
  private:

@@ -14,6 +14,8 @@ using robstride::Type;
 constexpr double kRobstrideSave_s = 0.1;
 constexpr double kRobstrideReport_s = 0.5;
 
+constexpr BitRate kRobstrideBitRates[] = {{1'000'000, 1}, {500'000, 2}, {250'000, 3}, {125'000, 4}};
+
 std::uint8_t as_number(int number) { return static_cast<std::uint8_t>(number); }
 
 class RobstrideTool final : public RegisterTool {
@@ -84,6 +86,14 @@ class RobstrideTool final : public RegisterTool {
                [](const CanFrame&) {});
     save(wire, number);
     require_zero(read_float(wire, number, static_cast<std::uint32_t>(Parameter::kPosition), false));
+  }
+
+  std::span<const BitRate> bit_rates() const noexcept override { return kRobstrideBitRates; }
+  std::string set_bit_rate(Wire* wire, int number, const BitRate& rate,
+                           bool /*fd*/) const override {
+    if (!wire->ask(robstride::encode_set_baud(as_number(number), rate.code), comes_from(number)))
+      throw std::runtime_error("its new bit rate is not answered");
+    return "answered; it counts when its supply was off, and its protocol cannot read it back";
   }
 
  private:

@@ -47,6 +47,19 @@ def zero(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     _become("zero", bus, fd, motor)
 
 
+@app.command(
+    "set-baud", epilog="Example: limber can motors set-baud can0 damiao_mit:3 5000000 --fd"
+)
+def set_baud(
+    bus: BusName,
+    motor: Motor,
+    rate: Annotated[int, typer.Argument(help="bit/s; of the data on a CAN-FD bus.")],
+    fd: Fd = False,
+) -> None:
+    """Give a motor another bit rate. It neither hears nor answers at its old one then."""
+    _become("set-baud", bus, fd, motor, str(rate))
+
+
 @app.command(epilog="Example: limber can motors watch can0 damiao_mit:1 damiao_mit:2")
 def watch(
     bus: BusName,
