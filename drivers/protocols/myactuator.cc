@@ -77,6 +77,10 @@ CanFrame order_frame(Order order, int motor, std::uint32_t value) noexcept {
   return frame;
 }
 
+CanFrame bit_rate_frame(int motor, std::uint8_t code) noexcept {
+  return order_frame(Order::kBitRate, motor, std::uint32_t{code} << 24U);
+}
+
 CanFrame function_frame(Function function, int motor, std::uint32_t value) noexcept {
   CanFrame frame = order_frame(Order::kFunction, motor, value);
   frame.data[1] = static_cast<std::uint8_t>(function);

@@ -39,6 +39,7 @@ enum class Order : std::uint8_t {
   kStatus = 0x9A,    ///< Status
   kVersion = 0xB2,   ///< uint32 in bytes 4 to 7: 2026042402 is 2026-04-24, the second
   kTimeout = 0xB3,   ///< uint32 in bytes 4 to 7, ms, 0: off; kept, and cannot be read
+  kBitRate = 0xB4,   ///< byte 7, 0: 500 kbit/s, 1: 1 Mbit/s (2b-t/myactuator_rmd); kept
   kModel = 0xB5,     ///< text
   kTimedOut = 0xF1,  ///< from the drive, every second (myactuator_rmd_ros, pull request 4)
 };
@@ -51,6 +52,7 @@ bool only_reads(std::uint8_t order) noexcept;
 
 CanFrame order_frame(Order order, int motor, std::uint32_t value = 0) noexcept;
 CanFrame function_frame(Function function, int motor, std::uint32_t value) noexcept;
+CanFrame bit_rate_frame(int motor, std::uint8_t code) noexcept;
 /// The block-th (from 1) five letters of the model. Firmware of V4.2 ignores `block` and answers
 /// with all of its seven.
 CanFrame model_frame(int motor, int block) noexcept;

@@ -147,6 +147,12 @@ CanFrame encode_set_id(std::uint8_t motor, std::uint8_t wanted) noexcept {
 
 CanFrame encode_save(std::uint8_t motor) noexcept { return counting(Type::kSave, motor, 8); }
 
+CanFrame encode_set_baud(std::uint8_t motor, std::uint8_t code) noexcept {
+  CanFrame frame = counting(Type::kSetBaud, motor, 6);
+  frame.data[6] = code;
+  return frame;
+}
+
 CanFrame encode_report(std::uint8_t motor, bool on) noexcept {
   CanFrame frame = counting(Type::kReport, motor, 6);
   frame.data[6] = on ? 1 : 0;

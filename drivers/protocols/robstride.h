@@ -91,6 +91,8 @@ CanFrame encode_clear(std::uint8_t motor) noexcept;
 CanFrame encode_set_zero(std::uint8_t motor) noexcept;
 CanFrame encode_set_id(std::uint8_t motor, std::uint8_t wanted) noexcept;
 CanFrame encode_save(std::uint8_t motor) noexcept;
+/// `code`: 1 to 4 for 1000, 500, 250 and 125 kbit/s, from the next power-up on.
+CanFrame encode_set_baud(std::uint8_t motor, std::uint8_t code) noexcept;
 /// Switches states without a request on or off.
 CanFrame encode_report(std::uint8_t motor, bool on) noexcept;
 /// Of a motor, to a ping or a new number.

@@ -45,7 +45,7 @@ CanFrame DamiaoNode::state_frame(const CanFrame& request,
 bool DamiaoNode::receive(const CanFrame& frame, const JointReading& joint, std::int64_t now_ns,
                          CanFrame* reply) noexcept {
   pass_time(joint, now_ns);
-  if (frame.extended || frame.remote || frame.error) return false;
+  if (frame.extended || frame.remote || frame.error || !registers_.hears_the_bus()) return false;
   const bool deaf = has(scenario_event_t::FAULT_DROP_COMMANDS);
 
   mit::RegisterRequest request;

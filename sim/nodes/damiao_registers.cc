@@ -83,6 +83,8 @@ RegisterRange range_of(std::uint8_t reg) {
       return {1.0, 0xFF};
     case kTimeout:
       return {0.0, kLargest};
+    case kBusRate:
+      return {0.0, kRate5M};
     case kControlMode:
       return {static_cast<double>(mit::ControlMode::kMit),
               static_cast<double>(mit::ControlMode::kForcePosition)};
@@ -100,11 +102,14 @@ RegisterRange range_of(std::uint8_t reg) {
   }
 }
 
-bool is_whole(std::uint8_t reg) { return reg >= kMasterId && reg <= kControlMode; }
+bool is_whole(std::uint8_t reg) {
+  return (reg >= kMasterId && reg <= kControlMode) || reg == kBusRate;
+}
 
 }  // namespace
 
-DamiaoRegisters::DamiaoRegisters(const DriveConfig& drive, bool fd) : range_(drive.range) {
+DamiaoRegisters::DamiaoRegisters(const DriveConfig& drive, bool fd)
+    : range_(drive.range), bus_rate_(fd ? kRate5M : kRate1M) {
   raw_[kUnderVoltage] = bits(15.0);
   raw_[kTorqueConstant] = bits(drive.torque_constant_Nm_per_A / drive.gear_ratio);
   raw_[kOverTemperature] = bits(100.0);
@@ -126,7 +131,7 @@ DamiaoRegisters::DamiaoRegisters(const DriveConfig& drive, bool fd) : range_(dri
   raw_[kSpeedDamping] = bits(4.0);
   raw_[kSpeedBandwidth] = bits(100.0);
   raw_[kCurrentEnhancement] = raw_[kSpeedEnhancement] = bits(1000.0);
-  raw_[kBusRate] = fd ? kRate5M : kRate1M;
+  raw_[kBusRate] = bus_rate_;
 }
 
 std::uint32_t DamiaoRegisters::read(std::uint8_t reg) const noexcept {
@@ -146,6 +151,7 @@ void DamiaoRegisters::write(std::uint8_t reg, std::uint32_t raw) noexcept {
   raw_[reg] = raw;
 }
 
+bool DamiaoRegisters::hears_the_bus() const noexcept { return raw_[kBusRate] == bus_rate_; }
 std::uint32_t DamiaoRegisters::id() const noexcept { return raw_[kNodeId]; }
 std::uint32_t DamiaoRegisters::reply_id() const noexcept { return raw_[kMasterId]; }
 

@@ -19,9 +19,11 @@ class DamiaoRegisters {
   /// Raw 32-bit content; 0 for numbers the drive does not have.
   std::uint32_t read(std::uint8_t reg) const noexcept;
   /// Takes the value if the register is writable and the value within the maker's range, else keeps
-  /// the old one. The bit rate stays as in the robot's description: the emulated bus has one.
+  /// the old one.
   void write(std::uint8_t reg, std::uint32_t raw) noexcept;
 
+  /// Whether its bit rate is that of the robot's description, the emulated bus'.
+  bool hears_the_bus() const noexcept;
   std::uint32_t id() const noexcept;        ///< ESC_ID
   std::uint32_t reply_id() const noexcept;  ///< MST_ID
   /// 0: no watchdog.
@@ -37,6 +39,7 @@ class DamiaoRegisters {
   static constexpr std::size_t kCount = 82;
   std::array<std::uint32_t, kCount> raw_{};
   CommandRange range_;
+  std::uint32_t bus_rate_;
 };
 
 }  // namespace limber::sim

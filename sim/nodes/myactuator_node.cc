@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limber/scenario_event_t.hpp>
+#include <limits>
 #include <numbers>
 
 #include "robots/loader/protocols/myactuator_series.h"
@@ -112,6 +113,9 @@ bool MyactuatorNode::obey(const CanFrame& frame, const JointReading& joint,
     case Order::kTimeout:
       timeout_ms_ = myactuator::value_of(frame);
       return true;
+    case Order::kBitRate:  // this bus has 1 Mbit/s, code 1
+      if (frame.data[7] == 0) deaf_until_ns_ = std::numeric_limits<std::int64_t>::max();
+      return false;
     case Order::kModel: {
       // "X8S2V10" in one answer, or the block-th five of "RMD-X8-P20".
       const bool blocks = v44 && frame.data[1] == 1;

@@ -57,7 +57,7 @@ bool RobstrideNode::receive(const CanFrame& frame, const JointReading& joint, st
   const auto sender = static_cast<std::uint8_t>(id.data);
   if (id.type != Type::kControl) host_ = sender;
   robstride::ParameterRequest request;
-  if (id.type == Type::kPing || id.type == Type::kSetId) {
+  if (id.type == Type::kPing || id.type == Type::kSetId || id.type == Type::kSetBaud) {
     // The answer to a new number already has it.
     const bool deaf = has(scenario_event_t::FAULT_DROP_COMMANDS);
     const auto wanted = static_cast<std::uint8_t>(id.data >> 8U);

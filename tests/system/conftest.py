@@ -93,3 +93,21 @@ def judged(stack, tmp_path):
     verdict = judge_file(trace, stack.robot, Expectation(silent_cycles=PAUSE_CYCLES))
     assert verdict.commands > 0
     assert verdict.breaches == [], verdict.breaches[:3]
+
+
+@pytest.fixture
+def motors(stack, limber):
+    """Calls `limber motors COMMAND BUS ...` beside the simulated arm `start(name)`."""
+
+    def start(robot: str):
+        stack.robot = robot
+        stack.start("sim", "--realtime")
+        stack.until(lambda: stack.truth is not None, 20, "the simulator")
+        fd = ["--fd"] if robot in ("planar2r", "testbench") else []
+
+        def call(command: str, *words: str):
+            return limber("motors", command, f"virtual:{robot}", *words, *fd)
+
+        return call
+
+    return start

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import struct
-import threading
-from contextlib import contextmanager
 
 import can
 import pytest
-from local_drive import multicast_group
+from local_drive import multicast_group, sending
+from motor_bus import forgetful_drive, frames_of
 
 ARMS = {
     "axol": ("myactuator", (1, 2, 3, 4, 5)),
@@ -19,44 +18,6 @@ ARMS = {
 }
 
 OTHERS = {"axol": ["damiao_mit:6", "damiao_mit:7"]}  # on the same bus
-
-
-@pytest.fixture
-def motors(stack, limber):
-    """Calls `limber motors COMMAND BUS ...` beside the simulated arm `start(name)`."""
-
-    def start(robot: str):
-        stack.robot = robot
-        stack.start("sim", "--realtime")
-        stack.until(lambda: stack.truth is not None, 20, "the simulator")
-        fd = ["--fd"] if robot in ("planar2r", "testbench") else []
-
-        def call(command: str, *words: str):
-            return limber("motors", command, f"virtual:{robot}", *words, *fd)
-
-        return call
-
-    return start
-
-
-@contextmanager
-def sending(robot: str, frame: can.Message, every_s: float = 0.02):
-    """Another program on the bus."""
-    end = threading.Event()
-
-    def send() -> None:
-        group = multicast_group(robot)
-        with can.Bus(interface="udp_multicast", channel=group, hop_limit=0) as bus:
-            while not end.wait(every_s):
-                bus.send(frame)
-
-    thread = threading.Thread(target=send)
-    thread.start()
-    try:
-        yield
-    finally:
-        end.set()
-        thread.join()
 
 
 def listed(done) -> list[str]:
@@ -73,7 +34,8 @@ def test_scan_finds_the_motors_and_no_others(motors, robot):
     assert listed(done) == OTHERS.get(robot, []) + expected
     shown = call("show", f"{family}:1")
     assert shown.returncode == 0, shown.stderr
-    assert "not answered" not in shown.stdout and len(shown.stdout.splitlines()) >= 8
+    *settings, head, _, measured = shown.stdout.splitlines()
+    assert len(settings) >= 4 and "angle" in head and measured.startswith(f"{family}:1 ")
 
 
 @pytest.mark.parametrize(("robot", "number"), [("desktop2r", 5), ("edulite_a3", 100), ("axol", 30)])
@@ -89,14 +51,52 @@ def test_number_and_zero(motors, robot, number):
     assert gone.returncode == 3 and "does not answer" in gone.stderr
     assert call("zero", f"{family}:{number}").returncode == 0
     shown = call("show", f"{family}:{number}").stdout
-    position = next(line for line in shown.splitlines() if line.startswith("position "))
-    assert abs(float(position.split()[1])) < 0.01
+    assert abs(float(shown.splitlines()[-1].split()[1])) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("robot", "motor", "frame"),
+    [
+        ("desktop2r", "damiao_mit:1", "7FF#0100552303000000"),
+        ("axol", "myactuator:1", "141#B400000000000000"),
+        ("edulite_a3", "robstride:1", "1700FD01#0102030405060200"),
+    ],
+)
+def test_bit_rate(motors, robot, motor, frame):
+    """Emulated drives have theirs at once, but RobStride's wait for the power."""
+    call = motors(robot)
+    others = [word for word in listed(call("scan")) if word != motor]
+    same = call("set-baud", motor, "1000000")
+    assert same.returncode == 0 and "neither hears nor answers at another" in same.stdout
+    assert ("stored and read back" in same.stdout) == (motor == "damiao_mit:1")
+    wrong = call("set-baud", motor, "333333")
+    assert wrong.returncode == 2 and "500000" in wrong.stderr
+    with frames_of(robot) as heard:
+        done = call("set-baud", motor, "500000")
+    assert done.returncode == 0, done.stderr
+    sent = [f"{one.arbitration_id:03X}#{bytes(one.data).hex().upper()}" for one in heard]
+    assert frame in [
+        word.removeprefix("0") if one.is_extended_id else word
+        for one, word in zip(heard, sent, strict=True)
+    ]
+    waits = motor.startswith("robstride")
+    assert ("when its supply was off" in done.stdout) == waits
+    assert listed(call("scan")) == ([motor, *others] if waits else others)
+
+
+def test_a_bit_rate_that_does_not_stick(limber):
+    """Of a drive that answers to the new code and has the old one (openarm, issue 471)."""
+    with forgetful_drive("forgetful"):
+        done = limber("motors", "set-baud", "virtual:forgetful", "damiao_mit:1", "5000000")
+    assert done.returncode == 3 and "can_br reads 0, not 9" in done.stderr
 
 
 def test_makers_tools_are_named_where_they_are_needed(motors):
     call = motors("planar2r")
     done = call("zero", "moteus:1")
     assert done.returncode == 3 and "moteus_tool" in done.stderr
+    done = call("set-baud", "moteus:1", "1000000")
+    assert done.returncode == 3 and "use its maker's tool" in done.stderr
 
 
 @pytest.mark.parametrize(

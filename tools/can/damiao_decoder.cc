@@ -8,53 +8,56 @@ namespace limber::bus_tools {
 namespace {
 
 /// Names and formats of the maker's manual; what is not listed is shown by number.
-struct RegisterRow {
-  std::uint8_t number;
-  const char* name;
-  bool whole;  ///< uint32, else float32
-  const char* unit;
-};
 constexpr std::array kDamiaoRegisters = {
-    RegisterRow{0, "under-voltage limit", false, "V"},
-    RegisterRow{1, "torque constant", false, "N m/A"},
-    RegisterRow{2, "over-temperature limit", false, "degC"},
-    RegisterRow{3, "over-current limit", false, ""},
-    RegisterRow{4, "acceleration", false, "rad/s^2"},
-    RegisterRow{5, "deceleration", false, "rad/s^2"},
-    RegisterRow{6, "maximum speed", false, "rad/s"},
-    RegisterRow{7, "MST_ID", true, ""},
-    RegisterRow{8, "ESC_ID", true, ""},
-    RegisterRow{9, "TIMEOUT", true, "counts of 50 us"},
-    RegisterRow{10, "CTRL_MODE", true, ""},
-    RegisterRow{11, "damping", false, ""},
-    RegisterRow{12, "inertia", false, "kg m^2"},
-    RegisterRow{13, "hardware version", true, ""},
-    RegisterRow{14, "software version", true, ""},
-    RegisterRow{15, "serial number", true, ""},
-    RegisterRow{16, "pole pairs", true, ""},
-    RegisterRow{17, "phase resistance", false, "ohm"},
-    RegisterRow{18, "phase inductance", false, "H"},
-    RegisterRow{19, "flux", false, "Wb"},
-    RegisterRow{20, "gear ratio", false, ""},
-    RegisterRow{21, "PMAX", false, "rad"},
-    RegisterRow{22, "VMAX", false, "rad/s"},
-    RegisterRow{23, "TMAX", false, "N m"},
-    RegisterRow{24, "current bandwidth", false, "Hz"},
-    RegisterRow{29, "over-voltage limit", false, "V"},
-    RegisterRow{35, "can_br", true, ""},
-    RegisterRow{80, "position before the gear", false, "rad"},
-    RegisterRow{81, "position", false, "rad"},
+    DamiaoRegister{0, "under-voltage limit", false, "V"},
+    DamiaoRegister{1, "torque constant", false, "N m/A"},
+    DamiaoRegister{2, "over-temperature limit", false, "degC"},
+    DamiaoRegister{3, "over-current limit", false, ""},
+    DamiaoRegister{4, "acceleration", false, "rad/s^2"},
+    DamiaoRegister{5, "deceleration", false, "rad/s^2"},
+    DamiaoRegister{6, "maximum speed", false, "rad/s"},
+    DamiaoRegister{7, "MST_ID", true, ""},
+    DamiaoRegister{8, "ESC_ID", true, ""},
+    DamiaoRegister{9, "TIMEOUT", true, "counts of 50 us"},
+    DamiaoRegister{10, "CTRL_MODE", true, ""},
+    DamiaoRegister{11, "damping", false, ""},
+    DamiaoRegister{12, "inertia", false, "kg m^2"},
+    DamiaoRegister{13, "hardware version", true, ""},
+    DamiaoRegister{14, "software version", true, ""},
+    DamiaoRegister{15, "serial number", true, ""},
+    DamiaoRegister{16, "pole pairs", true, ""},
+    DamiaoRegister{17, "phase resistance", false, "ohm"},
+    DamiaoRegister{18, "phase inductance", false, "H"},
+    DamiaoRegister{19, "flux", false, "Wb"},
+    DamiaoRegister{20, "gear ratio", false, ""},
+    DamiaoRegister{21, "PMAX", false, "rad"},
+    DamiaoRegister{22, "VMAX", false, "rad/s"},
+    DamiaoRegister{23, "TMAX", false, "N m"},
+    DamiaoRegister{24, "current bandwidth", false, "Hz"},
+    DamiaoRegister{25, "speed loop Kp", false, ""},
+    DamiaoRegister{26, "speed loop Ki", false, ""},
+    DamiaoRegister{27, "position loop Kp", false, ""},
+    DamiaoRegister{28, "position loop Ki", false, ""},
+    DamiaoRegister{29, "over-voltage limit", false, "V"},
+    DamiaoRegister{30, "gear efficiency", false, ""},
+    DamiaoRegister{31, "speed loop damping", false, ""},
+    DamiaoRegister{32, "speed loop bandwidth", false, "Hz"},
+    DamiaoRegister{33, "current loop enhancement", false, ""},
+    DamiaoRegister{34, "speed loop enhancement", false, ""},
+    DamiaoRegister{35, "can_br", true, ""},
+    DamiaoRegister{80, "position before the gear", false, "rad"},
+    DamiaoRegister{81, "position", false, "rad"},
 };
 
-const RegisterRow* row_of(std::uint8_t reg) {
-  for (const RegisterRow& row : kDamiaoRegisters) {
+const DamiaoRegister* row_of(std::uint8_t reg) {
+  for (const DamiaoRegister& row : kDamiaoRegisters) {
     if (row.number == reg) return &row;
   }
   return nullptr;
 }
 
 Value register_name(std::uint8_t reg) {
-  const RegisterRow* row = row_of(reg);
+  const DamiaoRegister* row = row_of(reg);
   return {row == nullptr ? "register " + std::to_string(reg) : row->name, "", ""};
 }
 
@@ -74,8 +77,10 @@ const char* special_word(mit::Special special) {
 
 }  // namespace
 
+std::span<const DamiaoRegister> damiao_registers() noexcept { return kDamiaoRegisters; }
+
 Value damiao_register(std::uint8_t reg, std::uint32_t raw) {
-  const RegisterRow* row = row_of(reg);
+  const DamiaoRegister* row = row_of(reg);
   if (row == nullptr) return {"register " + std::to_string(reg), "0x" + hex(raw, 8), ""};
   const double value =
       row->whole ? static_cast<double>(raw) : static_cast<double>(mit::bits_float(raw));

@@ -2,6 +2,8 @@
 // and torques are the drive's own, before sign and offset of robot.yaml.
 #pragma once
 
+#include <span>
+
 #include "drivers/protocols/mit.h"
 #include "tools/can/dbc.h"
 #include "tools/can/motors_on_bus.h"
@@ -27,6 +29,15 @@ class DamiaoDecoder final : public FrameDecoder {
   std::optional<mit::RegisterRequest> open_;
 };
 
+/// A register of the maker's manual.
+struct DamiaoRegister {
+  std::uint8_t number;
+  const char* name;
+  bool whole;  ///< uint32, else float32
+  const char* unit;
+};
+/// All that have a name here.
+std::span<const DamiaoRegister> damiao_registers() noexcept;
 /// A register by its name in the maker's manual, with unit; by its number if it is not listed.
 Value damiao_register(std::uint8_t reg, std::uint32_t raw);
 

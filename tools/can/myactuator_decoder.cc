@@ -21,6 +21,7 @@ constexpr std::array kOrders = {
     OrderRow{Order::kAngle, "angle"},          OrderRow{Order::kStatus, "status"},
     OrderRow{Order::kVersion, "version"},      OrderRow{Order::kTimeout, "time-out"},
     OrderRow{Order::kModel, "model"},          OrderRow{Order::kTimedOut, "time-out is over"},
+    OrderRow{Order::kBitRate, "bit rate"},
 };
 
 std::string name_of(std::uint8_t order) {

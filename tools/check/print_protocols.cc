@@ -8,9 +8,16 @@ namespace {
 std::string text_of(std::string_view text) { return json::text(std::string(text)); }
 
 std::string key_json(const ProtocolKey& key) {
-  const std::string_view usual(key.key);
+  std::string_view rest(key.key);
+  const std::string_view usual = rest.substr(0, rest.find('|'));
+  std::vector<std::string> others;
+  while (rest.find('|') != std::string_view::npos) {
+    rest.remove_prefix(rest.find('|') + 1);
+    others.push_back(text_of(rest.substr(0, rest.find('|'))));
+  }
   return json::object({{"section", json::text(key.section)},
-                       {"key", text_of(usual.substr(0, usual.find('|')))},
+                       {"key", text_of(usual)},
+                       {"others", json::list(others)},
                        {"what", json::text(key.what)},
                        {"found", json::text(key.found)},
                        {"least", json::number(key.first.least)},

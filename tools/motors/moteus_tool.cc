@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "drivers/protocols/moteus.h"
@@ -12,17 +14,8 @@ using moteus::Register;
 
 constexpr int kMoteusLastNumber = 126;
 
-struct MoteusShown {
-  Register reg;
-  const char* name;
-  const char* unit;
-};
-constexpr MoteusShown kMoteusShown[] = {
-    {Register::kModel, "model", ""},
-    {Register::kFirmware, "firmware", ""},
-    {Register::kRegisterMap, "register map", ""},
-    {Register::kHomeState, "home state", ""},
-};
+constexpr int kMostPolls = 10'000;  // of some sixty bytes: more than any firmware has to tell
+constexpr int kMostEmptyPolls = 50;
 
 std::uint32_t address(int number) { return moteus::command_id(static_cast<std::uint8_t>(number)); }
 
@@ -44,25 +37,44 @@ class MoteusTool final : public MotorTool {
     return Found{number, moteus::mode_text(static_cast<int>(state.mode))};
   }
 
-  std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
-    std::vector<Value> values;
-    for (const MoteusShown& shown : kMoteusShown) {
-      double value = 0.0;
-      const auto mine = [&](const CanFrame& frame) {
-        return frame.id == moteus::reply_id(static_cast<std::uint8_t>(number)) &&
-               moteus::decode_register(frame, shown.reg, &value);
-      };
-      if (!wire->ask(moteus::encode_read(shown.reg, address(number)), mine))
-        throw std::runtime_error(
-            fmt::format("register {:03X}h is not answered", static_cast<std::uint16_t>(shown.reg)));
-      values.push_back({shown.name, bus_tools::number(value), shown.unit});
-    }
+  Measured measure(Wire* wire, int number, bool /*fd*/) const override {
     const moteus::State state = state_of(wire, number);
-    values.push_back({"position", bus_tools::number(state.position_turns), "turns"});
-    values.push_back({"temperature", bus_tools::number(state.temperature_degC), "degC"});
-    values.push_back({"state", moteus::mode_text(static_cast<int>(state.mode)), ""});
-    values.push_back({"fault", state.fault == 0 ? "none" : moteus::fault_text(state.fault), ""});
-    return values;
+    return {.angle_rad = state.position_turns * moteus::kTurn_rad,
+            .velocity_rad_per_s = state.velocity_turns_per_s * moteus::kTurn_rad,
+            .torque_Nm = state.torque_Nm,
+            .temperature_degC = state.temperature_degC,
+            .supply_V = read(wire, number, Register::kVoltage),
+            .state = state_text(state)};
+  }
+
+  std::vector<Setting> settings(Wire* wire, int number, bool /*fd*/) const override {
+    std::vector<Setting> settings = {
+        {"model", bus_tools::number(read(wire, number, Register::kModel)), Setting::Use::kModel},
+        {"firmware", fmt::format("{:.0f}", read(wire, number, Register::kFirmware))}};
+    std::istringstream lines(command(wire, number, "conf enumerate"));
+    for (std::string name, value; lines >> name >> value;) {
+      const bool writable = name.starts_with("servo.") || name.starts_with("servopos.");
+      settings.push_back({name, value, writable ? Setting::Use::kWritable : Setting::Use::kOther,
+                          Format::kFloatOrNone});
+      if (name == "servo.pid_position.kp")
+        settings.back().robot_key = "motors.*.pid_position.kp_Nm_per_turn";
+      if (name == "servo.pid_position.kd")
+        settings.back().robot_key = "motors.*.pid_position.kd_Nms_per_turn";
+    }
+    return settings;
+  }
+  std::string_view not_read() const noexcept override {
+    return "restore writes servo and servopos: what addresses or calibrates is compared";
+  }
+
+  void write(Wire* wire, int number, const Setting& setting, double value,
+             bool /*fd*/) const override {
+    const std::string text = std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
+    command(wire, number, fmt::format("conf set {} {}", setting.name, text));
+  }
+  bool store(Wire* wire, int number, bool /*fd*/) const override {
+    command(wire, number, "conf write");
+    return true;
   }
 
   bool enabled(Wire* wire, int number, bool /*fd*/) const override {
@@ -82,6 +94,52 @@ class MoteusTool final : public MotorTool {
   }
 
  private:
+  static std::string state_text(const moteus::State& state) {
+    const std::string mode = moteus::mode_text(static_cast<int>(state.mode));
+    return state.fault == 0 ? mode : mode + ", " + moteus::fault_text(state.fault);
+  }
+
+  static double read(Wire* wire, int number, Register reg) {
+    double value = 0.0;
+    const auto mine = [&](const CanFrame& frame) {
+      return frame.id == moteus::reply_id(static_cast<std::uint8_t>(number)) &&
+             moteus::decode_register(frame, reg, &value);
+    };
+    if (!wire->ask(moteus::encode_read(reg, address(number)), mine))
+      throw std::runtime_error(
+          fmt::format("register {:03X}h is not answered", static_cast<std::uint16_t>(reg)));
+    return value;
+  }
+
+  /// What the drive answers to a line, up to its OK. Throws if it is an error, or none comes.
+  static std::string command(Wire* wire, int number, const std::string& line) {
+    std::string_view text;
+    const auto mine = [&](const CanFrame& frame) {
+      return frame.id == moteus::reply_id(static_cast<std::uint8_t>(number)) &&
+             moteus::decode_text(frame, &text);
+    };
+    const auto ask = [&](const CanFrame& request) {
+      const auto frame = wire->ask(request, mine);
+      if (!frame) throw std::runtime_error("its diagnostic channel is not answered");
+      static_cast<void>(moteus::decode_text(*frame, &text));  // of the frame that is kept
+      return std::string(text);
+    };
+    const CanFrame poll = moteus::encode_text_poll(address(number));
+    for (int polls = 0; polls < kMostPolls && !ask(poll).empty(); ++polls) {  // of somebody before
+    }
+    std::string answer = ask(moteus::encode_line(line + '\n', address(number)));
+    for (int polls = 0, empty = 0; polls < kMostPolls && empty < kMostEmptyPolls; ++polls) {
+      if (answer.ends_with("OK\r\n")) return answer.substr(0, answer.size() - 4);
+      if (answer.starts_with("ERR") && answer.ends_with('\n'))
+        throw std::runtime_error(fmt::format("it refuses '{}': {}", line,
+                                             answer.substr(0, answer.find_first_of("\r\n"))));
+      const std::string more = ask(poll);
+      empty = more.empty() ? empty + 1 : 0;
+      answer += more;
+    }
+    throw std::runtime_error(fmt::format("'{}' is not answered", line));
+  }
+
   static moteus::State state_of(Wire* wire, int number) {
     moteus::State state;
     const auto mine = [&](const CanFrame& frame) {

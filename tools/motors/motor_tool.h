@@ -2,22 +2,60 @@
 // motor_tools.cc. Nothing here commands a torque.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/yaml_reader.h"
 #include "tools/can/reading.h"
 #include "tools/motors/wire.h"
 
 namespace limber::motor_tools {
 
-using bus_tools::Value;
-
 struct Found {
   int number = 0;
   std::string details;  ///< "replies as 0x11"
+};
+
+/// How a setting is kept.
+enum class Format : std::uint8_t { kText, kFloat, kFloatOrNone, kInt16, kUint8, kUint16, kUint32 };
+/// Of a number; NaN is a value of kFloatOrNone alone.
+Range range_of(Format format) noexcept;
+
+/// One of the things that a motor has stored.
+struct Setting {
+  enum class Use : std::uint8_t {
+    kModel,     ///< tells the model: settings of another are not for this motor
+    kWritable,  ///< a number that restore writes
+    kOther,     ///< has a command of its own, or the maker's tool changes it
+  };
+  std::string name;   ///< by the maker's manual, with the unit
+  std::string value;  ///< so that it reads back as the same number; empty: not in this firmware
+  Use use = Use::kOther;
+  Format format = Format::kText;
+  /// The key of robot.yaml that has the same, "motors.*.mit_range.torque_Nm"; "most.torque_Nm": an
+  /// end that robot.yaml has by another name.
+  std::string robot_key = {};
+};
+
+/// A bit rate that a motor can have: of the data in CAN-FD frames, if it has those.
+struct BitRate {
+  std::int64_t bps;
+  std::uint8_t code;  ///< of the protocol
+};
+
+/// What a motor measures, behind its gear; NaN: its protocol does not tell.
+struct Measured {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  double angle_rad = kUnknown;
+  double velocity_rad_per_s = kUnknown;
+  double torque_Nm = kUnknown;
+  double temperature_degC = kUnknown;
+  double supply_V = kUnknown;
+  std::string state;  ///< in words, errors among them
 };
 
 class MotorTool {
@@ -34,14 +72,25 @@ class MotorTool {
   virtual CanFrame presence(int number, bool fd) const noexcept = 0;
   virtual std::optional<Found> found(const CanFrame& frame) const = 0;
 
+  Wire::Accept comes_from(int number) const;  ///< found() of this motor
+
   /// Whether its drives send the frame by themselves.
   virtual bool sends_unasked(const CanFrame& frame) const noexcept {
     static_cast<void>(frame);
     return false;
   }
 
-  /// What it has stored and measures. Throws std::runtime_error if it does not answer.
-  virtual std::vector<Value> show(Wire* wire, int number, bool fd) const = 0;
+  /// Throws std::runtime_error if it does not answer.
+  virtual Measured measure(Wire* wire, int number, bool fd) const = 0;
+  /// All of its settings that the protocol reads. Likewise.
+  virtual std::vector<Setting> settings(Wire* wire, int number, bool fd) const = 0;
+  /// What settings() lack of its family, as a sentence; empty: nothing.
+  virtual std::string_view not_read() const noexcept { return ""; }
+  /// Until its supply is switched off: a writable one of settings(). Throws std::runtime_error if
+  /// the drive refuses it.
+  virtual void write(Wire* wire, int number, const Setting& setting, double value, bool fd) const;
+  /// Keeps what was written. False: the drive cannot.
+  virtual bool store(Wire* wire, int number, bool fd) const;
   /// Whether its power stage is on.
   virtual bool enabled(Wire* wire, int number, bool fd) const = 0;
   /// Stored and read back. Throws std::runtime_error if it is not as wanted then, or the maker's
@@ -49,6 +98,12 @@ class MotorTool {
   virtual void set_number(Wire* wire, int number, int wanted, bool fd) const = 0;
   /// Makes where it is its zero, stored and read back. Likewise.
   virtual void set_zero(Wire* wire, int number, bool fd) const = 0;
+
+  /// Those that its protocol sets; empty: the maker's tool does.
+  virtual std::span<const BitRate> bit_rates() const noexcept { return {}; }
+  /// Sets one of them; what has become of it, in words. Throws std::runtime_error if the drive
+  /// refuses it.
+  virtual std::string set_bit_rate(Wire* wire, int number, const BitRate& rate, bool fd) const;
 
  protected:
   // What was set, read back; throw std::runtime_error if it is not so.

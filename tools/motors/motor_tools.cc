@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "common/config_error.h"
@@ -29,12 +30,42 @@ std::span<const MotorTool* const> all_tools() noexcept {
   return kAll;
 }
 
-void MotorTool::require_number(Wire* wire, int wanted, bool fd) const {
-  const auto there = [&](const CanFrame& answer) {
-    const auto motor = found(answer);
-    return motor && motor->number == wanted;
+Range range_of(Format format) noexcept {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  switch (format) {
+    case Format::kInt16:
+      return {-0x8000, 0x7FFF};
+    case Format::kUint8:
+      return {0, 0xFF};
+    case Format::kUint16:
+      return {0, 0xFFFF};
+    case Format::kUint32:
+      return {0, 0xFFFFFFFF};
+    default:
+      return {-kLargest, kLargest};
+  }
+}
+
+void MotorTool::write(Wire* /*wire*/, int /*number*/, const Setting& setting, double /*value*/,
+                      bool /*fd*/) const {
+  throw std::runtime_error(setting.name + ": its protocol writes no settings");
+}
+bool MotorTool::store(Wire* /*wire*/, int /*number*/, bool /*fd*/) const { return false; }
+
+std::string MotorTool::set_bit_rate(Wire* /*wire*/, int /*number*/, const BitRate& /*rate*/,
+                                    bool /*fd*/) const {
+  throw std::runtime_error("its protocol sets no bit rate: use its maker's tool");
+}
+
+Wire::Accept MotorTool::comes_from(int number) const {
+  return [this, number](const CanFrame& frame) {
+    const auto motor = found(frame);
+    return motor && motor->number == number;
   };
-  if (!wire->ask(presence(wanted, fd), there))
+}
+
+void MotorTool::require_number(Wire* wire, int wanted, bool fd) const {
+  if (!wire->ask(presence(wanted, fd), comes_from(wanted)))
     throw std::runtime_error(fmt::format("number {} does not answer", wanted));
 }
 

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <bit>
 #include <stdexcept>
 
 #include "drivers/protocols/robstride.h"
-#include "tools/motors/motor_tool.h"
+#include "tools/motors/registers.h"
 
 namespace limber::motor_tools {
 namespace {
@@ -15,24 +14,11 @@ using robstride::Type;
 constexpr double kRobstrideSave_s = 0.1;
 constexpr double kRobstrideReport_s = 0.5;
 
-struct RobstrideShown {
-  Parameter parameter;
-  const char* name;
-  const char* unit;
-  double scale;  ///< 0: a float32
-};
-constexpr RobstrideShown kRobstrideShown[] = {
-    {Parameter::kRunMode, "run mode", "", 1.0},
-    {Parameter::kPosition, "position", "rad", 0.0},
-    {Parameter::kVelocity, "velocity", "rad/s", 0.0},
-    {Parameter::kVoltage, "supply", "V", 0.0},
-    {Parameter::kTimeout, "time-out (0: off)", "s", robstride::kTimeoutCount_s},
-    {Parameter::kZeroAtStart, "zero at start (1: -pi to pi)", "", 1.0},
-};
+constexpr BitRate kRobstrideBitRates[] = {{1'000'000, 1}, {500'000, 2}, {250'000, 3}, {125'000, 4}};
 
 std::uint8_t as_number(int number) { return static_cast<std::uint8_t>(number); }
 
-class RobstrideTool final : public MotorTool {
+class RobstrideTool final : public RegisterTool {
  public:
   std::string_view protocol() const noexcept override { return "robstride"; }
   int last_number() const noexcept override { return robstride::kLastMotor; }
@@ -55,23 +41,33 @@ class RobstrideTool final : public MotorTool {
            (id.type == Type::kReport || id.type == Type::kFault);
   }
 
-  std::vector<Value> show(Wire* wire, int number, bool /*fd*/) const override {
-    std::vector<Value> values;
-    for (const RobstrideShown& shown : kRobstrideShown) {
-      const robstride::ParameterAnswer answer = read(wire, number, shown.parameter);
-      const double value = shown.scale > 0.0
-                               ? answer.raw * shown.scale
-                               : static_cast<double>(std::bit_cast<float>(answer.raw));
-      values.push_back({shown.name,
-                        answer.refused ? "not in this firmware" : bus_tools::number(value),
-                        answer.refused ? "" : shown.unit});
-    }
+  /// No torque: it is a share of a range that only the plate of the drive tells.
+  Measured measure(Wire* wire, int number, bool /*fd*/) const override {
+    const auto value = [&](Parameter parameter) {
+      return read_float(wire, number, static_cast<std::uint32_t>(parameter), false);
+    };
     const robstride::State state = report(wire, number);
-    const std::string faults = robstride::faults_text(state.faults);
-    values.push_back({"temperature", bus_tools::number(state.temperature_degC), "degC"});
-    values.push_back({"state", state.mode == robstride::Mode::kRun ? "running" : "stopped", ""});
-    values.push_back({"faults", faults.empty() ? "none" : faults, ""});
-    return values;
+    return {.angle_rad = value(Parameter::kPosition),
+            .velocity_rad_per_s = value(Parameter::kVelocity),
+            .temperature_degC = state.temperature_degC,
+            .supply_V = value(Parameter::kVoltage),
+            .state = state_text(state)};
+  }
+
+  std::vector<Setting> settings(Wire* wire, int number, bool fd) const override {
+    const auto presented = wire->ask(presence(number, fd), comes_from(number));
+    if (!presented) throw std::runtime_error("it does not answer");
+    std::vector<Setting> settings = RegisterTool::settings(wire, number, fd);
+    settings.push_back({"unique id", bus_tools::bytes(*presented), Setting::Use::kModel});
+    return settings;
+  }
+  std::string_view not_read() const noexcept override {
+    return "its protocol tells neither model nor firmware: the unique id stands for them";
+  }
+
+  bool store(Wire* wire, int number, bool /*fd*/) const override {
+    save(wire, number);
+    return true;
   }
 
   bool enabled(Wire* wire, int number, bool /*fd*/) const override {
@@ -89,13 +85,41 @@ class RobstrideTool final : public MotorTool {
     wire->send(robstride::encode_set_zero(as_number(number)), kRobstrideSave_s,
                [](const CanFrame&) {});
     save(wire, number);
-    const robstride::ParameterAnswer answer = read(wire, number, Parameter::kPosition);
-    if (answer.refused) throw std::runtime_error("its angle cannot be read back");
-    require_zero(std::bit_cast<float>(answer.raw));
+    require_zero(read_float(wire, number, static_cast<std::uint32_t>(Parameter::kPosition), false));
+  }
+
+  std::span<const BitRate> bit_rates() const noexcept override { return kRobstrideBitRates; }
+  std::string set_bit_rate(Wire* wire, int number, const BitRate& rate,
+                           bool /*fd*/) const override {
+    if (!wire->ask(robstride::encode_set_baud(as_number(number), rate.code), comes_from(number)))
+      throw std::runtime_error("its new bit rate is not answered");
+    return "answered; it counts when its supply was off, and its protocol cannot read it back";
   }
 
  private:
-  static robstride::ParameterAnswer read(Wire* wire, int number, Parameter parameter) {
+  static std::string state_text(const robstride::State& state) {
+    const std::string faults = robstride::faults_text(state.faults);
+    return (state.mode == robstride::Mode::kRun ? "running" : "stopped") +
+           (faults.empty() ? "" : ", " + faults);
+  }
+
+  const std::vector<StoredRegister>& stored() const override {
+    using enum Setting::Use;
+    static const std::vector<StoredRegister> kStored = {
+        {0x700B, "limit_torque (N m)", Format::kFloat, kWritable},
+        {0x7017, "limit_spd (rad/s)", Format::kFloat, kWritable},
+        {0x7018, "limit_cur (A)", Format::kFloat, kWritable},
+        {0x7026, "report period (1: 10 ms, 5 ms a count)", Format::kUint16, kWritable},
+        {0x7028, "CAN time-out (counts of 50 us, 0: off)", Format::kUint32, kWritable},
+        {0x7029, "zero at start (1: -pi to pi)", Format::kUint8, kOther},
+        {0x702A, "damper (1: none when off)", Format::kUint8, kWritable},
+        {0x702B, "add_offset (rad)", Format::kFloat, kOther},
+    };
+    return kStored;
+  }
+
+  std::optional<std::uint32_t> try_read(Wire* wire, int number, std::uint32_t parameter,
+                                        bool /*fd*/) const override {
     const auto index = static_cast<std::uint16_t>(parameter);
     robstride::ParameterAnswer answer;
     const auto mine = [&](const CanFrame& frame) {
@@ -104,26 +128,43 @@ class RobstrideTool final : public MotorTool {
     };
     if (!wire->ask(robstride::encode_read(as_number(number), index), mine))
       throw std::runtime_error(fmt::format("parameter {:04X} is not answered", index));
-    return answer;
+    return answer.refused ? std::nullopt : std::optional(answer.raw);
+  }
+
+  void put(Wire* wire, int number, const StoredRegister& reg, std::uint32_t raw,
+           bool /*fd*/) const override {
+    const auto index = static_cast<std::uint16_t>(reg.number);
+    const auto taken = [&](const CanFrame& frame) { return is_state(frame, number, Type::kState); };
+    if (!wire->ask(robstride::encode_write(as_number(number), index, raw), taken))
+      throw std::runtime_error(fmt::format("writing {} is not answered", reg.name));
+  }
+
+  /// Its fields are shares of ranges that are not known here.
+  static bool is_state(const CanFrame& frame, int number, Type type,
+                       robstride::State* state = nullptr) {
+    robstride::State read;
+    robstride::Id id{};
+    const bool is = robstride::split(frame, &id) && id.type == type &&
+                    robstride::decode_state(frame, {}, &read) && read.motor == as_number(number);
+    if (is && state != nullptr) *state = read;
+    return is;
   }
 
   static void save(Wire* wire, int number) {
     wire->send(robstride::encode_save(as_number(number)), kRobstrideSave_s, [](const CanFrame&) {});
   }
 
-  /// A state without a command: reports are switched on until one comes. Its fields are shares of
-  /// ranges that are not known here.
+  /// A state without a command: reports are switched on until one comes.
   static robstride::State report(Wire* wire, int number) {
     robstride::State state;
-    const auto mine = [&](const CanFrame& answer) {
-      robstride::Id id{};
-      return robstride::split(answer, &id) && id.type == Type::kReport &&
-             robstride::decode_state(answer, {}, &state) && state.motor == as_number(number);
+    const auto reported = [&](const CanFrame& frame) {
+      return is_state(frame, number, Type::kReport, &state);
     };
+    const auto ended = [&](const CanFrame& frame) { return is_state(frame, number, Type::kState); };
     wire->send(robstride::encode_report(as_number(number), true), 0.0, [](const CanFrame&) {});
-    const bool came = wire->await(mine, kRobstrideReport_s).has_value();
-    wire->send(robstride::encode_report(as_number(number), false), Wire::kAnswer_s,
-               [](const CanFrame&) {});
+    const bool came = wire->await(reported, kRobstrideReport_s).has_value();
+    wire->send(robstride::encode_report(as_number(number), false), 0.0, [](const CanFrame&) {});
+    static_cast<void>(wire->await(ended, Wire::kAnswer_s));
     if (!came) throw std::runtime_error("it does not report its state");
     return state;
   }

@@ -14,17 +14,21 @@ constexpr double kSecond_ns = 1e9;
 
 }  // namespace
 
-Wire::Wire(const std::string& address, bool fd, const Accept& unasked)
-    : address_(address), bus_(open_can_bus(address, fd)) {
+Wire::Wire(const std::string& address, bool fd, Accept unasked)
+    : address_(address), unasked_(std::move(unasked)), bus_(open_can_bus(address, fd)) {
+  require_quiet(kQuiet_s);
+}
+
+void Wire::require_quiet(double wait_s) {
   std::optional<CanFrame> foreign;
-  listen(kQuiet_s, [&](const CanFrame& frame) {
-    if (!frame.error && !unasked(frame)) foreign = frame;
+  listen(wait_s, [&](const CanFrame& frame) {
+    if (!frame.error && !unasked_(frame)) foreign = frame;
     return foreign.has_value();
   });
   if (foreign)
     throw std::runtime_error(fmt::format(
         "{}: somebody sends on this bus (identifier {:X}): end the stack, or the other program, "
-        "first; nothing was sent",
+        "first",
         address_, foreign->id));
 }
 

@@ -15,10 +15,13 @@ namespace limber::motor_tools {
 class Wire {
  public:
   using Accept = std::function<bool(const CanFrame&)>;
-  /// Opens the bus and listens for kQuiet_s. Throws ConfigError if it cannot be opened,
-  /// std::runtime_error if somebody else sends on it what is not `unasked`: commands of a driver,
-  /// or another program's.
-  Wire(const std::string& address, bool fd, const Accept& unasked);
+  /// Opens the bus and listens for kQuiet_s. Throws ConfigError if it cannot be opened, and as
+  /// require_quiet() does.
+  Wire(const std::string& address, bool fd, Accept unasked);
+
+  /// Listens for so long. Throws std::runtime_error if somebody else sends on it what is not
+  /// `unasked`: commands of a driver, or another program's.
+  void require_quiet(double wait_s);
 
   /// Sends until an answer comes, kTries times. Nothing: there was none. Throws std::runtime_error
   /// if the bus takes no frames.
@@ -40,6 +43,7 @@ class Wire {
   void put(const CanFrame& frame);
 
   std::string address_;
+  Accept unasked_;
   std::unique_ptr<CanBus> bus_;
 };
 

@@ -224,6 +224,15 @@ TEST_F(Node, RegistersRefuseWhatMakesNoSense) {
   write(35, 4);
 }
 
+TEST_F(Node, AtAnotherBitRateItNeitherHearsNorAnswers) {
+  EXPECT_EQ(read(35), 4u);  // 1 Mbit/s
+  write(35, 10);            // no code of the manual
+  EXPECT_EQ(send(frame(0x7FF, "0300552304000000")), "0300552304000000");
+  EXPECT_EQ(send(frame(0x7FF, "0300552303000000")), "0300552303000000");  // 500 kbit/s
+  EXPECT_EQ(send(frame(0x7FF, "0300332300000000")), "none");
+  EXPECT_EQ(send(frame(3, "FFFFFFFFFFFFFFFC")), "none");
+}
+
 TEST_F(Node, NewIdentifiersHoldFromTheNextFrameOn) {
   EXPECT_EQ(send(frame(0x7FF, "0300550721000000")), "0300550721000000");  // MST_ID 0x21
   EXPECT_EQ(reply_.id, 0x13u);

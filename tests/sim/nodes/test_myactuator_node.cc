@@ -174,6 +174,15 @@ TEST_F(MyactuatorNodeTest, AResetTakesItsTimeAndCountsFromASingleTurn) {
   EXPECT_EQ(send("141#9200000000000000"), "none");
 }
 
+TEST_F(MyactuatorNodeTest, AtAnotherBitRateItNeitherHearsNorAnswers) {
+  EXPECT_EQ(send("141#B400000000000001"), "none") << "1 Mbit/s, which it has";
+  EXPECT_EQ(send("141#9200000000000000"), "241#9200000000000000");
+  EXPECT_EQ(send("141#B400000000000000"), "none") << "500 kbit/s";
+  EXPECT_EQ(send("141#9200000000000000"), "none");
+  wait(2000 * kMs);
+  EXPECT_EQ(send("141#9200000000000000"), "none");
+}
+
 TEST_F(MyactuatorNodeTest, AZeroIsOneAfterAReset) {
   turn(1.0);
   EXPECT_EQ(send("141#6400000000000000").substr(0, 6), "241#64");

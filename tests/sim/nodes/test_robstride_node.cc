@@ -151,6 +151,11 @@ TEST_F(RobstrideNodeTest, ReportsComeUnaskedOnceSwitchedOn) {
   EXPECT_EQ(unasked(), "none");
 }
 
+TEST_F(RobstrideNodeTest, ABitRateIsAnsweredAndWaitsForThePower) {
+  EXPECT_EQ(send("1700FD01#0102030405060200"), "1FE#0100000000000000");
+  EXPECT_EQ(send("0000FD01#0000000000000000"), "1FE#0100000000000000");
+}
+
 TEST_F(RobstrideNodeTest, ZeroAndNumber) {
   joint_.theta = joint_.q = 1.0;
   EXPECT_EQ(send(kNothing).substr(8, 4), "8A2D") << "2607 of 16384 counts";

@@ -104,6 +104,8 @@ WRONG = [
     (["motors", "show", "can0"], "'motor'"),
     (["motors", "set-id", "virtual:nobody", "damiao_mit:1", "128"], "127"),
     (["motors", "zero", "can0"], "'motor'"),
+    (["motors", "dump"], "'buses"),
+    (["motors", "restore"], "'file'"),
     (["can", "dump", "--file", "{dir}/missing.log"], "does not exist"),
     (["can", "stats", "--duration", "-1"], "--duration"),
     (["can", "record"], "'file'"),

@@ -1,5 +1,6 @@
 """Commands for single motors, before they are an arm: `limber can motors ...`, or without `can`."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -7,7 +8,7 @@ import typer
 from limber.cli.options import become
 
 app = typer.Typer(
-    help="Find the motors on a bus; show what is stored in them; set number and zero.",
+    help="Find the motors on a bus; show, keep and set what is stored in them.",
     no_args_is_help=True,
 )
 
@@ -46,6 +47,51 @@ def zero(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     _become("zero", bus, fd, motor)
 
 
+@app.command(
+    "set-baud", epilog="Example: limber can motors set-baud can0 damiao_mit:3 5000000 --fd"
+)
+def set_baud(
+    bus: BusName,
+    motor: Motor,
+    rate: Annotated[int, typer.Argument(help="bit/s; of the data on a CAN-FD bus.")],
+    fd: Fd = False,
+) -> None:
+    """Give a motor another bit rate. It neither hears nor answers at its old one then."""
+    _become("set-baud", bus, fd, motor, str(rate))
+
+
+@app.command(epilog="Example: limber can motors watch can0 damiao_mit:1 damiao_mit:2")
+def watch(
+    bus: BusName,
+    motors: Annotated[
+        list[str] | None, typer.Argument(help="FAMILY:NUMBER; none: all that answer.")
+    ] = None,
+    fd: Fd = False,
+) -> None:
+    """Show what motors measure that are off, several times a second, until Ctrl-C."""
+    _become("watch", bus, fd, *(motors or []))
+
+
+@app.command(epilog="Example: limber can motors dump can0 --out motors.yaml")
+def dump(
+    buses: Annotated[list[str], typer.Argument(help="can0, or virtual:NAME; any number.")],
+    out: Annotated[Path | None, typer.Option("--out", help="File for it.")] = None,
+    fd: Fd = False,
+) -> None:
+    """Print the settings of all motors on these buses as YAML, for version control."""
+    file = [] if out is None else ["--out", str(out)]
+    become("limber-motors", "dump", *map(_address, buses), *file, *(["--fd"] if fd else []))
+
+
+@app.command(epilog="Example: limber can motors restore motors.yaml")
+def restore(file: Annotated[Path, typer.Argument(help="As dump wrote it.")]) -> None:
+    """Show how motors differ from a dump and write its settings: never number, zero or bit rate."""
+    become("limber-motors", "restore", str(file))
+
+
+def _address(bus: str) -> str:
+    return bus if ":" in bus else f"socketcan:{bus}"
+
+
 def _become(command: str, bus: str, fd: bool, *words: str) -> None:
-    address = bus if ":" in bus else f"socketcan:{bus}"
-    become("limber-motors", command, address, *words, *(["--fd"] if fd else []))
+    become("limber-motors", command, _address(bus), *words, *(["--fd"] if fd else []))

@@ -225,8 +225,14 @@ def check(
 def new(
     urdf: Annotated[Path, typer.Argument(help="URDF file.")],
     drives: Annotated[
-        str, typer.Option(help="Protocol of the drives, or its beginning: damiao, moteus, ...")
-    ],
+        str | None,
+        typer.Option(help="Protocol of the drives, or its beginning: damiao, moteus, ..."),
+    ] = None,
+    scan: Annotated[
+        list[str] | None,
+        typer.Option("--scan", help="Bus to find the motors on, can0; any number of times."),
+    ] = None,
+    fd: Annotated[bool, typer.Option("--fd", help="The buses of --scan are CAN-FD.")] = False,
     base: Annotated[str | None, typer.Option(help="Link the arm is fixed by.")] = None,
     tip: Annotated[str | None, typer.Option(help="Link the arm works with.")] = None,
     name: Annotated[str | None, typer.Option(help="Of the arm; default: of the file.")] = None,
@@ -235,7 +241,7 @@ def new(
     """Write a first robot folder and scenario for your own arm, from its URDF."""
     from limber.new import write as module
 
-    raise typer.Exit(module.write(urdf, (base, tip), drives, name, out, console))
+    raise typer.Exit(module.write(urdf, (base, tip), drives, (scan or [], fd), name, out, console))
 
 
 @groups.export.command(epilog="Example: limber export service my_arm")

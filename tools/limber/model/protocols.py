@@ -12,11 +12,13 @@ from limber.paths import captured, program
 @dataclass(frozen=True)
 class Key:
     """A key of robot.yaml that motors or joints of one protocol have. Its first value is `factor`
-    times the figure, at least `least`, or `word`; `found`: where an owner finds the true one.
+    times the figure, at least `least`, or `word`; `found`: where an owner finds the true one;
+    `others`: keys that may stand in its place.
     """
 
     section: str
     key: str
+    others: list[str]
     what: str
     found: str
     least: float

@@ -8,8 +8,8 @@ from math import isfinite, pi, sqrt
 
 import numpy as np
 
-from limber.model.protocols import Protocol
 from limber.new.facts import ArmFacts, JointFacts
+from limber.new.wiring import Motor
 
 SOFT_rad_per_s = 2.0 * pi  # natural frequency of the joints on their springs
 RATIO = 0.7
@@ -27,9 +27,9 @@ def three(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def number(value: float) -> str:
+def number(value: float, digits: int = 6) -> str:
     """As every YAML reader takes it: 4.0e-05, as 4e-05 is text to some."""
-    text = f"{value:.6g}"
+    text = f"{value:.{digits}g}"
     return text.replace("e", ".0e") if "e" in text and "." not in text else text
 
 
@@ -58,11 +58,12 @@ class JointGuess:
 
 @dataclass(frozen=True)
 class MotorGuess:
-    """Of all joints with the same torque and velocity. Torque at the joint, the rest before the
-    gear; `kp`, `kd`: the largest holding gains of its joints.
+    """Of all joints with the same torque, velocity and settings of the motor. Torque at the joint,
+    the rest before the gear; `kp`, `kd`: the largest holding gains of its joints.
     """
 
     name: str
+    wired: Motor
     slides: bool
     peak: float
     velocity: float
@@ -81,38 +82,40 @@ class Guesses:
     K_rotation: float
 
 
-def guess(arm: ArmFacts, drives: Protocol) -> Guesses:
-    names: dict[tuple[bool, float, float], str] = {}
-    joints = [_joint(facts, drives, names) for facts in arm.joints]
+def guess(arm: ArmFacts, wired: list[Motor]) -> Guesses:
+    """`wired`: the motor of each joint."""
+    names: dict[tuple, str] = {}
+    joints = [_joint(facts, motor, names) for facts, motor in zip(arm.joints, wired, strict=True)]
     motors = [
-        _motor(name, key, drives, [joint for joint in joints if joint.motor == name])
-        for key, name in names.items()
+        _motor(name, [one for one in zip(joints, wired, strict=True) if one[0].motor == name])
+        for name in names.values()
     ]
     K_x = three(float(np.clip(10.0 * arm.mass_kg, 5.0, 1000.0)))
     return Guesses(joints, motors, K_x, three(0.05 * K_x) if len(joints) >= 6 else 0.0)
 
 
-def _joint(
-    facts: JointFacts, drives: Protocol, names: dict[tuple[bool, float, float], str]
-) -> JointGuess:
+def _joint(facts: JointFacts, wired: Motor, names: dict[tuple, str]) -> JointGuess:
     weak = facts.effort < 1.2 * facts.gravity_home
     needed = three(max(SPARE * facts.gravity, 20.0 * facts.inertia, 0.5))
     torque = facts.effort if isfinite(facts.effort) and not weak else needed
     velocity = facts.velocity if isfinite(facts.velocity) else (0.3 if facts.slides else 2.0)
+    torque = min(torque, wired.most("torque_Nm"))
+    velocity = min(velocity, wired.most("velocity_rad_per_s"))
     turns = facts.kind == "continuous"
     low, high = facts.low, facts.high
     if not turns and not isfinite(high - low):
         low, high = (-0.2, 0.2) if facts.slides else (-3.0, 3.0)
-    carried = drives.most("position_rad")
+    carried = wired.most("position_rad")
     if isfinite(carried) and not facts.slides:
         most = 2.0 * pi if turns else carried
         low, high = max(low, -three(most)), min(high, three(most))
     inertia = facts.inertia + ROTOR_kgm2_per_Nm * torque
     K_q = three(min(SOFT_rad_per_s**2 * inertia, 1e4))
-    kp = three(min(4.0 * K_q, drives.most("kp_Nm_per_rad"), KP_MOST_Nm_per_rad))
+    kp = three(min(4.0 * K_q, wired.most("kp_Nm_per_rad"), KP_MOST_Nm_per_rad))
     kd = 2.0 * RATIO * sqrt(kp * inertia)
-    kd = three(min(kd, drives.most("kd_Nms_per_rad"), KD_MOST_Nms_per_rad))
-    key = (facts.slides, torque, velocity)
+    kd = three(min(kd, wired.most("kd_Nms_per_rad"), KD_MOST_Nms_per_rad))
+    stored = tuple((key, value) for key, value in wired.keys.items() if key.startswith("motors."))
+    key = (facts.slides, torque, velocity, wired.drives.word, stored)
     limits = (facts.effort, facts.velocity) if turns else (facts.effort, facts.velocity, facts.high)
     return JointGuess(
         facts,
@@ -129,19 +132,20 @@ def _joint(
     )
 
 
-def _motor(
-    name: str, key: tuple[bool, float, float], drives: Protocol, joints: list[JointGuess]
-) -> MotorGuess:
-    slides, peak, velocity = key
-    gear = drives.usual_gear_ratio
+def _motor(name: str, joints: list[tuple[JointGuess, Motor]]) -> MotorGuess:
+    first, wired = joints[0]
+    peak = first.torque
+    read = wired.key("motors.*", "gear_ratio")
+    gear = float(read[1]) if read else wired.drives.usual_gear_ratio
     return MotorGuess(
         name,
-        slides,
+        wired,
+        first.facts.slides,
         peak,
-        velocity,
+        first.velocity,
         gear,
         three(ROTOR_kgm2_per_Nm * peak / gear**2),
         three(peak / (PEAK_A * gear)),
-        max(joint.hold_kp for joint in joints),
-        max(joint.hold_kd for joint in joints),
+        max(joint.hold_kp for joint, _ in joints),
+        max(joint.hold_kd for joint, _ in joints),
     )

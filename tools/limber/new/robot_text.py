@@ -4,10 +4,10 @@ import json
 import re
 from math import isfinite
 
-from limber.model.protocols import Protocol
 from limber.new.facts import ArmFacts
 from limber.new.guesses import RATIO, Guesses, JointGuess, number
-from limber.new.motor_text import bus_lines, bus_names, motor_lines
+from limber.new.motor_text import READ, bus_lines, motor_lines
+from limber.new.wiring import Motor
 
 HEAD = """\
 # {name}: written by `limber new` from {urdf}, for {drives} drives.
@@ -48,23 +48,24 @@ def plain(text: str) -> str:
     return text if safe and text.lower() not in words else json.dumps(text)
 
 
-def text(name: str, arm: ArmFacts, guesses: Guesses, drives: Protocol, rate: int) -> str:
-    buses = bus_names(drives, len(arm.joints))
+def text(
+    name: str, arm: ArmFacts, guesses: Guesses, wired: list[Motor], left: list[Motor], rate: int
+) -> str:
+    """`wired`: the motor of each joint; `left`: motors that were found and have none."""
     head = HEAD.format(
         name=name,
         urdf=arm.urdf.name,
-        drives=drives.title,
+        drives=" and ".join(dict.fromkeys(motor.drives.title for motor in wired)),
         base=plain(arm.base),
         tip=plain(arm.tip),
         rate=rate,
     )
-    motors = [line for motor in guesses.motors for line in motor_lines(motor, drives)]
-    joints, taken = [], dict.fromkeys(buses, 0)
-    for joint, bus, home in zip(guesses.joints, buses, arm.home, strict=True):
-        taken[bus] += 1
-        joints += _joint_lines(joint, bus, taken[bus], float(home), drives)
+    motors = [line for motor in guesses.motors for line in motor_lines(motor)]
+    joints = []
+    for joint, motor, home in zip(guesses.joints, wired, arm.home, strict=True):
+        joints += _joint_lines(joint, motor, float(home))
     parts = [
-        head + "\n".join(bus_lines(name, drives, buses)),
+        head + "\n".join([*bus_lines(name, wired), *_left_lines(left)]),
         WATCHDOG,
         "motors:",
         "\n".join(motors) + "\n" + JOINTS.rstrip("\n"),
@@ -74,22 +75,34 @@ def text(name: str, arm: ArmFacts, guesses: Guesses, drives: Protocol, rate: int
     return "\n".join(parts) + "\n"
 
 
-def _joint_lines(
-    joint: JointGuess, bus: str, node: int, home: float, drives: Protocol
-) -> list[str]:
+def _left_lines(left: list[Motor]) -> list[str]:
+    if not left:
+        return []
+    lines = ["", "# Found, but not one a joint. Give each joint its bus, id and motor:"]
+    for motor in left:
+        keys = "".join(f", {key}: {value}" for key, value in motor.keys.items())
+        lines.append(f"#   {motor.word} on {motor.found_on}{keys}")
+    return lines
+
+
+def _joint_lines(joint: JointGuess, motor: Motor, home: float) -> list[str]:
+    drives = motor.drives
     rotary = not joint.facts.slides
     unit, force = ("rad", "Nm") if rotary else ("m", "N")
     stiffness, damping = ("Nm_per_rad", "Nms_per_rad") if rotary else ("N_per_m", "Ns_per_m")
     kp, kd = (number(gain) for gain in (joint.hold_kp, joint.hold_kd))
     digits = "0x{:02X}" if drives.hex_ids else "{}"
-    ids = [f"    id: {digits.format(node)} # guess: {drives.id_found}"]
+    order = f"found on {motor.found_on}, joints in order of number"
+    found = order if motor.found_on else drives.id_found
+    ids = [f"    id: {digits.format(motor.number)} # guess: {found}"]
     for key in drives.keys("joints.*"):
-        first = digits.format(node + int(key.least))
-        ids.append(f"    {key.key}: {first} # guess: {key.found}")
+        read = motor.key(key.section, key.key)
+        value = digits.format(int(read[1]) if read else motor.number + int(key.least))
+        ids.append(f"    {key.key}: {value} # {READ if read else f'guess: {key.found}'}")
     return [
         f"  {plain(joint.facts.name)}:",
         f"    motor: {joint.motor}",
-        f"    bus: {bus}",
+        f"    bus: {motor.bus}",
         *ids,
         "    sign: 1 # guess: -1 if the drive counts the other way",
         f"    offset_{unit}: 0 # guess: drive angle where the URDF's joint is at zero",
@@ -107,7 +120,12 @@ def _limit_lines(joint: JointGuess, unit: str, force: str) -> list[str]:
     ends = [f"    position_{end}_{unit}: {number(value)}" for end, value in _ends(joint)]
     if not joint.ignores:
         narrower = isfinite(joint.low) and (joint.low, joint.high) != (facts.low, facts.high)
-        return [f"{line} # the drive's frames carry no more" for line in ends] if narrower else []
+        lines = ends if narrower else []
+        if joint.velocity < facts.velocity:
+            lines.append(f"    velocity_limit_{unit}_per_s: {number(joint.velocity)}")
+        if joint.torque < facts.effort:
+            lines.append(f"    torque_limit_{force}: {number(joint.torque)}")
+        return [f"{line} # the drive's frames carry no more" for line in lines]
     return [
         "    urdf_limits: ignore # placeholders, or too weak for the weight; these count instead:",
         *(f"{line} # guess: mechanical stop, less a margin" for line in ends),
