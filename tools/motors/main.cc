@@ -105,7 +105,7 @@ int set_bit_rate(const Arguments& given) {
   require_off(motor, &wire, given.bus.fd);
   const std::string done = motor.tool->set_bit_rate(&wire, motor.number, wanted, given.bus.fd);
   std::printf(
-      "%s: %s\nAt its new rate it neither hears nor answers at another: set all motors of the bus, "
+      "%s: %s\nIt is silent at any other rate: set all motors of the bus, "
       "then the interface (ip link) and robot.yaml.\n",
       given.motor.c_str(), done.c_str());
   return kExitDone;

@@ -56,7 +56,7 @@ def set_baud(
     rate: Annotated[int, typer.Argument(help="bit/s; of the data on a CAN-FD bus.")],
     fd: Fd = False,
 ) -> None:
-    """Give a motor another bit rate. It neither hears nor answers at its old one then."""
+    """Give a motor another bit rate. It is silent at its old one then."""
     _become("set-baud", bus, fd, motor, str(rate))
 
 
