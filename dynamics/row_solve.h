@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "dynamics/level.h"
-
-namespace limber::dynamics::LIMBER_LEVEL {
+namespace limber::dynamics {
 
 /// 1 / pivot; not a number where the pivot is not positive and finite.
 [[gnu::always_inline]] inline double inverse_pivot(double pivot) noexcept {
@@ -24,7 +22,6 @@ namespace limber::dynamics::LIMBER_LEVEL {
 template <int N, int Lanes, typename EachPair>
 [[gnu::always_inline]] inline void eliminate(int n, double (&A)[N][Lanes],
                                              const EachPair& each_pair) noexcept {
-  if (n > N) __builtin_unreachable();
   if (n % 2 == 1) A[n][n] = 1.0;
   for (int k = 0; k < n; k += 2) {
     const double a = A[k][k], b = A[k + 1][k], c = A[k + 1][k + 1];
@@ -55,4 +52,4 @@ template <int N, int Columns>
   }
 }
 
-}  // namespace limber::dynamics::LIMBER_LEVEL
+}  // namespace limber::dynamics

@@ -17,6 +17,11 @@ std::vector<double> rotor_inertias(const Robot& robot) {
   return inertias;
 }
 
+template <typename Kernel>
+Pose tip_of(const Kernel& kernel) {
+  return {kernel.tip_position(), Eigen::Quaterniond(kernel.tip_rotation())};
+}
+
 }  // namespace
 
 ArmTerms::ArmTerms(int joints)
@@ -49,17 +54,7 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noe
 
 void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
                         ArmTerms* terms) noexcept {
-  kernel_->place(q);
-  kernel_->gravity(&terms->g);
-  kernel_->gravity_slope(&terms->g_slope);
-  terms->X_BT = placed_tip();
-  if (due.jacobian) kernel_->jacobian(&terms->J);
-  terms->V_BT.noalias() = terms->J * v;
-  if (due.jacobian || due.coriolis) kernel_->move(v, zero_);
-  if (due.jacobian) terms->Jdot_v = kernel_->tip_acceleration(terms->V_BT);
-  if (due.inertia || due.coriolis) kernel_->weigh();
-  if (due.inertia) kernel_->mass(&terms->M);
-  if (due.coriolis) kernel_->torque(&terms->Cv, &terms->CTv);
+  std::visit([&](auto& kernel) { evaluate_with(&kernel, q, v, due, terms); }, kernel_);
   if (due.inertia) {
     terms->B = rotor_inertia_;
     terms->M_total = terms->M;
@@ -73,8 +68,20 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
   }
 }
 
-Pose ArmModel::placed_tip() const noexcept {
-  return {kernel_->tip_position(), Eigen::Quaterniond(kernel_->tip_rotation())};
+template <typename Kernel>
+void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
+                             const TermsDue& due, ArmTerms* terms) noexcept {
+  kernel->place(q);
+  kernel->gravity(&terms->g);
+  kernel->gravity_slope(&terms->g_slope);
+  terms->X_BT = tip_of(*kernel);
+  if (due.jacobian) kernel->jacobian(&terms->J);
+  terms->V_BT.noalias() = terms->J * v;
+  if (due.jacobian || due.coriolis) kernel->move(v, zero_);
+  if (due.jacobian) terms->Jdot_v = kernel->tip_acceleration(terms->V_BT);
+  if (due.inertia || due.coriolis) kernel->weigh();
+  if (due.inertia) kernel->mass(&terms->M);
+  if (due.coriolis) kernel->torque(&terms->Cv, &terms->CTv);
 }
 
 Pose ArmModel::tip_pose(const VectorJ& q) noexcept { return tip(q).X_BT; }
@@ -83,65 +90,97 @@ Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept { return tip(q).J; }
 
 ArmModel::Tip ArmModel::tip(const VectorJ& q) noexcept {
   Tip tip{Pose(), Matrix6J(6, size_)};
-  kernel_->place(q);
-  tip.X_BT = placed_tip();
-  kernel_->jacobian(&tip.J);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        tip.X_BT = tip_of(kernel);
+        kernel.jacobian(&tip.J);
+      },
+      kernel_);
   return tip;
 }
 
 Vector6 ArmModel::jacobian_rate(const VectorJ& q, const VectorJ& v) noexcept {
-  kernel_->place(q);
-  kernel_->move(v, zero_);
-  return kernel_->tip_acceleration(kernel_->tip_twist());
+  return std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.move(v, zero_);
+        return kernel.tip_acceleration(kernel.tip_twist());
+      },
+      kernel_);
 }
 
 MatrixJ ArmModel::mass(const VectorJ& q) noexcept {
   MatrixJ M(size_, size_);
-  kernel_->place(q);
-  kernel_->weigh();
-  kernel_->mass(&M);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.mass(&M);
+      },
+      kernel_);
   return M;
 }
 
 VectorJ ArmModel::coriolis(const VectorJ& q, const VectorJ& v) noexcept {
   VectorJ Cv(size_), CTv(size_);
-  kernel_->place(q);
-  kernel_->weigh();
-  kernel_->move(v, zero_);
-  kernel_->torque(&Cv, &CTv);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.move(v, zero_);
+        kernel.torque(&Cv, &CTv);
+      },
+      kernel_);
   return Cv;
 }
 
 VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept {
   VectorJ tau(size_), CTv(size_), g(size_);
-  kernel_->place(q);
-  kernel_->weigh();
-  kernel_->move(v, a);
-  kernel_->torque(&tau, &CTv);
-  kernel_->gravity(&g);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.weigh();
+        kernel.move(v, a);
+        kernel.torque(&tau, &CTv);
+        kernel.gravity(&g);
+      },
+      kernel_);
   return tau + g + rotor_inertia_.cwiseProduct(a);
 }
 
 VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
   VectorJ g(size_);
-  kernel_->place(q);
-  kernel_->gravity(&g);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.gravity(&g);
+      },
+      kernel_);
   return g;
 }
 
 MatrixJ ArmModel::gravity_gradient(const VectorJ& q) noexcept {
   MatrixJ slope(size_, size_);
-  kernel_->place(q);
-  kernel_->gravity_gradient(&slope);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        kernel.gravity_gradient(&slope);
+      },
+      kernel_);
   return slope;
 }
 
 void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
-  kernel_->place(q);
-  terms->X_BT = placed_tip();
-  kernel_->jacobian(&terms->J);
-  kernel_->gravity(&terms->g);
-  kernel_->gravity_slope(&terms->g_slope);
+  std::visit(
+      [&](auto& kernel) {
+        kernel.place(q);
+        terms->X_BT = tip_of(kernel);
+        kernel.jacobian(&terms->J);
+        kernel.gravity(&terms->g);
+        kernel.gravity_slope(&terms->g_slope);
+      },
+      kernel_);
 }
 
 }  // namespace limber::controller

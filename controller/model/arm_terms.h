@@ -2,6 +2,8 @@
 // The equations are in dynamics/arm_kernel.h.
 #pragma once
 
+#include <variant>
+
 #include "common/types.h"
 #include "controller/kinds/pose.h"
 #include "controller/model/singularity.h"
@@ -93,7 +95,9 @@ class ArmModel {
   void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
-  Pose placed_tip() const noexcept;
+  template <typename Kernel>
+  void evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v, const TermsDue& due,
+                     ArmTerms* terms) noexcept;
 
   VectorJ rotor_inertia_;
   VectorJ zero_;

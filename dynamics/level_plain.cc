@@ -1,2 +1,0 @@
-// What every processor has: SSE2, or NEON.
-#include "dynamics/row_level.h"
