@@ -121,7 +121,7 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
     const double load_Nm = load(rest->sudden);
     if (observed_s_ < kSettled_s) {
       rest->residual = observer_.residual();
-      if (!rest->sudden) rest->load_Nm = load_Nm;
+      rest->load_Nm = load_Nm;
     }
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
