@@ -178,7 +178,6 @@ void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
         terms->X_BT = tip_of(kernel);
         kernel.jacobian(&terms->J);
         kernel.gravity(&terms->g);
-        kernel.gravity_slope(&terms->g_slope);
       },
       kernel_);
 }

@@ -17,7 +17,7 @@ namespace limber::controller {
 /// carries the weight; where that grows on the way, as with the angle of a rigid joint it does, its
 /// mean over the way), and j a third of what the torque's rate limit makes of it as jerk:
 ///
-///   u_most(d) = min(0.9 velocity limit, s(d; kappa, a))           speed that can be stopped in d
+///   u_most(d) = min(0.8 velocity limit, s(d; kappa, a))           speed that can be stopped in d
 ///   a_most    = d/dt u_most + s(u_most - u; gamma, j)             acceleration that keeps to it
 ///   s(x; k, c) = k x near zero, then sqrt(2 c (x - c / (2 k^2)))  from x = c / k^2 on
 ///

@@ -6,10 +6,6 @@ is here is the drive behind it, with the profile's state machine. Its link does 
 
 from __future__ import annotations
 
-import threading
-from contextlib import contextmanager
-
-import can
 import canopen
 from canopen.objectdictionary import ODVariable
 
@@ -34,26 +30,6 @@ def multicast_group(name: str) -> str:
         value = (value ^ letter) * 16777619 % 2**32
     value ^= value >> 16
     return f"239.74.{value >> 8 & 255}.{value & 255}"
-
-
-@contextmanager
-def sending(robot: str, frame: can.Message, every_s: float = 0.02):
-    """Another program on the bus."""
-    end = threading.Event()
-
-    def send() -> None:
-        group = multicast_group(robot)
-        with can.Bus(interface="udp_multicast", channel=group, hop_limit=0) as bus:
-            while not end.wait(every_s):
-                bus.send(frame)
-
-    thread = threading.Thread(target=send)
-    thread.start()
-    try:
-        yield
-    finally:
-        end.set()
-        thread.join()
 
 
 class LocalDrive:

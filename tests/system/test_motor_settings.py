@@ -7,8 +7,8 @@ import struct
 import can
 import pytest
 import yaml
-from local_drive import multicast_group, sending
-from motor_bus import forgetful_drive, frames_of
+from local_drive import multicast_group
+from motor_bus import forgetful_drive, frames_of, sending
 
 TIMEOUT, OVER_TEMPERATURE = "TIMEOUT (counts of 50 us)", "over-temperature limit (degC)"
 EDITS = {

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 import can
 import pytest
 import yaml
-from local_drive import multicast_group, sending
-from motor_bus import forgetful_drive, frames_of
+from local_drive import multicast_group
+from motor_bus import forgetful_drive, frames_of, sending
 
 from stack import ROOT
 

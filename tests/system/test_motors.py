@@ -6,8 +6,8 @@ import struct
 
 import can
 import pytest
-from local_drive import multicast_group, sending
-from motor_bus import forgetful_drive, frames_of
+from local_drive import multicast_group
+from motor_bus import forgetful_drive, frames_of, sending
 
 ARMS = {
     "axol": ("myactuator", (1, 2, 3, 4, 5)),

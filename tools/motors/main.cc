@@ -28,6 +28,16 @@ struct Arguments {
   bool yaml = false;
 };
 
+/// An entry of a YAML list: what it has stored of robot.yaml's keys.
+void print_for_robot(const Motor& motor, Wire* wire, bool fd) {
+  std::string keys;
+  for (const Setting& one : settings_of(motor, wire, fd))
+    if (!one.robot_key.empty() && !one.value.empty())
+      keys += fmt::format("{}: {}, ", one.robot_key, one.value);
+  fmt::print("- {{family: {}, number: {}, keys: {{{}}}}}\n", motor.tool->protocol(), motor.number,
+             keys);
+}
+
 int list(const Arguments& given) {
   Wire wire = open(given.bus);
   std::vector<Motor> motors;
@@ -35,14 +45,8 @@ int list(const Arguments& given) {
     motors.push_back(motor);
     if (!given.yaml) fmt::print("{}  {}\n", motor.word(), found.details);
   });
-  for (const Motor& motor : given.yaml ? motors : std::vector<Motor>()) {
-    std::string keys;
-    for (const Setting& one : settings_of(motor, &wire, given.bus.fd))
-      if (!one.robot_key.empty() && !one.value.empty())
-        keys += fmt::format("{}: {}, ", one.robot_key, one.value);
-    fmt::print("- {{family: {}, number: {}, keys: {{{}}}}}\n", motor.tool->protocol(), motor.number,
-               keys);
-  }
+  if (given.yaml)
+    for (const Motor& motor : motors) print_for_robot(motor, &wire, given.bus.fd);
   if (!given.bus.fd) spdlog::info("moteus motors are found with --fd");
   if (!motors.empty()) return kExitDone;
   spdlog::error(
