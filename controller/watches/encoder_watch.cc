@@ -40,8 +40,8 @@ EncoderWatch::EncoderWatch(const Robot& robot)
     : observer_(VectorJ::Constant(robot.size(), std::min(kObserver_per_s, robot.rate_hz)),
                 1.0 / robot.rate_hz) {
   for (const JointConfig& joint : robot.joints)
-    joints_.push_back(
-        {friction_bound(joint), joint.torque_limit_Nm, stretch_bound(joint), std::nullopt});
+    joints_.push_back({friction_bound(joint), joint.torque_limit_Nm, joint.rigid(),
+                       stretch_bound(joint), std::nullopt});
 }
 
 void EncoderWatch::reset() noexcept {
@@ -97,6 +97,14 @@ double EncoderWatch::held_Nm(const joint_state_t& state, int i, const MatrixJ& M
   return held;
 }
 
+bool EncoderWatch::Joint::stops_suddenly(double speed, double inertia, double load_Nm,
+                                         double dt_s) const noexcept {
+  const double way = std::abs(speed) * dt_s;
+  const double contact_Nm = rigid ? std::abs(load_Nm) + limit_Nm * way / kGivesWay : limit_Nm;
+  const double brakes_Nm = friction_Nm + std::min(limit_Nm, contact_Nm);
+  return std::abs(speed) >= std::max(kSudden, brakes_Nm / inertia * dt_s);
+}
+
 int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept {
   const int n = state.num_joints;
   observer_.update(model.M * joints_of(state.v, n), joints_of(state.tau_applied, n),
@@ -104,15 +112,15 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
   observed_s_ += dt_s;
   for (int i = 0; i < n; ++i) {
     if (state.age_cycles[i] > 0) continue;
-    auto& [friction_Nm, limit_Nm, stretch_Nm, rest] = joints_[static_cast<std::size_t>(i)];
+    Joint& joint = joints_[static_cast<std::size_t>(i)];
+    std::optional<Rest>& rest = joint.rest;
     const double M_ii = model.M(i, i);
     const auto load = [&](bool sudden) -> double {
       return sudden ? state.tau_applied[i] - model.gravity[i] : -observer_.residual()[i];
     };
     if (!rest || !rest->continues(state, i)) {
       const double speed = rest ? rest->theta_dot : 0.0;
-      const bool sudden =
-          std::abs(speed) >= std::max(kSudden, (limit_Nm + friction_Nm) / M_ii * dt_s);
+      const bool sudden = joint.stops_suddenly(speed, M_ii, load(true), dt_s);
       rest = {state.theta[i], state.q[i],   state.theta_dot[i],         state.v[i],
               load(sudden),   state.tau[i], std::to_array(state.theta), observer_.residual(),
               sudden,         speed};
@@ -126,9 +134,9 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
     const double least_Nm = std::min(0.0, rest->load_Nm);
     const double most_Nm = std::max(0.0, rest->load_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
-    const double braking_Nm = rest->sudden ? 0.0 : friction_Nm + held_Nm(state, i, model.M);
+    const double braking_Nm = rest->sudden ? 0.0 : joint.friction_Nm + held_Nm(state, i, model.M);
     rest->move(tau / M_ii, braking_Nm / M_ii, dt_s);
-    if (rest->stretched(state.tau[i], stretch_Nm, dt_s)) return i;
+    if (rest->stretched(state.tau[i], joint.stretch_Nm, dt_s)) return i;
     const double angle = std::abs(rest->expected_angle);
     if (rest->sudden) {
       if (rest->stood_s >= kStood_s && angle >= kCoasted) return i;

@@ -25,11 +25,12 @@ namespace limber::controller {
 /// wall held, and may still hold or have let go since. A joint that truly stops is seen to slow
 /// down, so that v_0 is next to nothing. Found is
 ///
-///   - a sudden stop: v_0 is kSudden at least, and more than torque limit and friction together can
-///     brake within a cycle. Nothing gives way so little that it stops an arm within a cycle to the
-///     bit. So friction is left out, and integral v dt >= kCoasted is enough, after kStood_s: a
-///     drive may read its encoder less often than it answers. The jump of speed is in r, too: load
-///     is tau - g here;
+///   - a sudden stop: v_0 is kSudden at least, and more than can be braked within a cycle by
+///     friction and by something hard in the joint's way, which gives way by kGivesWay at the
+///     torque limit and holds what drives the joint; at most by the torque limit. Springs stop
+///     their rotor faster: for them always by the torque limit. So friction is left out, and
+///     integral v dt >= kCoasted is enough, after kStood_s: a drive may read its encoder less often
+///     than it answers. The jump of speed is in r, too: load is tau - g here;
 ///   - else integral v dt >= kExpected while the arm moves: another joint by kOthers at least, as
 ///     it does when this one swings unseen, and does not when the whole arm leans against
 ///     something. A wrist that hangs on to nothing may turn without moving another joint: not
@@ -63,9 +64,10 @@ class EncoderWatch {
   static constexpr double kExpected = 0.03;  ///< rad (m for prismatic joints)
   static constexpr double kCoasted = 0.01;   ///< likewise
   static constexpr double kStood_s = 0.01;
-  static constexpr double kSudden = 0.05;  ///< rad/s (m/s)
-  static constexpr double kOthers = 0.01;  ///< likewise
-  static constexpr double kYields = 2.5;   ///< rad/s (m/s)
+  static constexpr double kSudden = 0.05;    ///< rad/s (m/s)
+  static constexpr double kGivesWay = 1e-3;  ///< rad (m)
+  static constexpr double kOthers = 0.01;    ///< likewise
+  static constexpr double kYields = 2.5;     ///< rad/s (m/s)
   static constexpr double kFeltShare = 0.7;
   static constexpr double kHeldShare = 0.7;
   static constexpr double kStretchShare = 0.01;
@@ -114,8 +116,11 @@ class EncoderWatch {
     double contradicts_s = 0.0;   ///< in a row
   };
   struct Joint {
+    bool stops_suddenly(double speed, double inertia, double load_Nm, double dt_s) const noexcept;
+
     double friction_Nm;
     double limit_Nm;
+    bool rigid;
     double stretch_Nm;  ///< of the spring's torque; infinite for joints that are not watched so
     std::optional<Rest> rest;
   };

@@ -179,8 +179,10 @@ TEST(EncoderWatchEdges, ThreeHundredthsAreExpectedAtLeast) {
 
 /// Cycles of `dt_s` that a joint stands still after `speed` before it is found; -1: not in 10,000.
 /// No other joint moves. Friction: 2 N m; with the limit of 40 N m it brakes by 21 rad/s^2.
-int cycles_after(double speed, double dt_s = 1e-3) {
-  Bench bench;
+int cycles_after(
+    double speed, double dt_s = 1e-3,
+    const std::function<void(JointConfig&)>& change = [](JointConfig&) {}) {
+  Bench bench(change);
   bench.state().theta_dot[1] = speed;
   bench.next(dt_s);
   bench.state().theta_dot[1] = 0.0;
@@ -231,6 +233,45 @@ TEST(EncoderWatchEdges, AStopThatMotorAndFrictionCanMakeIsNotSudden) {
     EXPECT_EQ(cycles_after(sign * 0.2099, 0.01), -1);
     EXPECT_EQ(cycles_after(sign * 0.2101, 0.01), 5);
   }
+}
+
+// A hard contact gives way by a thousandth at the torque limit: at v within 6.8 ms 6.8 v
+// thousandths are 272 v N m, friction is 2 N m, and 2 kg m^2 lose v by 294.1 v N m. From 0.0905
+// rad/s on.
+TEST(EncoderWatchEdges, AStopThatAHardContactCanMakeIsNotSudden) {
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(cycles_after(sign * 0.0902, 0.0068), -1);
+    EXPECT_GT(cycles_after(sign * 0.0909, 0.0068), 0);
+  }
+}
+
+// Within 5 ms: 400 v N m for the stop, 200 v of the contact, 2 of friction, 15 of the motor.
+TEST(EncoderWatchEdges, WhatDrivesTheJointMayBrakeItToo) {
+  const auto found = [](double speed, double motor_Nm, double gravity) {
+    Bench bench;
+    bench.torque(motor_Nm, gravity);
+    bench.state().theta_dot[1] = bench.state().v[1] = speed;
+    bench.next(0.005, gravity);
+    bench.state().theta_dot[1] = bench.state().v[1] = 0.0;  // a jump that the residual shows
+    for (int k = 0; k < 1000; ++k)
+      if (bench.next(0.005, gravity) == 1) return true;
+    return false;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_FALSE(found(sign * 0.0849, -15.0, 0.0));
+    EXPECT_FALSE(found(sign * 0.0849, 15.0, 0.0));
+    EXPECT_TRUE(found(sign * 0.0851, 15.0, 0.0));
+    EXPECT_TRUE(found(sign * 0.0849, 15.0, 15.0)) << "the weight is carried";
+  }
+}
+
+// Within 5 ms: 21 rad/s^2 5 ms = 0.105 rad/s.
+TEST(EncoderWatchEdges, ASpringStopsItsRotorByTheTorqueLimit) {
+  const auto elastic = [](JointConfig& joint) {
+    joint.transmission.kind = TransmissionKind::kElastic;
+  };
+  EXPECT_EQ(cycles_after(0.1049, 0.005, elastic), -1);
+  EXPECT_GT(cycles_after(0.1051, 0.005, elastic), 0);
 }
 
 TEST(EncoderWatchEdges, AfterASuddenStopTheTorqueGoesOnToo) {
