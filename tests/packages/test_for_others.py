@@ -31,9 +31,10 @@ int main() {
   body.R << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // the axis lies
   chain.bodies = {body};
   chain.frames = {{0}};
-  auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
+  const auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
   VectorJ g(1);
-  std::visit([&](auto& k) { k.place(VectorJ::Zero(1)); k.gravity(&g); }, kernel);
+  kernel->place(VectorJ::Zero(1));
+  kernel->gravity(&g);
   std::printf("%.3f\\n", std::abs(g[0]));
 }
 """
