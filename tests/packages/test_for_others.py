@@ -31,7 +31,7 @@ int main() {
   body.R << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // the axis lies
   chain.bodies = {body};
   chain.frames = {{0}};
-  const auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
+  auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
   VectorJ g(1);
   kernel->place(VectorJ::Zero(1));
   kernel->gravity(&g);
