@@ -28,6 +28,10 @@ if(LIMBER_SANITIZE MATCHES address AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # g++ 12 aligns their frames for AVX-512, but not where it keeps frames to find uses after return (its bug 110027).
   list(APPEND LIMBER_ROW_OPTIONS --param=asan-use-after-return=0)
 endif()
+if(LIMBER_SANITIZE MATCHES address)
+  # Each number that an inlined line passes on would be watched by itself: minutes a file instead of seconds.
+  list(APPEND LIMBER_ROW_OPTIONS -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
+endif()
 option(LIMBER_SANITIZE_ALL "Sanitizers also for the tests that are full of Eigen" OFF)
 option(LIMBER_FUZZER "Link the fuzz targets with libFuzzer (clang)" OFF)
 

@@ -1,6 +1,6 @@
 // The dynamics of a serial arm, one algorithm for all terms. Every line below is one line of
-// arm_kernel.cc, which runs over all joints at once; what is summed along the arm, and the poses
-// X_i = X_(i-1) X_fixed,i X_joint,i(q_i), go over 1, 2, 4, ... neighbours.
+// row_kernel.h, which runs over all joints at once; the poses X_i = X_(i-1) X_fixed,i
+// X_joint,i(q_i) alone are multiplied joint by joint.
 //
 // All vectors are in base axes. Twists, momenta and wrenches are taken at the base origin, linear
 // part first; z_i is the axis of joint i and p_i a point on it. Body i has mass m, centre of mass
@@ -23,94 +23,83 @@
 // angular part of S_j.
 #pragma once
 
-#include <variant>
+#include <memory>
+#include <utility>
 
 #include "common/types.h"
 #include "dynamics/body_chain.h"
-#include "dynamics/joint_rows.h"
 
 #pragma GCC visibility push(default)
 namespace limber::dynamics {
 
-/// For arms of at most N joints. place() comes first; each of the others says what it needs
-/// besides. Results have as many entries as the arm has joints. After construction all may be
-/// called in the cycle.
-template <int N>
+/// place() comes first; each of the others says what it needs besides. Results have as many entries
+/// as the arm has joints. All may be called in the cycle.
 class ArmKernel {
  public:
-  /// Gravity: acceleration in base axes, m/s^2.
-  ArmKernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
+  virtual ~ArmKernel() = default;
+  /// Allocates: set-up only.
+  virtual std::unique_ptr<ArmKernel> copy() const = 0;
   /// Another mass of a body, from the next place() on.
-  void set_mass(int body, const MassProperties& mass) noexcept;
+  virtual void set_mass(int body, const MassProperties& mass) noexcept = 0;
 
   /// Poses of all bodies, S, c and h.
-  void place(const VectorJ& q) noexcept;
-  Eigen::Matrix3d rotation(int body) const noexcept;
-  Eigen::Vector3d position(int body) const noexcept { return X_.p.at(body); }
-  Eigen::Vector3d centre_of_mass(int body) const noexcept { return c_.at(body); }
-  Eigen::Vector3d axis(int body) const noexcept { return X_.R_z.at(body); }
+  virtual void place(const VectorJ& q) noexcept = 0;
+  virtual Eigen::Matrix3d rotation(int body) const noexcept = 0;
+  virtual Eigen::Vector3d position(int body) const noexcept = 0;
+  virtual Eigen::Vector3d centre_of_mass(int body) const noexcept = 0;
+  virtual Eigen::Vector3d axis(int body) const noexcept = 0;
   const Eigen::Matrix3d& tip_rotation() const noexcept { return R_tip_; }
   const Eigen::Vector3d& tip_position() const noexcept { return p_tip_; }
   /// Of the tip.
-  void jacobian(Matrix6J* J) const noexcept;
+  virtual void jacobian(Matrix6J* J) const noexcept = 0;
   /// tau_i += S_i . F for the joints that carry the body; F is a wrench at the base origin.
-  void add_wrench(int body, const Vector6& F, VectorJ* tau) const noexcept;
+  virtual void add_wrench(int body, const Vector6& F, VectorJ* tau) const noexcept = 0;
   /// Of gravity, zero with every mass at the height of the base origin, J.
-  double potential_energy() const noexcept;
-  void gravity(VectorJ* g) const noexcept;
-  void gravity_gradient(MatrixJ* slope) const noexcept;
+  virtual double potential_energy() const noexcept = 0;
+  virtual void gravity(VectorJ* g) const noexcept = 0;
+  virtual void gravity_gradient(MatrixJ* slope) const noexcept = 0;
   /// Its diagonal.
-  void gravity_slope(VectorJ* slope) const noexcept;
+  virtual void gravity_slope(VectorJ* slope) const noexcept = 0;
 
   /// I_O of each body.
-  void weigh() noexcept;
+  virtual void weigh() noexcept = 0;
   /// After weigh().
-  void mass(MatrixJ* M) const noexcept;
+  virtual void mass(MatrixJ* M) const noexcept = 0;
 
   /// V and A.
-  void move(const VectorJ& v, const VectorJ& a) noexcept;
+  virtual void move(const VectorJ& v, const VectorJ& a) noexcept = 0;
   /// After move(): V of a body.
-  Vector6 twist(int body) const noexcept;
+  virtual Vector6 twist(int body) const noexcept = 0;
   /// After move(): of the tip, taken at its origin.
-  Vector6 tip_twist() const noexcept;
+  virtual Vector6 tip_twist() const noexcept = 0;
   /// After move(): acceleration of the tip, which moves with the twist V_BT.
-  Vector6 tip_acceleration(const Vector6& V_BT) const noexcept;
+  virtual Vector6 tip_acceleration(const Vector6& V_BT) const noexcept = 0;
   /// After weigh() and move(): M a + C v, and C^T v unless that is null.
-  void torque(VectorJ* tau, VectorJ* CTv) const noexcept;
+  virtual void torque(VectorJ* tau, VectorJ* CTv) const noexcept = 0;
 
- private:
-  // What the members of these names do, over rows; compiled for each kind of processor.
-  void place_rows(const VectorJ& q) noexcept;
-  void spread_rows() noexcept;
-  void weigh_rows() noexcept;
-  void move_rows(const VectorJ& v, const VectorJ& a) noexcept;
-  void gravity_rows(VectorJ* g) const noexcept;
-  void mass_rows(MatrixJ* M) const noexcept;
-  void torque_rows(VectorJ* tau, VectorJ* CTv) const noexcept;
-  void place_tip() noexcept;
-  Row3<N> linear_momentum() const noexcept;
-
-  // Of the chain.
-  BodyChain chain_;
-  int size_;
-  Eigen::Vector3d gravity_;
-  Row<N> m_, carried_m_;   // of the body; of all bodies that its joint carries
-  Row<N> turns_, slides_;  // 1 for a joint of the kind, else 0
-  RowPose<N> fixed_;       // in the body before, at joint position zero
-  Row3<N> com_;            // in body axes
-  RowSymmetric<N> I_C_;    // about the centre of mass, body axes
-  // Of the present state.
-  RowPose<N> X_;
-  Row6<N> S_;
-  Row3<N> c_, h_, carried_h_;
-  RowSymmetric<N> I_O_;
-  Row6<N> V_, V_x_S_, A_;
+ protected:
   Eigen::Matrix3d R_tip_;
   Eigen::Vector3d p_tip_;
 };
 
-/// The smaller one that has room for the chain.
-using AnyArmKernel = std::variant<ArmKernel<8>, ArmKernel<16>>;
+/// Copied with its holder, in set-up only.
+class AnyArmKernel {
+ public:
+  explicit AnyArmKernel(std::unique_ptr<ArmKernel> kernel) : kernel_(std::move(kernel)) {}
+  AnyArmKernel(const AnyArmKernel& other) : kernel_(other.kernel_->copy()) {}
+  AnyArmKernel& operator=(AnyArmKernel other) noexcept {
+    kernel_ = std::move(other.kernel_);
+    return *this;
+  }
+  ArmKernel* operator->() noexcept { return kernel_.get(); }
+  const ArmKernel* operator->() const noexcept { return kernel_.get(); }
+
+ private:
+  std::unique_ptr<ArmKernel> kernel_;
+};
+
+/// With the least room for the chain, for this processor. Gravity: acceleration in base axes,
+/// m/s^2. Set-up only.
 AnyArmKernel arm_kernel(const BodyChain& chain, const Eigen::Vector3d& gravity);
 
 }  // namespace limber::dynamics

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-namespace limber::dynamics {
+#include "dynamics/level.h"
+
+namespace limber::dynamics::LIMBER_LEVEL {
 
 /// 1 / pivot; not a number where the pivot is not positive and finite.
 [[gnu::always_inline]] inline double inverse_pivot(double pivot) noexcept {
@@ -22,6 +24,7 @@ namespace limber::dynamics {
 template <int N, int Lanes, typename EachPair>
 [[gnu::always_inline]] inline void eliminate(int n, double (&A)[N][Lanes],
                                              const EachPair& each_pair) noexcept {
+  if (n > N) __builtin_unreachable();
   if (n % 2 == 1) A[n][n] = 1.0;
   for (int k = 0; k < n; k += 2) {
     const double a = A[k][k], b = A[k + 1][k], c = A[k + 1][k + 1];
@@ -44,7 +47,7 @@ template <int N, int Lanes, typename EachPair>
 /// X of [S X], n rows, by S^-1 X; likewise.
 template <int N, int Columns>
 [[gnu::always_inline]] inline void substitute(int n, double (&A)[N][N + Columns]) noexcept {
-  for (int k = n - 1; k > 1; --k) {
+  for (int k = std::min(n, N) - 1; k > 1; --k) {
     for (int i = (k & ~1) - 1; i >= 0; --i) {
       const double f = A[i][k];
       for (int l = N; l < N + Columns; ++l) A[i][l] -= f * A[k][l];
@@ -52,4 +55,4 @@ template <int N, int Columns>
   }
 }
 
-}  // namespace limber::dynamics
+}  // namespace limber::dynamics::LIMBER_LEVEL

@@ -17,11 +17,6 @@ std::vector<double> rotor_inertias(const Robot& robot) {
   return inertias;
 }
 
-template <typename Kernel>
-Pose tip_of(const Kernel& kernel) {
-  return {kernel.tip_position(), Eigen::Quaterniond(kernel.tip_rotation())};
-}
-
 }  // namespace
 
 ArmTerms::ArmTerms(int joints)
@@ -54,7 +49,17 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noe
 
 void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
                         ArmTerms* terms) noexcept {
-  std::visit([&](auto& kernel) { evaluate_with(&kernel, q, v, due, terms); }, kernel_);
+  kernel_->place(q);
+  kernel_->gravity(&terms->g);
+  kernel_->gravity_slope(&terms->g_slope);
+  terms->X_BT = placed_tip();
+  if (due.jacobian) kernel_->jacobian(&terms->J);
+  terms->V_BT.noalias() = terms->J * v;
+  if (due.jacobian || due.coriolis) kernel_->move(v, zero_);
+  if (due.jacobian) terms->Jdot_v = kernel_->tip_acceleration(terms->V_BT);
+  if (due.inertia || due.coriolis) kernel_->weigh();
+  if (due.inertia) kernel_->mass(&terms->M);
+  if (due.coriolis) kernel_->torque(&terms->Cv, &terms->CTv);
   if (due.inertia) {
     terms->B = rotor_inertia_;
     terms->M_total = terms->M;
@@ -68,20 +73,8 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
   }
 }
 
-template <typename Kernel>
-void ArmModel::evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v,
-                             const TermsDue& due, ArmTerms* terms) noexcept {
-  kernel->place(q);
-  kernel->gravity(&terms->g);
-  kernel->gravity_slope(&terms->g_slope);
-  terms->X_BT = tip_of(*kernel);
-  if (due.jacobian) kernel->jacobian(&terms->J);
-  terms->V_BT.noalias() = terms->J * v;
-  if (due.jacobian || due.coriolis) kernel->move(v, zero_);
-  if (due.jacobian) terms->Jdot_v = kernel->tip_acceleration(terms->V_BT);
-  if (due.inertia || due.coriolis) kernel->weigh();
-  if (due.inertia) kernel->mass(&terms->M);
-  if (due.coriolis) kernel->torque(&terms->Cv, &terms->CTv);
+Pose ArmModel::placed_tip() const noexcept {
+  return {kernel_->tip_position(), Eigen::Quaterniond(kernel_->tip_rotation())};
 }
 
 Pose ArmModel::tip_pose(const VectorJ& q) noexcept { return tip(q).X_BT; }
@@ -90,96 +83,64 @@ Matrix6J ArmModel::jacobian(const VectorJ& q) noexcept { return tip(q).J; }
 
 ArmModel::Tip ArmModel::tip(const VectorJ& q) noexcept {
   Tip tip{Pose(), Matrix6J(6, size_)};
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        tip.X_BT = tip_of(kernel);
-        kernel.jacobian(&tip.J);
-      },
-      kernel_);
+  kernel_->place(q);
+  tip.X_BT = placed_tip();
+  kernel_->jacobian(&tip.J);
   return tip;
 }
 
 Vector6 ArmModel::jacobian_rate(const VectorJ& q, const VectorJ& v) noexcept {
-  return std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.move(v, zero_);
-        return kernel.tip_acceleration(kernel.tip_twist());
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->move(v, zero_);
+  return kernel_->tip_acceleration(kernel_->tip_twist());
 }
 
 MatrixJ ArmModel::mass(const VectorJ& q) noexcept {
   MatrixJ M(size_, size_);
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.weigh();
-        kernel.mass(&M);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->weigh();
+  kernel_->mass(&M);
   return M;
 }
 
 VectorJ ArmModel::coriolis(const VectorJ& q, const VectorJ& v) noexcept {
   VectorJ Cv(size_), CTv(size_);
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.weigh();
-        kernel.move(v, zero_);
-        kernel.torque(&Cv, &CTv);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->weigh();
+  kernel_->move(v, zero_);
+  kernel_->torque(&Cv, &CTv);
   return Cv;
 }
 
 VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const VectorJ& a) noexcept {
   VectorJ tau(size_), CTv(size_), g(size_);
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.weigh();
-        kernel.move(v, a);
-        kernel.torque(&tau, &CTv);
-        kernel.gravity(&g);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->weigh();
+  kernel_->move(v, a);
+  kernel_->torque(&tau, &CTv);
+  kernel_->gravity(&g);
   return tau + g + rotor_inertia_.cwiseProduct(a);
 }
 
 VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
   VectorJ g(size_);
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.gravity(&g);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->gravity(&g);
   return g;
 }
 
 MatrixJ ArmModel::gravity_gradient(const VectorJ& q) noexcept {
   MatrixJ slope(size_, size_);
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.gravity_gradient(&slope);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->gravity_gradient(&slope);
   return slope;
 }
 
 void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        terms->X_BT = tip_of(kernel);
-        kernel.jacobian(&terms->J);
-        kernel.gravity(&terms->g);
-      },
-      kernel_);
+  kernel_->place(q);
+  terms->X_BT = placed_tip();
+  kernel_->jacobian(&terms->J);
+  kernel_->gravity(&terms->g);
 }
 
 }  // namespace limber::controller

@@ -2,8 +2,6 @@
 // The equations are in dynamics/arm_kernel.h.
 #pragma once
 
-#include <variant>
-
 #include "common/types.h"
 #include "controller/kinds/pose.h"
 #include "controller/model/singularity.h"
@@ -95,9 +93,7 @@ class ArmModel {
   void evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept;
 
  private:
-  template <typename Kernel>
-  void evaluate_with(Kernel* kernel, const VectorJ& q, const VectorJ& v, const TermsDue& due,
-                     ArmTerms* terms) noexcept;
+  Pose placed_tip() const noexcept;
 
   VectorJ rotor_inertia_;
   VectorJ zero_;

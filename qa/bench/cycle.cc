@@ -8,6 +8,7 @@
 #include "controller/arm_controller.h"
 #include "controller/laws/registry.h"
 #include "controller/modes/state_judge.h"
+#include "dynamics/levels.h"
 #include "lab/lab.h"
 #include "qa/bench/held_arm.h"
 #include "robots/loader/default_gains.h"
@@ -154,6 +155,9 @@ void register_lab_cycles() {
 int main(int argc, char** argv) {
   register_controller_cycles();
   register_lab_cycles();
+  std::string names;
+  for (const dynamics::Level* level : dynamics::levels()) names += std::string(" ") + level->name;
+  benchmark::AddCustomContext("levels", names);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

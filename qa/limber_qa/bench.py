@@ -33,6 +33,11 @@ OPTIONS = [
     "--benchmark_report_aggregates_only=true",
 ]
 PEER = "impedance/pinocchio/7"
+# What is measured again for each level of the kernel that the processor has (LIMBER_PROCESSOR).
+OF_LEVELS = (
+    "terms/(limber|pinocchio)/|impedance/(limber|pinocchio)/7$|plant_step/(reference|mujoco|bare)"
+    "|Cycle/rigid/(cartesian_impedance|gravity_compensation)$"
+)
 JOINTS = range(1, 17)
 Medians = dict[str, float]  # ns, by the benchmark's name
 
@@ -67,6 +72,18 @@ def figures(medians: Medians) -> list[Figure]:
     return found
 
 
+def level_figures(level: str, medians: Medians) -> list[Figure]:
+    """The same for a level of the kernel, which LIMBER_PROCESSOR chose for this run."""
+    step = "plant_step/reference"
+    pairs = [("impedance/limber/7", PEER)]
+    pairs += [(f"terms/limber/{n}", f"terms/pinocchio/{n}") for n in JOINTS]
+    pairs += [(name, PEER) for name in medians if name.startswith("BM_ControllerCycle/")]
+    pairs += [(step, "plant_step/mujoco"), (step, "plant_step/bare_ode")]
+    return [
+        Figure(f"{own} by {level}", medians[own], peer, medians.get(peer)) for own, peer in pairs
+    ]
+
+
 def medians_of(found: dict) -> Medians:
     """From the JSON of limber-bench. A benchmark that could not run is an error."""
     for row in found["benchmarks"]:
@@ -86,8 +103,14 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
         run(command, quiet, " ".join(command))
     prefix = network.private_command() or []
     quiet.rule("limber-bench and its peers: some minutes")
-    medians = medians_of(_kernels())
+    report = _kernels()
+    medians = medians_of(report)
     found = figures(medians)
+    fastest, *others = report["context"]["levels"].split()
+    for level in others:
+        run_again = _kernels(f"--benchmark_filter={OF_LEVELS}", LIMBER_PROCESSOR=level)
+        found += level_figures(level, medians_of(run_again))
+    quiet.print(f"{_processor()}; the kernel's levels: {fastest} (above), {', '.join(others)}")
     found += bench_round_trips.figures(prefix)
     found.append(bench_loop_parts.exchange(prefix))
     found += bench_loop_parts.lateness()
@@ -108,14 +131,26 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
     return OK
 
 
-def _kernels() -> dict:
+def _processor() -> str:
+    """Its name, and which wide registers it has."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    known = dict(line.replace("\t", "").split(":", 1) for line in lines if ":" in line)
+    flags = known.get("flags", known.get("Features", "")).split()
+    sets = [
+        flag for flag in ("asimd", "sve", "sse2", "avx", "avx2", "fma", "avx512f") if flag in flags
+    ]
+    return f"{known.get('model name', 'processor without a name').strip()} ({', '.join(sets)})"
+
+
+def _kernels(*options: str, **environment: str) -> dict:
     """What limber-bench reports. MuJoCo, if it is there, reads the arm from a file."""
     with tempfile.TemporaryDirectory() as folder:
         arm = Path(folder) / "openarm.xml"
         export = [sys.executable, "-m", "limber", "export", "mjcf", "openarm", "--out", str(arm)]
         run(export, None, "limber export mjcf")
-        env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm)}
-        found: dict[str, Any] = json.loads(run([released("limber-bench"), *OPTIONS], None, env=env))
+        env = {**os.environ, "LIMBER_BENCH_MJCF": str(arm), **environment}
+        command = [released("limber-bench"), *OPTIONS, *options]
+        found: dict[str, Any] = json.loads(run(command, None, env=env))
     return found
 
 

@@ -29,22 +29,18 @@ void LinkDynamics::set_tip_load(double mass, const Vector3d& p_TL) noexcept {
   const FixedFrame& tip_frame = model_.chain.frames.back();
   dynamics::MassProperties& last = model_.chain.bodies.back().mass;
   last = with_point_mass(bare_tip_body_, mass, tip_frame.p + tip_frame.R * p_TL);
-  std::visit([&](auto& kernel) { kernel.set_mass(size() - 1, last); }, kernel_);
+  kernel_->set_mass(size() - 1, last);
 }
 
 void LinkDynamics::set_state(const VectorJ& q, const VectorJ& v) noexcept {
   v_ = v;
   VectorJ g(size());
-  std::visit(
-      [&](auto& kernel) {
-        kernel.place(q);
-        kernel.weigh();
-        kernel.move(v, zero_);
-        kernel.mass(&M_);
-        kernel.torque(&bias_, nullptr);
-        kernel.gravity(&g);
-      },
-      kernel_);
+  kernel_->place(q);
+  kernel_->weigh();
+  kernel_->move(v, zero_);
+  kernel_->mass(&M_);
+  kernel_->torque(&bias_, nullptr);
+  kernel_->gravity(&g);
   M_.diagonal() += model_.rotor_inertia;
   bias_ += g;
   clear_wrenches();
@@ -64,12 +60,12 @@ void LinkDynamics::add_wrench(int body, const Vector3d& point, const Vector3d& f
   Vector6 F;
   F << force, moment + point.cross(force);
   F_ext_[static_cast<std::size_t>(body)] += F;
-  std::visit([&](const auto& kernel) { kernel.add_wrench(body, F, &tau_ext_); }, kernel_);
+  kernel_->add_wrench(body, F, &tau_ext_);
 }
 
 VectorJ LinkDynamics::gravity_torque() const noexcept {
   VectorJ g(size());
-  std::visit([&](const auto& kernel) { kernel.gravity(&g); }, kernel_);
+  kernel_->gravity(&g);
   return g;
 }
 
@@ -90,7 +86,7 @@ double LinkDynamics::tip_mobility(const Vector3d& n) const noexcept {
   Vector6 F;
   F << n, link_position(tip()).cross(n);
   VectorJ tau = zero_;
-  std::visit([&](const auto& kernel) { kernel.add_wrench(body_of(tip()), F, &tau); }, kernel_);
+  kernel_->add_wrench(body_of(tip()), F, &tau);
   VectorJ qdd = tau;
   dynamics::solve_spd(M_, &qdd);
   return std::max(tau.dot(qdd), 0.0);
@@ -98,30 +94,28 @@ double LinkDynamics::tip_mobility(const Vector3d& n) const noexcept {
 
 Vector3d LinkDynamics::body_position(int body) const noexcept {
   if (body < 0) return Vector3d::Zero();
-  return std::visit([&](const auto& kernel) { return kernel.position(body); }, kernel_);
+  return kernel_->position(body);
 }
 
 Matrix3d LinkDynamics::body_rotation(int body) const noexcept {
   if (body < 0) return Matrix3d::Identity();
-  return std::visit([&](const auto& kernel) { return kernel.rotation(body); }, kernel_);
+  return kernel_->rotation(body);
 }
 
 Vector3d LinkDynamics::centre_of_mass(int body) const noexcept {
-  return std::visit([&](const auto& kernel) { return kernel.centre_of_mass(body); }, kernel_);
+  return kernel_->centre_of_mass(body);
 }
 
-Vector3d LinkDynamics::joint_axis(int body) const noexcept {
-  return std::visit([&](const auto& kernel) { return kernel.axis(body); }, kernel_);
-}
+Vector3d LinkDynamics::joint_axis(int body) const noexcept { return kernel_->axis(body); }
 
 Vector3d LinkDynamics::angular_velocity(int body) const noexcept {
   if (body < 0) return Vector3d::Zero();
-  return std::visit([&](const auto& kernel) { return kernel.twist(body); }, kernel_).tail<3>();
+  return kernel_->twist(body).tail<3>();
 }
 
 Vector3d LinkDynamics::point_velocity(int body, const Vector3d& point) const noexcept {
   if (body < 0) return Vector3d::Zero();
-  const Vector6 V = std::visit([&](const auto& kernel) { return kernel.twist(body); }, kernel_);
+  const Vector6 V = kernel_->twist(body);
   return V.head<3>() + V.tail<3>().cross(point);
 }
 
@@ -143,8 +137,6 @@ Vector3d LinkDynamics::link_angular_velocity(int link) const noexcept {
   return angular_velocity(body_of(link));
 }
 
-double LinkDynamics::potential_energy() const noexcept {
-  return std::visit([](const auto& kernel) { return kernel.potential_energy(); }, kernel_);
-}
+double LinkDynamics::potential_energy() const noexcept { return kernel_->potential_energy(); }
 
 }  // namespace limber::sim

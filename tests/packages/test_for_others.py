@@ -33,7 +33,8 @@ int main() {
   chain.frames = {{0}};
   auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
   VectorJ g(1);
-  std::visit([&](auto& k) { k.place(VectorJ::Zero(1)); k.gravity(&g); }, kernel);
+  kernel->place(VectorJ::Zero(1));
+  kernel->gravity(&g);
   std::printf("%.3f\\n", std::abs(g[0]));
 }
 """

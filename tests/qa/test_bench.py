@@ -5,7 +5,7 @@ from made_logs import records
 
 from limber.errors import RunError
 from limber_qa import bench_receiver
-from limber_qa.bench import figures, medians_of
+from limber_qa.bench import figures, level_figures, medians_of
 from limber_qa.bench_figure import Figure, table
 from limber_qa.bench_loop_parts import Window, lateness_figures, window_of
 from limber_qa.bench_recorder import interval_figure
@@ -63,6 +63,13 @@ def test_mujoco_is_a_peer_where_it_is_installed():
     found = {figure.name: figure for figure in figures({**rows, "plant_step/mujoco": 5000.0})}
     assert found[step].ratio == pytest.approx(0.6)
     assert found[step].verdict == "met"
+
+
+def test_a_level_of_the_kernel_is_beside_its_peers_of_the_same_run():
+    found = {figure.name: figure for figure in level_figures("avx2", medians_of(report(True)))}
+    assert found["impedance/limber/7 by avx2"].ratio == pytest.approx(0.25)
+    assert found["terms/limber/3 by avx2"].peers == 1200.0
+    assert found["BM_ControllerCycle/rigid/joint_pd by avx2"].peer == "impedance/pinocchio/7"
 
 
 def test_json_holds_what_the_table_shows():

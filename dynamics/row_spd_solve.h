@@ -1,10 +1,10 @@
-#include "dynamics/spd_solve.h"
+// The systems of spd_solve.h, of at most N rows.
+#pragma once
 
-#include "dynamics/each_processor.h"
+#include "common/types.h"
 #include "dynamics/row_solve.h"
 
-namespace limber::dynamics {
-namespace {
+namespace limber::dynamics::LIMBER_LEVEL {
 
 constexpr int kColumns = 8;  // of which six are used
 
@@ -24,7 +24,7 @@ struct System {
 // The right-hand side is one more row of the symmetric matrix [M X; X^T .], beneath the others:
 // half the lanes of [M X]. As eliminate(), with all but one product done while a division lasts.
 template <int N>
-[[gnu::always_inline]] inline void solve_one(const MatrixJ& M, VectorJ* X) noexcept {
+LIMBER_TARGET void solve_one(const MatrixJ& M, VectorJ* X) noexcept {
   const int n = static_cast<int>(M.rows());
   alignas(64) double rows[N + 1][N];
   double* const b = rows[n];
@@ -60,8 +60,8 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void solve_tip(const MatrixJ& M, const Matrix6J& J, MatrixJ6* X,
-                                             Matrix6* G) noexcept {
+LIMBER_TARGET void solve_tip(const MatrixJ& M, const Matrix6J& J, MatrixJ6* X,
+                             Matrix6* G) noexcept {
   System<N> system(M);
   const int n = system.n;
   for (int i = 0; i < n; ++i) std::copy_n(J.data() + 6 * i, 6, system.rows[i] + N);
@@ -78,26 +78,7 @@ template <int N>
   for (int i = 0; i < 6; ++i) std::copy_n(sum[i], 6, G->data() + 6 * i);
 }
 
-}  // namespace
-
-LIMBER_EACH_PROCESSOR_TO_AVX2 void solve_spd(const MatrixJ& M, VectorJ* X) noexcept {
-  if (M.rows() <= 8) {
-    solve_one<8>(M, X);
-  } else {
-    solve_one<kMaxJoints>(M, X);
-  }
-}
-
-LIMBER_EACH_PROCESSOR void solve_spd(const MatrixJ& M, const Matrix6J& J, MatrixJ6* Minv_JT,
-                                     Matrix6* G) noexcept {
-  if (M.rows() <= 8) {
-    solve_tip<8>(M, J, Minv_JT, G);
-  } else {
-    solve_tip<kMaxJoints>(M, J, Minv_JT, G);
-  }
-}
-
-LIMBER_EACH_PROCESSOR Matrix6 inverse_spd(const Matrix6& G) noexcept {
+LIMBER_TARGET inline Matrix6 inverse(const Matrix6& G) noexcept {
   double rows[8][8 + kColumns] = {};
   for (int i = 0; i < 6; ++i) {
     std::copy_n(G.data() + 6 * i, 6, rows[i]);
@@ -110,4 +91,4 @@ LIMBER_EACH_PROCESSOR Matrix6 inverse_spd(const Matrix6& G) noexcept {
   return inverse;
 }
 
-}  // namespace limber::dynamics
+}  // namespace limber::dynamics::LIMBER_LEVEL

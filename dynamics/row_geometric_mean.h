@@ -1,15 +1,14 @@
-#include "dynamics/geometric_mean.h"
+// The mean of geometric_mean.h, of at most N rows.
+#pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "common/joints.h"
-#include "dynamics/each_processor.h"
 #include "dynamics/row_solve.h"
 
-namespace limber::dynamics {
-namespace {
+namespace limber::dynamics::LIMBER_LEVEL {
 
 constexpr int kSteps = 12;
 // What A and B may differ by in the last step: half its square is left in their mean.
@@ -185,9 +184,9 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline bool mean_rows(const Eigen::Ref<const Eigen::MatrixXd>& P,
-                                             const Eigen::Ref<const Eigen::MatrixXd>& Q,
-                                             Eigen::Ref<Eigen::MatrixXd> G) noexcept {
+LIMBER_TARGET bool mean(const Eigen::Ref<const Eigen::MatrixXd>& P,
+                        const Eigen::Ref<const Eigen::MatrixXd>& Q,
+                        Eigen::Ref<Eigen::MatrixXd> G) noexcept {
   const int n = static_cast<int>(P.rows());
   Rows<N> A = {}, B = {};
   take_lower<N>(P, A);
@@ -205,27 +204,4 @@ template <int N>
   return true;
 }
 
-template <int N>
-bool mean_of(const Eigen::Ref<const Eigen::MatrixXd>& P, const Eigen::Ref<const Eigen::MatrixXd>& Q,
-             Eigen::Ref<Eigen::MatrixXd> G) noexcept;
-
-#define LIMBER_MEAN_OF(N)                                                           \
-  template <>                                                                       \
-  LIMBER_EACH_PROCESSOR bool mean_of<N>(const Eigen::Ref<const Eigen::MatrixXd>& P, \
-                                        const Eigen::Ref<const Eigen::MatrixXd>& Q, \
-                                        Eigen::Ref<Eigen::MatrixXd> G) noexcept {   \
-    return mean_rows<N>(P, Q, G);                                                   \
-  }
-LIMBER_MEAN_OF(8)
-LIMBER_MEAN_OF(kMaxJoints)
-#undef LIMBER_MEAN_OF
-
-}  // namespace
-
-bool geometric_mean(const Eigen::Ref<const Eigen::MatrixXd>& P,
-                    const Eigen::Ref<const Eigen::MatrixXd>& Q,
-                    Eigen::Ref<Eigen::MatrixXd> G) noexcept {
-  return P.rows() <= 8 ? mean_of<8>(P, Q, G) : mean_of<kMaxJoints>(P, Q, G);
-}
-
-}  // namespace limber::dynamics
+}  // namespace limber::dynamics::LIMBER_LEVEL

@@ -1,0 +1,2 @@
+// What every processor has: SSE2, or NEON.
+#include "dynamics/row_level.h"
