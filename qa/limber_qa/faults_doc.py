@@ -12,7 +12,7 @@ from limber.problems import problem
 from limber_qa.written_table import WrittenTable
 
 COUNTERS = ("lost", "late", "invalid", "foreign")
-ADDRESS = re.compile(r" \((?:id 0x[0-9a-f]+|servo \d+|node \d+)\)")  # behind a joint's name
+ADDRESS = re.compile(r" \((?:id 0x[0-9a-f]+|(?:servo|node|motor) \d+)\)")  # behind a joint's name
 
 
 def reactions(fault: str | None = None, phases: int = 3) -> list[dict[str, Any]]:
@@ -58,11 +58,14 @@ def cause_text(row: dict[str, Any]) -> str:
 
 
 def reactions_text(row: dict[str, Any]) -> str:
-    """One reaction if all families have it, else each with its family."""
-    texts = {entry.title: reaction_text(row["families"].get(entry.word)) for entry in protocols()}
-    if len(set(texts.values())) == 1:
-        return texts.popitem()[1]
-    return "; ".join(f"{name}: {text}" for name, text in texts.items() if text)
+    """One reaction if all families have it, else each with its families."""
+    families: dict[str, list[str]] = {}
+    for entry in protocols():
+        text = reaction_text(row["families"].get(entry.word))
+        families.setdefault(text, []).append(entry.title)
+    if len(families) == 1:
+        return next(iter(families))
+    return "; ".join(f"{', '.join(names)}: {text}" for text, names in families.items() if text)
 
 
 def cells(row: dict[str, Any]) -> list[str]:

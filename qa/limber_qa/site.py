@@ -32,7 +32,7 @@ NAV: dict[str, list[str]] = {
         "CHANGELOG.md",
     ],
     "Understand": [
-        *("docs/architecture.md", "docs/conventions.md", "docs/real_time.md", "docs/bus.md"),
+        *("docs/architecture.md", "docs/real_time.md", "docs/bus.md"),
         *("docs/adding.md", "CONTRIBUTING.md"),
     ],
     "What proves it": [

@@ -1,4 +1,4 @@
-"""What each folder includes or imports, against the table in docs/architecture.md."""
+"""What each folder includes or imports, against the table in CONTRIBUTING.md."""
 
 import re
 from collections import defaultdict
@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 
 from limber.paths import ROOT
 
-TABLE = ROOT / "docs" / "architecture.md"
+TABLE = ROOT / "CONTRIBUTING.md"
 CXX = re.compile(r'^#include ["<]([^">]+)[">]')
 PACKAGES = {"limber": "tools", "limber_qa": "qa", "limber_lecture": "lecture"}  # and their folders
 PYTHON = re.compile(r"^\s*(?:from (limber[\w.]*) import (\w+)|import (limber[\w.]*))")
@@ -72,7 +72,7 @@ def test_every_include_follows_an_arrow():
             fits = any(inside(target, other) for other in allowed)
             if not own and (not fits or any(inside(target, other) for other in denied)):
                 wrong.append(f"{file}:{number}: {row} may not include {target}")
-    assert not wrong, "against the table in docs/architecture.md:\n" + "\n".join(wrong)
+    assert not wrong, "against the table in CONTRIBUTING.md:\n" + "\n".join(wrong)
     assert used == set(rows), "rows without a file"
 
 
