@@ -40,8 +40,9 @@ EncoderWatch::EncoderWatch(const Robot& robot)
     : observer_(VectorJ::Constant(robot.size(), std::min(kObserver_per_s, robot.rate_hz)),
                 1.0 / robot.rate_hz) {
   for (const JointConfig& joint : robot.joints)
-    joints_.push_back({friction_bound(joint), joint.torque_limit_Nm, joint.rigid(),
-                       stretch_bound(joint), std::nullopt});
+    joints_.push_back({friction_bound(joint), joint.torque_limit_Nm,
+                       kBelievable * joint.velocity_limit, joint.rigid(), stretch_bound(joint),
+                       std::nullopt});
 }
 
 void EncoderWatch::reset() noexcept {
@@ -105,8 +106,17 @@ bool EncoderWatch::Joint::stops_suddenly(double speed, double inertia, double lo
   return std::abs(speed) >= std::max(kSudden, brakes_Nm / inertia * dt_s);
 }
 
+bool EncoderWatch::believable(const joint_state_t& state) const noexcept {
+  for (int i = 0; i < state.num_joints; ++i) {
+    const double most = joints_[static_cast<std::size_t>(i)].believable_speed;
+    if (!(std::abs(state.v[i]) <= most && std::abs(state.theta_dot[i]) <= most)) return false;
+  }
+  return true;
+}
+
 int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double dt_s) noexcept {
   const int n = state.num_joints;
+  if (!believable(state)) return -1;
   observer_.update(model.M * joints_of(state.v, n), joints_of(state.tau_applied, n),
                    model.CTv - model.gravity);
   observed_s_ += dt_s;

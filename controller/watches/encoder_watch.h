@@ -58,7 +58,9 @@ namespace limber::controller {
 /// than kDrift_s is the sensor's own drift. Joints whose spring is not linear or that have two
 /// motors are not watched so.
 ///
-/// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count.
+/// tau_friction is that of friction_bound.h. Cycles without the joint's answer do not count, nor do
+/// those with a speed beyond kBelievable times a joint's limit: it is none (the driver's VELOCITY
+/// finds it), but would move r, and with it every other joint.
 class EncoderWatch {
  public:
   static constexpr double kExpected = 0.03;  ///< rad (m for prismatic joints)
@@ -73,6 +75,7 @@ class EncoderWatch {
   static constexpr double kStretchShare = 0.01;
   static constexpr double kDrift_s = 5.0;
   static constexpr double kSettled_s = 0.125;
+  static constexpr double kBelievable = 2.0;
 
   /// For set-up.
   explicit EncoderWatch(const Robot& robot);
@@ -120,11 +123,13 @@ class EncoderWatch {
 
     double friction_Nm;
     double limit_Nm;
+    double believable_speed;  ///< rad/s
     bool rigid;
     double stretch_Nm;  ///< of the spring's torque; infinite for joints that are not watched so
     std::optional<Rest> rest;
   };
 
+  bool believable(const joint_state_t& state) const noexcept;
   /// What a contact may hold of joint i at most, N m.
   double held_Nm(const joint_state_t& state, int i, const MatrixJ& M) const noexcept;
 

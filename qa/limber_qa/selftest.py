@@ -167,10 +167,14 @@ def _run_part(name: str, command: list[str]) -> Verdict:
     """
     at_once = PARTS[name].lane in AT_ONCE
     command = [*([] if at_once else ["nice", "-n", "19"]), *command]
+    # Ninja's own number is two more, beside parts in real time.
+    environment = {**os.environ, "CMAKE_BUILD_PARALLEL_LEVEL": str(JOBS)}
     start = time.monotonic()
     with tempfile.NamedTemporaryFile("w", encoding="utf-8") as kept:
         try:
-            process = subprocess.Popen(command, cwd=ROOT, stdout=kept, stderr=subprocess.STDOUT)
+            process = subprocess.Popen(
+                command, cwd=ROOT, stdout=kept, stderr=subprocess.STDOUT, env=environment
+            )
         except FileNotFoundError as error:
             raise RunError(f"{command[0]} is missing: start with ./limber test") from error
         with open(kept.name, encoding="utf-8", errors="replace") as reader, process:

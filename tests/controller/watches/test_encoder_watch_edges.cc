@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kJoints = 3;
 constexpr double kLimit_Nm = 40.0;
+constexpr double kFastest = 100.0;  // rad/s
 constexpr double kInertia = 2.0;
 constexpr double kLong_s = 1.0;
 
@@ -40,7 +41,10 @@ class Bench {
     Robot robot;
     robot.rate_hz = 32.0;  // the residual's filter forgets within a cycle, and numbers are exact
     robot.joints.resize(kJoints);
-    for (JointConfig& joint : robot.joints) joint.torque_limit_Nm = kLimit_Nm;
+    for (JointConfig& joint : robot.joints) {
+      joint.torque_limit_Nm = kLimit_Nm;
+      joint.velocity_limit = kFastest;
+    }
     change(robot.joints[1]);
     return robot;
   }
@@ -272,6 +276,14 @@ TEST(EncoderWatchEdges, ASpringStopsItsRotorByTheTorqueLimit) {
   };
   EXPECT_EQ(cycles_after(0.1049, 0.005, elastic), -1);
   EXPECT_GT(cycles_after(0.1051, 0.005, elastic), 0);
+}
+
+TEST(EncoderWatchEdges, NoJointStopsFromMoreThanTwiceItsLimit) {
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(cycles_after(sign * 2.0 * kFastest), 10);
+    EXPECT_EQ(cycles_after(sign * std::nextafter(2.0 * kFastest, 1e3)), -1);
+    EXPECT_EQ(cycles_after(std::nan("")), -1);
+  }
 }
 
 TEST(EncoderWatchEdges, AfterASuddenStopTheTorqueGoesOnToo) {

@@ -40,7 +40,10 @@ class Bench {
     Robot robot;
     robot.rate_hz = 1.0 / kPeriod_s;
     robot.joints.resize(kJoints);
-    for (JointConfig& joint : robot.joints) joint.torque_limit_Nm = 40.0;
+    for (JointConfig& joint : robot.joints) {
+      joint.torque_limit_Nm = 40.0;
+      joint.velocity_limit = 100.0;
+    }
     return robot;
   }
 
@@ -265,6 +268,26 @@ TEST(EncoderWatchPush, WhatHangsOnTheArmAtTheStartIsNoPush) {
       load(bench);
       EXPECT_EQ(periods_until_found(bench), period < 3 ? kUnexplained : kHeld) << period;
     }
+  }
+}
+
+// Half a kg m^2 between joint 0, which reads so fast for a period, and joint 1, which rests.
+TEST(EncoderWatchPush, ASpeedThatNoJointHasMovesNoOther) {
+  const auto found = [](double speed) {
+    Bench bench;
+    bench.M()(0, 1) = bench.M()(1, 0) = 0.5;
+    bench.settle();
+    bench.state().theta[0] = 1.0;
+    bench.state().v[0] = speed;
+    for (int n = 0; n < kHeld; ++n) {
+      if (bench.next() == 1) return true;
+      bench.state().v[0] = 0.0;
+    }
+    return false;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_TRUE(found(sign * 199.0));
+    EXPECT_FALSE(found(sign * 201.0));
   }
 }
 

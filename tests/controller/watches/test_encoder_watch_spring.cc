@@ -39,6 +39,7 @@ class Joint {
     Robot robot;
     JointConfig joint;
     joint.torque_limit_Nm = kLimit_Nm;
+    joint.velocity_limit = 100.0;
     joint.transmission.kind = TransmissionKind::kElastic;
     joint.transmission.spring.stiffness_Nm_per_rad = 1000.0;
     joint.drive.counts_per_turn = 1 << 20;

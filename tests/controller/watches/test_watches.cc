@@ -67,7 +67,10 @@ class EncoderWatchTest : public ::testing::Test {
   static Robot robot() {
     Robot robot;
     robot.joints.resize(2);
-    for (JointConfig& joint : robot.joints) joint.torque_limit_Nm = 40.0;
+    for (JointConfig& joint : robot.joints) {
+      joint.torque_limit_Nm = 40.0;
+      joint.velocity_limit = 100.0;
+    }
     robot.joints[0].friction.coulomb_Nm = 3.0;
     return robot;
   }
