@@ -56,10 +56,9 @@ class ArmKernel {
   virtual void add_wrench(int body, const Vector6& F, VectorJ* tau) const noexcept = 0;
   /// Of gravity, zero with every mass at the height of the base origin, J.
   virtual double potential_energy() const noexcept = 0;
-  virtual void gravity(VectorJ* g) const noexcept = 0;
+  /// And the diagonal of gravity_gradient() unless that is null.
+  virtual void gravity(VectorJ* g, VectorJ* slope) const noexcept = 0;
   virtual void gravity_gradient(MatrixJ* slope) const noexcept = 0;
-  /// Its diagonal.
-  virtual void gravity_slope(VectorJ* slope) const noexcept = 0;
 
   /// I_O of each body.
   virtual void weigh() noexcept = 0;

@@ -87,9 +87,15 @@ class RowKernel final : public ArmKernel {
   }
 
   double potential_energy() const noexcept override { return -gravity_.dot(carried_h_.at(0)); }
-  LIMBER_TARGET void gravity(VectorJ* g) const noexcept override {
+  LIMBER_TARGET void gravity(VectorJ* g, VectorJ* slope) const noexcept override {
     const Row3<N> l = linear_momentum();
     store(-gravity_.x() * l.x - gravity_.y() * l.y - gravity_.z() * l.z, g->data());
+    if (!slope) return;
+    const Row3<N>& w = S_.ang;
+    store((gravity_.z() * w.y - gravity_.y() * w.z) * l.x +
+              (gravity_.x() * w.z - gravity_.z() * w.x) * l.y +
+              (gravity_.y() * w.x - gravity_.x() * w.y) * l.z,
+          slope->data());
   }
   void gravity_gradient(MatrixJ* slope) const noexcept override {
     const Row3<N> l = linear_momentum();
@@ -97,14 +103,6 @@ class RowKernel final : public ArmKernel {
       const Eigen::Vector3d turned = S_.ang.at(j).cross(gravity_);
       for (int i = j; i < size_; ++i) (*slope)(i, j) = (*slope)(j, i) = turned.dot(l.at(i));
     }
-  }
-  LIMBER_TARGET void gravity_slope(VectorJ* slope) const noexcept override {
-    const Row3<N> l = linear_momentum();
-    const Row3<N>& w = S_.ang;
-    store((gravity_.z() * w.y - gravity_.y() * w.z) * l.x +
-              (gravity_.x() * w.z - gravity_.z() * w.x) * l.y +
-              (gravity_.y() * w.x - gravity_.x() * w.y) * l.z,
-          slope->data());
   }
 
   // I_O = R I_C R^T + m (c.c 1 - c c^T).

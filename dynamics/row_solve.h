@@ -47,7 +47,7 @@ template <int N, int Lanes, typename EachPair>
 /// X of [S X], n rows, by S^-1 X; likewise.
 template <int N, int Columns>
 [[gnu::always_inline]] inline void substitute(int n, double (&A)[N][N + Columns]) noexcept {
-  for (int k = std::min(n, N) - 1; k > 1; --k) {
+  for (int k = n - 1; k > 1; --k) {
     for (int i = (k & ~1) - 1; i >= 0; --i) {
       const double f = A[i][k];
       for (int l = N; l < N + Columns; ++l) A[i][l] -= f * A[k][l];

@@ -50,8 +50,7 @@ void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, ArmTerms* terms) noe
 void ArmModel::evaluate(const VectorJ& q, const VectorJ& v, const TermsDue& due,
                         ArmTerms* terms) noexcept {
   kernel_->place(q);
-  kernel_->gravity(&terms->g);
-  kernel_->gravity_slope(&terms->g_slope);
+  kernel_->gravity(&terms->g, &terms->g_slope);
   terms->X_BT = placed_tip();
   if (due.jacobian) kernel_->jacobian(&terms->J);
   terms->V_BT.noalias() = terms->J * v;
@@ -118,14 +117,14 @@ VectorJ ArmModel::inverse_dynamics(const VectorJ& q, const VectorJ& v, const Vec
   kernel_->weigh();
   kernel_->move(v, a);
   kernel_->torque(&tau, &CTv);
-  kernel_->gravity(&g);
+  kernel_->gravity(&g, nullptr);
   return tau + g + rotor_inertia_.cwiseProduct(a);
 }
 
 VectorJ ArmModel::gravity(const VectorJ& q) noexcept {
   VectorJ g(size_);
   kernel_->place(q);
-  kernel_->gravity(&g);
+  kernel_->gravity(&g, nullptr);
   return g;
 }
 
@@ -140,7 +139,7 @@ void ArmModel::evaluate_statics(const VectorJ& q, ArmTerms* terms) noexcept {
   kernel_->place(q);
   terms->X_BT = placed_tip();
   kernel_->jacobian(&terms->J);
-  kernel_->gravity(&terms->g);
+  kernel_->gravity(&terms->g, nullptr);
 }
 
 }  // namespace limber::controller

@@ -40,7 +40,7 @@ void LinkDynamics::set_state(const VectorJ& q, const VectorJ& v) noexcept {
   kernel_->move(v, zero_);
   kernel_->mass(&M_);
   kernel_->torque(&bias_, nullptr);
-  kernel_->gravity(&g);
+  kernel_->gravity(&g, nullptr);
   M_.diagonal() += model_.rotor_inertia;
   bias_ += g;
   clear_wrenches();
@@ -65,7 +65,7 @@ void LinkDynamics::add_wrench(int body, const Vector3d& point, const Vector3d& f
 
 VectorJ LinkDynamics::gravity_torque() const noexcept {
   VectorJ g(size());
-  kernel_->gravity(&g);
+  kernel_->gravity(&g, nullptr);
   return g;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "common/config_error.h"
@@ -54,7 +55,7 @@ std::vector<double> terms_of_random_chains(const Level& level) {
       kernel->move(v, a);
       kernel->mass(&M);
       kernel->torque(&tau, &CTv);
-      kernel->gravity(&g);
+      kernel->gravity(&g, nullptr);
       kernel->jacobian(&J);
       MatrixJ mean(n, n);
       const MatrixJ spring = v.cwiseAbs().asDiagonal();
@@ -76,9 +77,19 @@ std::vector<double> terms_of_random_chains(const Level& level) {
   return numbers;
 }
 
+/// FNV-1a.
+std::uint64_t digest(const std::vector<double>& numbers) {
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (const double number : numbers)
+    sum = (sum ^ std::bit_cast<std::uint64_t>(number)) * 0x100000001b3;
+  return sum;
+}
+
 TEST(Levels, GiveTheSameBits) {
   const std::vector<double> plain = terms_of_random_chains(named_level("plain"));
   ASSERT_GT(plain.size(), 100'000U);
+  // Compared with that of another kind of processor by tests/bare/test_other_processor.py.
+  RecordProperty("digest", std::to_string(digest(plain)));
   for (const Level* level : levels()) {
     const std::vector<double> found = terms_of_random_chains(*level);
     ASSERT_EQ(found.size(), plain.size());

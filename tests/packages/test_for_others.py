@@ -34,7 +34,7 @@ int main() {
   auto kernel = dynamics::arm_kernel(chain, {0.0, 0.0, -9.81});
   VectorJ g(1);
   kernel->place(VectorJ::Zero(1));
-  kernel->gravity(&g);
+  kernel->gravity(&g, nullptr);
   std::printf("%.3f\\n", std::abs(g[0]));
 }
 """
