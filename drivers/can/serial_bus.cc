@@ -5,18 +5,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/clock.h"
 #include "common/config_error.h"
 #include "common/file_descriptor.h"
+#include "drivers/can/return_watch.h"
 #include "drivers/can/serial_codec.h"
 #include "drivers/can/serial_port.h"
 
@@ -32,14 +28,12 @@ class SerialBus final : public CanBus {
                                                    : make_damiao_serial_codec()),
         greetings_(codec_->greetings(bitrate_bps)) {
     open();
-    watch_ = std::jthread([this](const std::stop_token& stop) { await_return(stop); });
   }
 
   ~SerialBus() override {
-    watch_.request_stop();
-    watch_.join();
+    watch_.stop();
     const std::string bytes = codec_->farewell();
-    if (!gone_ && ::write(port_.get(), bytes.data(), bytes.size()) < 0) return;
+    if (!watch_.gone() && ::write(port_.get(), bytes.data(), bytes.size()) < 0) return;
   }
 
   int send(std::span<const CanFrame> frames) noexcept override {
@@ -47,7 +41,7 @@ class SerialBus final : public CanBus {
     if (ready()) {
       statistics_.unsent = waiting_bytes() > 0 || rest_ > 0;
       for (const CanFrame& frame : frames) {
-        if (!finish_last() || gone_) break;
+        if (!finish_last() || watch_.gone()) break;
         if (!is_possible(frame) || frame.fd) continue;
         rest_ = size_ = codec_->encode(frame, out_);
         if (write_rest()) ++accepted;
@@ -80,14 +74,14 @@ class SerialBus final : public CanBus {
     return static_cast<int>(taken);
   }
 
-  int descriptor() const noexcept override { return gone_ ? -1 : port_.get(); }
+  int descriptor() const noexcept override { return watch_.gone() ? -1 : port_.get(); }
   bool something_waits() const noexcept override { return begin_ < end_; }
   const CanStatistics& statistics() const noexcept override { return statistics_; }
 
  private:
   /// False while the line is gone, and its thread has the descriptor.
   bool ready() noexcept {
-    statistics_.link_down = gone_.load(std::memory_order_acquire);
+    statistics_.link_down = watch_.gone();
     return !statistics_.link_down;
   }
 
@@ -95,7 +89,7 @@ class SerialBus final : public CanBus {
     statistics_.last_errno = error;
     statistics_.link_down = true;
     begin_ = end_ = rest_ = 0;
-    gone_.store(true, std::memory_order_release);
+    watch_.note_gone();
   }
 
   int waiting_bytes() const noexcept {
@@ -157,23 +151,16 @@ class SerialBus final : public CanBus {
     }
   }
 
-  void await_return(const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    while (!stop.stop_requested()) {
-      wake.wait_for(lock, stop, kLookAgain, [] { return false; });
-      if (!gone_.load(std::memory_order_acquire) || stop.stop_requested()) continue;
-      port_ = FileDescriptor();  // the device is free for its return
-      try {
-        open();
-        gone_.store(false, std::memory_order_release);
-      } catch (const ConfigError&) {  // NOLINT(bugprone-empty-catch): not there yet
-      }
+  bool open_again() {
+    port_ = FileDescriptor();  // the device is free for its return
+    try {
+      open();
+      return true;
+    } catch (const ConfigError&) {
+      return false;  // not there yet
     }
   }
 
-  static constexpr std::chrono::milliseconds kLookAgain{100};
   static constexpr int kAnswer_ms = 500;
   static constexpr int kSilence_ms = 100;
 
@@ -190,8 +177,7 @@ class SerialBus final : public CanBus {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::int64_t read_ns_ = 0;
-  std::atomic<bool> gone_ = false;  ///< port_ and codec_ are the thread's
-  std::jthread watch_;
+  ReturnWatch watch_{[this] { return open_again(); }};  ///< port_ and codec_ are its own while gone
 };
 
 }  // namespace

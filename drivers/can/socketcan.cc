@@ -9,19 +9,16 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <chrono>
-#include <condition_variable>
 #include <cstring>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "common/config_error.h"
 #include "common/receive_buffer.h"
 #include "drivers/can/datagram_bus.h"
 #include "drivers/can/kernel_frame.h"
+#include "drivers/can/return_watch.h"
 
 namespace limber {
 namespace {
@@ -123,7 +120,6 @@ class SocketCanBus final : public DatagramBus {
   SocketCanBus(const std::string& interface, bool fd)
       : DatagramBus(fd, Stamps::kOnArrival, CANFD_MTU, CANFD_MTU), interface_(interface) {
     receiver_ = open_bound(interface, fd);
-    watch_ = std::jthread([this](const std::stop_token& stop) { await_return(stop); });
   }
 
   void set_receive_filters(std::span<const CanFilter> filters) override {
@@ -141,20 +137,8 @@ class SocketCanBus final : public DatagramBus {
                       static_cast<socklen_t>(bytes)) == 0;
   }
 
-  /// Not in the cycle: to ask for an interface by its name may load a module. The socket stays,
-  /// with its descriptor and options; when an interface goes the kernel unbinds it and drops its
-  /// filters.
-  void await_return(const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    while (!stop.stop_requested()) {
-      wake.wait_for(lock, stop, kLookAgain, [] { return false; });
-      if (gone_.load(std::memory_order_acquire) && !stop.stop_requested() && bind_again())
-        gone_.store(false, std::memory_order_release);
-    }
-  }
-
+  /// The socket stays, with its descriptor and options; when an interface goes the kernel unbinds
+  /// it and drops its filters.
   bool bind_again() noexcept {
     try {
       sockaddr_can address{};
@@ -189,7 +173,7 @@ class SocketCanBus final : public DatagramBus {
   /// Keeps errno; true if it is the link's.
   bool note_error() noexcept {
     statistics_.last_errno = errno;
-    if (is_gone_error(errno)) gone_.store(true, std::memory_order_release);
+    if (is_gone_error(errno)) watch_.note_gone();
     if (!is_link_error(errno)) return false;
     statistics_.link_down = true;
     statistics_.bus_off = false;  // a controller that was stopped starts afresh
@@ -201,13 +185,10 @@ class SocketCanBus final : public DatagramBus {
     return true;
   }
 
-  static constexpr std::chrono::milliseconds kLookAgain{100};
-
   std::string interface_;
   std::mutex filters_mutex_;
   std::vector<can_filter> filters_ = {can_filter{0, 0}};  ///< all
-  std::atomic<bool> gone_ = false;
-  std::jthread watch_;  ///< last: it ends before what it uses
+  ReturnWatch watch_{[this] { return bind_again(); }};    ///< last: it ends before what it uses
 };
 
 }  // namespace
