@@ -2,8 +2,8 @@
 // with torques that are finite and within the joints' limits.
 #include <cmath>
 
-#include "controller/arm_controller.h"
 #include "robots/loader/default_gains.h"
+#include "tests/fuzz/support/active_controller.h"
 #include "tests/fuzz/support/arms.h"
 #include "tests/fuzz/support/patched_message.h"
 #include "tests/fuzz/support/require.h"
@@ -15,24 +15,11 @@ namespace {
 class Controller {
  public:
   explicit Controller(const LoadedRobot& arm)
-      : arm_(arm.robot), controller_(arm, {}), gains_(default_gains(arm.robot)) {
-    state_.session = 9;
-    state_.period_ns = 1'000'000;
-    state_.num_joints = static_cast<std::int8_t>(arm_.size());
-    for (int i = 0; i < arm_.size(); ++i) {
-      const JointConfig& joint = arm_.joints[static_cast<std::size_t>(i)];
-      state_.q[i] = state_.theta[i] = joint.home;
-      state_.joint_flags[i] = joint_state_t::JOINT_FRESH;
-    }
-    state_.drive_state = joint_state_t::DRIVE_OFF;
-    for (const std::int8_t mode : {mode_request_t::REQUEST_HOLD, mode_request_t::REQUEST_ACTIVE}) {
-      for (int i = 0; i < 5; ++i) step(state_);
-      state_.drive_state = joint_state_t::DRIVE_ON;
-      request_.request = mode;
-      request_.client = 7;
-      ++request_.seq;
-      controller_.on_mode(request_);
-    }
+      : arm_(arm.robot),
+        controller_(arm, {}),
+        state_(fuzz::state_at_home(arm_)),
+        gains_(default_gains(arm.robot)) {
+    request_ = fuzz::activate(&controller_, [this] { step(state_); });
   }
 
   void run(fuzz::FuzzInput input) {
@@ -64,6 +51,7 @@ class Controller {
 
   void step(const joint_state_t& state) {
     const joint_command_t& answer = controller_.step(&state == &state_ ? next_state() : state);
+    state_.drive_state = fuzz::drives_after(answer);
     fuzz::require(answer.num_joints == arm_.size(), "an answer is for this arm");
     for (int i = 0; i < arm_.size(); ++i) {
       const double limit = arm_.joints[static_cast<std::size_t>(i)].torque_limit_Nm;
@@ -76,7 +64,7 @@ class Controller {
 
   const Robot& arm_;
   ArmController controller_;
-  joint_state_t state_{};
+  joint_state_t state_;
   mode_request_t request_{};
   compliance_goal_t goal_{};
   compliance_gains_t gains_;

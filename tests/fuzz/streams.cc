@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "controller/arm_controller.h"
+#include "tests/fuzz/support/active_controller.h"
 #include "tests/fuzz/support/arms.h"
 #include "tests/fuzz/support/patched_message.h"
 #include "tests/fuzz/support/require.h"
@@ -15,32 +15,13 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 constexpr double kFastest_m_per_s = 1.0;  // of a stream, along each axis
-constexpr int kStart = 400;               // cycles
 constexpr double kInertia_kgm2 = 0.05, kFriction_Nms_per_rad = 1.0;
 
 class Controller {
  public:
-  explicit Controller(const LoadedRobot& arm) : arm_(arm.robot), controller_(arm, {}) {
-    state_.session = 9;
-    state_.period_ns = 1'000'000;
-    state_.num_joints = static_cast<std::int8_t>(arm_.size());
-    for (int i = 0; i < arm_.size(); ++i) {
-      state_.q[i] = state_.theta[i] = arm_.joints[static_cast<std::size_t>(i)].home;
-      state_.joint_flags[i] = joint_state_t::JOINT_FRESH;
-    }
-    state_.drive_state = joint_state_t::DRIVE_OFF;
-    mode_request_t request{};
-    request.client = 7;
-    for (int i = 0; i < kStart; ++i) {  // braked, until the weight is carried
-      step();
-      const std::int8_t mode = controller_.status().mode;
-      if (mode == controller_status_t::MODE_ACTIVE) continue;
-      const bool holds = mode == controller_status_t::MODE_HOLD;
-      request.request = holds ? mode_request_t::REQUEST_ACTIVE : mode_request_t::REQUEST_HOLD;
-      ++request.seq;
-      controller_.on_mode(request);
-    }
-    require_active();
+  explicit Controller(const LoadedRobot& arm)
+      : arm_(arm.robot), controller_(arm, {}), state_(fuzz::state_at_home(arm_)) {
+    fuzz::activate(&controller_, [this] { step(); });
     free_ = true;
     begin_messages();
   }
@@ -79,7 +60,7 @@ class Controller {
   /// Good ones for this moment: the input changes them.
   void begin_messages() {
     const controller_status_t& status = controller_.status();
-    stream_.client = overlay_.client = 7;
+    stream_.client = overlay_.client = fuzz::kClient;
     stream_.num_joints = overlay_.num_joints = state_.num_joints;
     stream_.t0_ns = state_.time_ns;
     stream_.delay_s = 0.05F;
@@ -99,8 +80,7 @@ class Controller {
     ++state_.seq;
     state_.time_ns += state_.period_ns;
     const joint_command_t& answer = controller_.step(state_);
-    const bool on = answer.request != joint_command_t::REQUEST_OFF;
-    state_.drive_state = on ? joint_state_t::DRIVE_ON : joint_state_t::DRIVE_OFF;
+    state_.drive_state = fuzz::drives_after(answer);
     for (int i = 0; i < arm_.size(); ++i) {
       const JointConfig& joint = arm_.joints[static_cast<std::size_t>(i)];
       const double tau = answer.tau[i];
@@ -135,7 +115,7 @@ class Controller {
 
   const Robot& arm_;
   ArmController controller_;
-  joint_state_t state_{};
+  joint_state_t state_;
   target_stream_t stream_{};
   torque_overlay_t overlay_{};
   std::array<double, 16> last_{};
