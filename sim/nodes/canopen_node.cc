@@ -50,11 +50,9 @@ void CanopenNode::add_objects(const std::string& name) {
   dictionary_->add_writable(canopen::kConsumerHeartbeat, kU32, 0, 0, 0x7FFFFF);
   dictionary_->add_writable(canopen::kHeartbeatPeriod_ms, kU16, 0, 0, 65535);
   read_only({{0x1018, 0}, 1}, kU8, 4);
-  read_only({{0x1018, 1}, 4}, kU32, kVendor);
-  read_only({{0x1018, 2}, 4}, kU32, kProduct);
-  read_only({{0x1018, 3}, 4}, kU32, kRevision);
-  read_only({{0x1018, 4}, 4}, kU32, node_);  // serial number
-  read_only({{0x1200, 0}, 1}, kU8, 2);       // SDO server
+  for (std::uint8_t entry = 0; const double value : {kVendor, kProduct, kRevision, 1.0 * node_})
+    read_only({{0x1018, ++entry}, 4}, kU32, value);  // the last: serial number
+  read_only({{0x1200, 0}, 1}, kU8, 2);               // SDO server
   read_only({{0x1200, 1}, 4}, kU32, canopen::kSdoRequestCode + node_);
   read_only({{0x1200, 2}, 4}, kU32, canopen::kSdoAnswerCode + node_);
   dictionary_->add_writable(canopen::kSyncCounterOverflow, kU8, 0, 0, 240);
