@@ -23,7 +23,7 @@ def test_from_the_wires_to_the_first_push(tmp_path):
     first = led("\nn\n", out)
     assert first.returncode == 1, first.stdout + first.stderr
     assert "shoulder: damiao_mit:1 on arm: replies as 0x11" in first.stdout
-    assert "limber can motors zero" in first.stdout
+    assert "limber motors zero" in first.stdout
     assert verdicts(out) == {"wire": "passed", "motors": "passed", "zero": "failed"}
     again = led("\nn\n", out, "--from", "motors")  # each step may be done again
     assert again.returncode == 1, again.stdout + again.stderr

@@ -43,7 +43,7 @@ std::string dump(const std::vector<BusChoice>& buses) {
   out << YAML::EndSeq << YAML::Key << "complete" << YAML::Value << true << YAML::EndMap;
   if (!any) throw std::runtime_error("no motor answers; `limber motors scan` tells more");
   return std::string(
-             "# `limber can motors restore` writes what stands under settings, where a "
+             "# `limber motors restore` writes what stands under settings, where a "
              "motor has another\n# value; model has to agree, the rest is compared.\n") +
          out.c_str() + "\n";
 }

@@ -17,7 +17,7 @@ constexpr ProtocolKey kMyactuatorRequired[] = {
      "firmware",
      "V4.2 before version date 2026042402, V4.4 from it on; the driver compares it",
      {.word = "V4.4"},
-     "`limber can motors show`"},
+     "`limber motors show`"},
     {"motors.*",
      "model",
      "X6, X8, or other: from V4.4 on the driver compares it",

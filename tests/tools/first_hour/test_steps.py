@@ -34,7 +34,7 @@ def test_a_motor_that_is_missing_is_named_with_those_that_it_may_be():
 def test_a_number_that_is_written_twice_is_found():
     found = motors("damiao_mit:1", "damiao_mit:2", "damiao_mit:2")
     assert found.verdict == FAILED
-    assert "limber can motors set-id can0 damiao_mit:2 NUMBER" in found.cure
+    assert "limber motors set-id can0 damiao_mit:2 NUMBER" in found.cure
 
 
 @pytest.mark.parametrize(

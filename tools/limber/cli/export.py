@@ -27,7 +27,7 @@ def mjcf(
         console.print(f"MuJoCo's joints do not have {what}")
 
 
-@app.command(epilog="Example: limber export ros2 --allow-commands")
+@app.command(epilog="Example: limber ros2 --allow-commands")
 def ros2(
     robot: Annotated[
         str | None, typer.Option(help="Name or folder; default: the arm of the running stack.")

@@ -38,7 +38,7 @@ def joints(
     raise typer.Exit(command.run(robot, options, Amounts(angle, length), json, console))
 
 
-@groups.identify.command("first-hour", epilog="Example: limber identify first-hour my_arm")
+@groups.identify.command("first-hour", epilog="Example: limber first-hour my_arm")
 def first_hour(
     robot: Robot,
     out: Annotated[

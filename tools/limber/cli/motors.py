@@ -1,4 +1,4 @@
-"""Commands for single motors, before they are an arm: `limber can motors ...`, or without `can`."""
+"""Commands for single motors, before they are an arm: `limber motors ...`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -18,19 +18,19 @@ Fd = Annotated[bool, typer.Option("--fd", help="The bus is CAN-FD, which moteus 
 NUMBERS = {"min": 1, "max": 127}
 
 
-@app.command(epilog="Example: limber can motors scan can0 --fd")
+@app.command(epilog="Example: limber motors scan can0 --fd")
 def scan(bus: BusName, fd: Fd = False) -> None:
     """List the motors of every family that answer. Nothing is commanded or written."""
     _become("scan", bus, fd)
 
 
-@app.command(epilog="Example: limber can motors show can0 damiao_mit:3")
+@app.command(epilog="Example: limber motors show can0 damiao_mit:3")
 def show(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     """Show what a motor has stored, and what it measures."""
     _become("show", bus, fd, motor)
 
 
-@app.command("set-id", epilog="Example: limber can motors set-id can0 robstride:127 3")
+@app.command("set-id", epilog="Example: limber motors set-id can0 robstride:127 3")
 def set_id(
     bus: BusName,
     motor: Motor,
@@ -41,15 +41,13 @@ def set_id(
     _become("set-id", bus, fd, motor, str(number))
 
 
-@app.command(epilog="Example: limber can motors zero can0 damiao_mit:3")
+@app.command(epilog="Example: limber motors zero can0 damiao_mit:3")
 def zero(bus: BusName, motor: Motor, fd: Fd = False) -> None:
     """Make where a motor is its zero, stored and read back."""
     _become("zero", bus, fd, motor)
 
 
-@app.command(
-    "set-baud", epilog="Example: limber can motors set-baud can0 damiao_mit:3 5000000 --fd"
-)
+@app.command("set-baud", epilog="Example: limber motors set-baud can0 damiao_mit:3 5000000 --fd")
 def set_baud(
     bus: BusName,
     motor: Motor,
@@ -60,7 +58,7 @@ def set_baud(
     _become("set-baud", bus, fd, motor, str(rate))
 
 
-@app.command(epilog="Example: limber can motors watch can0 damiao_mit:1 damiao_mit:2")
+@app.command(epilog="Example: limber motors watch can0 damiao_mit:1 damiao_mit:2")
 def watch(
     bus: BusName,
     motors: Annotated[
@@ -72,7 +70,7 @@ def watch(
     _become("watch", bus, fd, *(motors or []))
 
 
-@app.command(epilog="Example: limber can motors dump can0 --out motors.yaml")
+@app.command(epilog="Example: limber motors dump can0 --out motors.yaml")
 def dump(
     buses: Annotated[list[str], typer.Argument(help="can0, or virtual:NAME; any number.")],
     out: Annotated[Path | None, typer.Option("--out", help="File for it.")] = None,
@@ -83,7 +81,7 @@ def dump(
     become("limber-motors", "dump", *map(_address, buses), *file, *(["--fd"] if fd else []))
 
 
-@app.command(epilog="Example: limber can motors restore motors.yaml")
+@app.command(epilog="Example: limber motors restore motors.yaml")
 def restore(file: Annotated[Path, typer.Argument(help="As dump wrote it.")]) -> None:
     """Show how motors differ from a dump and write its settings: never number, zero or bit rate."""
     become("limber-motors", "restore", str(file))

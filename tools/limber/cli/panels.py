@@ -17,27 +17,32 @@ PANELS = {
 }
 PLACES = {name: place for place, name in enumerate(sum(PANELS.values(), ()))}
 
-# Shorter, or as they were called in the version before: they work and are not shown.
-ELSEWHERE = {
+# What the last line of `limber --help` names; each works by its full name, too.
+SHORTER = {
+    "first-hour": "identify first-hour",
+    "motors": "can motors",
+    "ros2": "export ros2",
+    "sweep": "identify sweep",
+    "test": "dev test",
+}
+# As they were called in the version before: they work and are not shown.
+BEFORE = {
     "record": "log record",
     "replay": "log replay",
     "spy": "log spy",
     "measure": "log measure",
     "incident": "log black-box",
     "directions": "identify joints",
-    "first-hour": "identify first-hour",
-    "sweep": "identify sweep",
     "service": "export service",
-    "ros2": "export ros2",
-    "motors": "can motors",
     "experiment": "lecture experiment",
     "eval": "lecture eval",
     "referee": "dev check-trace",
     **{
         name: f"dev {name}"
-        for name in ("test", "bench", "soak", "fuzz", "coverage", "mutation", "docs", "faults")
+        for name in ("bench", "soak", "fuzz", "coverage", "mutation", "docs", "faults")
     },
 }
+ELSEWHERE = {**SHORTER, **BEFORE}
 
 
 class Commands(TyperGroup):

@@ -1,4 +1,4 @@
-"""`limber identify sweep`, in short `limber sweep`: many runs with other values."""
+"""`limber sweep`: many runs with other values."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,7 +11,7 @@ from limber.errors import InputError
 
 
 @groups.identify.command(
-    "sweep", epilog="Example: limber identify sweep push --vary gains.K_x=100..2000 --runs 200"
+    "sweep", epilog="Example: limber sweep push --vary gains.K_x=100..2000 --runs 200"
 )
 def sweep(
     what: Annotated[Path, typer.Argument(help="Scenario file, or a sweep's folder.")],

@@ -51,13 +51,13 @@ def judge(
                 others = ", ".join(foreign) or "none"
                 cures.append(
                     f"{joint}: supply, plug and bit rate of {motor}; motors that answer and are "
-                    f"not in robot.yaml: {others} (`limber can motors set-id` gives a new number)"
+                    f"not in robot.yaml: {others} (`limber motors set-id` gives a new number)"
                 )
             elif counts[motor] > 1:
                 lines[-1] += f": {counts[motor]} answers"
                 cures.append(
                     f"{counts[motor]} motors have the number {motor}: unplug one and give it "
-                    f"another: limber can motors set-id {_bus_word(bus)} {motor} NUMBER"
+                    f"another: limber motors set-id {_bus_word(bus)} {motor} NUMBER"
                 )
         lines += [f"{motor} on {bus['name']} is not in robot.yaml" for motor in foreign]
     return failed(lines[0], "; ".join(cures), *lines[1:]) if cures else Found(PASSED, tuple(lines))

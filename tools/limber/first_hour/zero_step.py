@@ -17,7 +17,7 @@ WAIT_S = 30.0
 MARGIN = 0.02  # rad or m beyond a joint's travel: a stop gives way
 CURE = (
     "turn the arm to its pose at zero (all joints of the URDF at 0), then, for each joint that is "
-    "wrong: limber can motors zero BUS FAMILY:NUMBER; or change offset_rad or offset_m of that "
+    "wrong: limber motors zero BUS FAMILY:NUMBER; or change offset_rad or offset_m of that "
     "joint in robot.yaml by the difference"
 )
 
@@ -31,7 +31,7 @@ def check(robot: Robot, console: Console) -> Found:
                 break
             if time.monotonic() > end:
                 silent = f"no reading of all joints within {WAIT_S:.0f} s: {found.awaited}"
-                return failed(silent, "`limber can motors scan BUS`", *found.news())
+                return failed(silent, "`limber motors scan BUS`", *found.news())
             time.sleep(PERIOD_S)
     return judge(robot, readings.theta, console)
 

@@ -1,4 +1,4 @@
-"""`limber export ros2`: out what arrives, in what is allowed."""
+"""`limber ros2`: out what arrives, in what is allowed."""
 
 import signal
 import threading
