@@ -24,8 +24,8 @@ file(GLOB LIMBER_LCM_PREFIX ${LIMBER_VENV}/lib/python3*/site-packages)
 if(NOT LIMBER_LCM_PREFIX)  # lcm-gen was found in there
   set(LIMBER_LCM_PREFIX ${LIMBER_VENV})
 endif()
-find_path(LIMBER_LCM_INCLUDE lcm/lcm-cpp.hpp HINTS ${LIMBER_LCM_PREFIX}/include NO_DEFAULT_PATH REQUIRED)
-find_library(LIMBER_LCM_LIBRARY liblcm.so.1 NAMES lcm HINTS ${LIMBER_LCM_PREFIX}/lib NO_DEFAULT_PATH REQUIRED)
+find_path(LIMBER_LCM_INCLUDE lcm/lcm-cpp.hpp HINTS ${LIMBER_LCM_PREFIX}/include NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH REQUIRED)
+find_library(LIMBER_LCM_LIBRARY liblcm.so.1 NAMES lcm HINTS ${LIMBER_LCM_PREFIX}/lib NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH REQUIRED)
 # The headers are for what lcm-gen writes; LCM's library is what tests compare limber's own wire format and logs with.
 add_library(lcm_headers INTERFACE)
 target_include_directories(lcm_headers SYSTEM INTERFACE ${LIMBER_LCM_INCLUDE})

@@ -57,8 +57,11 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 add_library(limber_flags INTERFACE)
 target_include_directories(limber_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
 # No -march=native: the distribution's KDL and Eigen would disagree about alignment across the library boundary.
-# No fused multiply-add contraction: the same scenario gives the same bytes with every compiler of one machine type.
+# No fused multiply-add: the same scenario gives the same bytes with every compiler and processor.
 target_compile_options(limber_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+  target_compile_options(limber_flags INTERFACE -U__ARM_FEATURE_FMA)  # Eigen's own
+endif()
 # The same objects make programs here and liblimber.so, which shows nothing but LIMBER_PUBLIC (common/public.h).
 target_compile_options(limber_flags INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden -fno-semantic-interposition)
 if(LIMBER_WERROR)

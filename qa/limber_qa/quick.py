@@ -1,6 +1,7 @@
 """`limber test --quick`: format, lint, and the unit tests of what changed, before a commit."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import PurePosixPath
@@ -74,6 +75,8 @@ def commands(files: list[str]) -> list[list[str]]:
     made = [PARTS["lint"].command(), [sys.executable, "-m", "ruff", "format", "--check", "."]]
     if sources := [path for path in cxx_files() if str(path) in files]:
         made += [check_format(sources)]
+        if shutil.which("clang-tidy"):
+            made += [[sys.executable, "-m", "limber", "dev", "tidy"]]
     if programs := unit_tests(files):
         made += [["ninja", "-C", str(BUILD), *programs]]
         made += [[str(BUILD / "tests" / name), "--gtest_brief=1"] for name in programs]

