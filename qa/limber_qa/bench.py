@@ -6,6 +6,7 @@ order), and the median of the processor's time counts.
 
 import json
 import os
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -36,51 +37,60 @@ PEER = "impedance/pinocchio/7"
 # What is measured again for each level of the kernel that the processor has (LIMBER_PROCESSOR).
 OF_LEVELS = (
     "terms/(limber|pinocchio)/|impedance/(limber|pinocchio)/7$|plant_step/(reference|mujoco|bare)"
-    "|Cycle/rigid/(cartesian_impedance|gravity_compensation)$"
+    "|BM_ControllerCycle/"
 )
 JOINTS = range(1, 17)
+# Ratios that are asked for: benchmark and peer, with AVX-512, with AVX2. The first that fits holds.
+GOALS = (
+    (r"impedance/limber/7 impedance/pinocchio/7", 0.20, 0.30),
+    (r"terms/limber/[1-6] terms/pinocchio/", 0.40, 0.50),
+    (r"BM_ControllerCycle/rigid/cartesian_impedance ", 0.70, 0.90),
+    (r"BM_ControllerCycle/rigid/gravity_compensation ", 0.50, 0.60),
+    (r"BM_ControllerCycle/rigid/", 1.20, 1.50),
+    (r"BM_ControllerCycle/", 1.60, 2.00),
+    (r"plant_step/reference plant_step/mujoco", 0.70, 1.00),
+    (r"plant_step/reference plant_step/bare_ode", 0.20, 0.35),
+)
 Medians = dict[str, float]  # ns, by the benchmark's name
 
 
-def figures(medians: Medians) -> list[Figure]:
-    """All figures with a peer, from the medians of one run of limber-bench."""
-
-    def beside(name: str, own: str, peer: str, goal: float | None = None) -> Figure:
-        return Figure(name, medians[own], peer, medians.get(peer), goal)
-
-    found = [
-        beside("terms and Cartesian impedance, 7 joints", "impedance/limber/7", PEER, 0.25),
-        beside("the same", "impedance/limber/7", "impedance/kdl/7"),
-    ]
-    for n in JOINTS:
-        found.append(beside(f"terms, {n} joints", f"terms/limber/{n}", f"terms/pinocchio/{n}"))
-    found.append(beside("terms, 7 joints", "terms/limber/7", "terms/kdl/7"))
-    for name in medians:
-        if name.startswith("BM_ControllerCycle/"):
-            _, kind, law = name.split("/")
-            goal = 0.6 if law == "cartesian_impedance" else 1.0
-            found.append(beside(f"whole controller cycle, {law} ({kind})", name, PEER, goal))
-    step = "simulated step of 1 ms, rigid arm, Runge-Kutta"
-    found.append(beside(step, "plant_step/reference", "plant_step/bare_ode", 0.2))
-    found.append(beside("the same by ODE", "plant_step/ode", "plant_step/bare_ode", 1.1))
-    found.append(
-        beside("the step by Runge-Kutta", "plant_step/reference", "plant_step/mujoco", 0.7)
-    )
-    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
-    lab = medians["lab_cycle/held"]
-    found.append(Figure("lab cycle without a log", lab, "its step and impedance", kernels, 1.5))
-    return found
+def goal(level: str, own: str, peer: str) -> float | None:
+    """Of the kernel at that level; of the plain one nothing is asked."""
+    for pattern, avx512, avx2 in GOALS:
+        if re.match(pattern, f"{own} {peer}"):
+            return {"avx512": avx512, "avx2": avx2}.get(level)
+    return None
 
 
 def level_figures(level: str, medians: Medians) -> list[Figure]:
-    """The same for a level of the kernel, which LIMBER_PROCESSOR chose for this run."""
-    step = "plant_step/reference"
+    """What depends on the kernel's level, each with a peer of the same run."""
     pairs = [("impedance/limber/7", PEER)]
     pairs += [(f"terms/limber/{n}", f"terms/pinocchio/{n}") for n in JOINTS]
     pairs += [(name, PEER) for name in medians if name.startswith("BM_ControllerCycle/")]
-    pairs += [(step, "plant_step/mujoco"), (step, "plant_step/bare_ode")]
+    pairs += [("plant_step/reference", f"plant_step/{name}") for name in ("mujoco", "bare_ode")]
     return [
-        Figure(f"{own} by {level}", medians[own], peer, medians.get(peer)) for own, peer in pairs
+        Figure(f"{own}, {level}", medians[own], peer, medians.get(peer), goal(level, own, peer))
+        for own, peer in pairs
+    ]
+
+
+def figures(medians: Medians) -> list[Figure]:
+    """The others that have a peer."""
+    ode, bare = medians["plant_step/ode"], "plant_step/bare_ode"
+    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
+    return [
+        *(
+            Figure(f"{what}/limber/7", medians[f"{what}/limber/7"], kdl, medians[kdl])
+            for what, kdl in (("impedance", "impedance/kdl/7"), ("terms", "terms/kdl/7"))
+        ),
+        Figure("plant_step/ode", ode, bare, medians[bare], 1.1),
+        Figure(
+            "lab cycle without a log",
+            medians["lab_cycle/held"],
+            "its step and impedance",
+            kernels,
+            1.5,
+        ),
     ]
 
 
@@ -105,12 +115,12 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
     quiet.rule("limber-bench and its peers: some minutes")
     report = _kernels()
     medians = medians_of(report)
-    found = figures(medians)
     fastest, *others = report["context"]["levels"].split()
+    found = level_figures(fastest, medians) + figures(medians)
     for level in others:
         run_again = _kernels(f"--benchmark_filter={OF_LEVELS}", LIMBER_PROCESSOR=level)
         found += level_figures(level, medians_of(run_again))
-    quiet.print(f"{_processor()}; the kernel's levels: {fastest} (above), {', '.join(others)}")
+    quiet.print(f"{_processor()}; the kernel's levels: {', '.join([fastest, *others])}")
     found += bench_round_trips.figures(prefix)
     found.append(bench_loop_parts.exchange(prefix))
     found += bench_loop_parts.lateness()
@@ -119,6 +129,7 @@ def bench(console: Console, as_json: bool = False, long: bool = False) -> int:
         prefix, "limber_qa.bench_recorder", str(LONG_LOADED_s if long else LOADED_s)
     )
     found += _reading()
+    found += _of_module(prefix, "limber_qa.bench_waiting")
     if as_json:
         print(json.dumps([figure.as_json() for figure in found], indent=1))
         return OK

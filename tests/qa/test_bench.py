@@ -31,45 +31,43 @@ def report(pinocchio: bool) -> dict:
 
 
 def test_ratio_and_verdict():
-    found = {figure.name: figure for figure in figures(medians_of(report(pinocchio=True)))}
-    first = found["terms and Cartesian impedance, 7 joints"]
+    rows = medians_of(report(pinocchio=True))
+    found = {figure.name: figure for figure in level_figures("avx2", rows)}
+    first = found["impedance/limber/7, avx2"]
     assert first.ratio == pytest.approx(0.25)
     assert first.verdict == "met"
-    assert found["terms, 16 joints"].ratio == pytest.approx(0.25)
-    assert found["whole controller cycle, cartesian_impedance (rigid)"].verdict == "missed"
-    assert found["whole controller cycle, joint_pd (rigid)"].verdict == "met"
-    step = found["simulated step of 1 ms, rigid arm, Runge-Kutta"]
-    assert step.ratio == pytest.approx(0.3)
-    assert step.verdict == "missed"
-    assert found["the same by ODE"].verdict == "met"
-    lab = found["lab cycle without a log"]
+    assert found["terms/limber/3, avx2"].peers == 1200.0
+    assert found["terms/limber/16, avx2"].ratio == pytest.approx(0.25)
+    assert found["BM_ControllerCycle/rigid/cartesian_impedance, avx2"].goal == 0.9
+    assert found["BM_ControllerCycle/rigid/joint_pd, avx2"].goal == 1.5
+    lab = figures(rows)[-1]
     assert lab.ratio == pytest.approx(6000.0 / (3000.0 + 1000.0))
     assert lab.verdict == "met"
 
 
+def test_more_is_asked_of_wider_registers_and_nothing_of_the_plain_ones():
+    rows = medians_of(report(pinocchio=True))
+    verdicts = [level_figures(level, rows)[0].verdict for level in ("avx512", "avx2", "plain")]
+    assert verdicts == ["missed", "met", ""]
+
+
 def test_without_the_peer_nothing_is_judged():
-    found = figures(medians_of(report(pinocchio=False)))
+    rows = medians_of(report(pinocchio=False))
+    found = level_figures("avx2", rows)
     assert {figure.verdict for figure in found if "pinocchio" in figure.peer} == {
         "peer not installed"
     }
-    assert all(figure.ratio is not None for figure in found if "kdl" in figure.peer)
+    assert all(figure.ratio is not None for figure in figures(rows))
 
 
 def test_mujoco_is_a_peer_where_it_is_installed():
     rows = medians_of(report(pinocchio=True))
-    step = "the step by Runge-Kutta"
-    without = {figure.name: figure for figure in figures(rows)}[step]
+    name = "plant_step/mujoco"
+    (without,) = (f for f in level_figures("avx2", rows) if f.peer == name)
     assert without.verdict == "peer not installed"
-    found = {figure.name: figure for figure in figures({**rows, "plant_step/mujoco": 5000.0})}
-    assert found[step].ratio == pytest.approx(0.6)
-    assert found[step].verdict == "met"
-
-
-def test_a_level_of_the_kernel_is_beside_its_peers_of_the_same_run():
-    found = {figure.name: figure for figure in level_figures("avx2", medians_of(report(True)))}
-    assert found["impedance/limber/7 by avx2"].ratio == pytest.approx(0.25)
-    assert found["terms/limber/3 by avx2"].peers == 1200.0
-    assert found["BM_ControllerCycle/rigid/joint_pd by avx2"].peer == "impedance/pinocchio/7"
+    (found,) = (f for f in level_figures("avx2", {**rows, name: 5000.0}) if f.peer == name)
+    assert found.ratio == pytest.approx(0.6)
+    assert found.verdict == "met"
 
 
 def test_json_holds_what_the_table_shows():
