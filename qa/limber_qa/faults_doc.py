@@ -58,13 +58,19 @@ def cause_text(row: dict[str, Any]) -> str:
 
 
 def reactions_text(row: dict[str, Any]) -> str:
-    """One reaction if all families have it, else each with its families."""
+    """One reaction if all families have it, else each with its families; that of most comes last,
+    without them.
+    """
     families: dict[str, list[str]] = {}
     for entry in protocols():
         text = reaction_text(row["families"].get(entry.word))
         families.setdefault(text, []).append(entry.title)
     if len(families) == 1:
         return next(iter(families))
+    usual = max(families, key=lambda text: len(families[text]))
+    if "" not in families and len(families[usual]) > len(protocols()) / 2:
+        del families[usual]
+        families[usual] = ["others"]
     return "; ".join(f"{', '.join(names)}: {text}" for text, names in families.items() if text)
 
 
