@@ -128,8 +128,7 @@ std::string CubemarsCodec::status_text(std::uint16_t status) const {
     const std::string_view text = cubemars::error_text(error, drive_.board);
     return fmt::format("error {}: {}", error, text.empty() ? "not in the manual" : text);
   }
-  if ((status & kLetGo) != 0)
-    return "makes no torque although commanded: switched off or reset, and its zero may be lost";
+  if ((status & kLetGo) != 0) return "makes no torque: switched off or reset; its zero may be lost";
   return (status & kRuns) != 0 ? "enabled" : "disabled, without an error";
 }
 

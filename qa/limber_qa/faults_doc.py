@@ -42,7 +42,7 @@ def reaction_text(cell: dict[str, Any] | None) -> str:
 
 def cause_text(row: dict[str, Any]) -> str:
     """The code of JOINT_STATE.fault and the words behind it, without addresses and remedies; of
-    each family where they differ.
+    each family where they differ, the first three.
     """
     found: list[str] = []
     for cell in row["families"].values():
@@ -54,7 +54,7 @@ def cause_text(row: dict[str, Any]) -> str:
         text = (cause.code if cause else "none") + (f": {words}" if words else "")
         if text not in found:
             found.append(text)
-    return "; ".join(found)
+    return "; ".join(found[:3]) + ("; ..." if len(found) > 3 else "")
 
 
 def reactions_text(row: dict[str, Any]) -> str:

@@ -106,7 +106,7 @@ def test_makers_tools_are_named_where_they_are_needed(motors):
         (["scan", "telepathy:0"], "virtual:NAME"),
         (
             ["show", "virtual:nobody", "damiao:3"],
-            "damiao_mit, robstride, myactuator, cubemars, moteus, cia402",
+            "damiao_mit, robstride, myactuator, moteus, cia402, cubemars",
         ),
         (["show", "virtual:nobody", "moteus:3"], "need --fd"),
         (["zero", "virtual:nobody", "damiao_mit:x"], "1 to 127"),

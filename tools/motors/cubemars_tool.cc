@@ -25,7 +25,8 @@ class CubemarsTool final : public MotorTool {
   std::string_view protocol() const noexcept override { return "cubemars"; }
   int last_number() const noexcept override { return cubemars::kLastMotor; }
 
-  /// Switches it off: of its frames the only one that is harmless.
+  bool presence_switches_off() const noexcept override { return true; }
+  /// Of its frames the only one that moves nothing.
   CanFrame presence(int number, bool /*fd*/) const noexcept override {
     return cubemars::off_frame(delivered(number, cubemars::kV2));
   }

@@ -26,8 +26,9 @@ extern const MotorTool* const kMoteusTool;
 extern const MotorTool* const kCanopenTool;
 
 std::span<const MotorTool* const> all_tools() noexcept {
-  static const std::array kAll = {kDamiaoTool,   kRobstrideTool, kMyactuatorTool,
-                                  kCubemarsTool, kMoteusTool,    kCanopenTool};
+  // Those that switch off others come last.
+  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMyactuatorTool,
+                                  kMoteusTool, kCanopenTool,   kCubemarsTool};
   return kAll;
 }
 

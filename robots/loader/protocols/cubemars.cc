@@ -45,6 +45,8 @@ constexpr ProtocolKey kCubemarsRequired[] = {
      "AK80-9, ..., or other; it gives the ranges that no drive tells",
      {.word = "AK10-9"},
      "the plate of the drive"},
+    {"motors.*.mit_range", "kp_Nm_per_rad", "500 in CubeMars drives", {500}},
+    {"motors.*.mit_range", "kd_Nms_per_rad", "5 in CubeMars drives", {5}},
 };
 constexpr const char* kCubemarsKeys[] = {"board", "model", "mit_range", "pole_pairs", "reply_id"};
 

@@ -117,7 +117,7 @@ TEST(CubemarsFamily, ADriveThatWasResetIsKnownByTheTorqueItDoesNotMake) {
   }
   drive.command(0.3);
   EXPECT_EQ(drive.read(kNoTorque), DriveCondition::kFailed);
-  EXPECT_NE(drive.words().find("reset, and its zero may be lost"), std::string::npos);
+  EXPECT_NE(drive.words().find("reset; its zero may be lost"), std::string::npos);
   EXPECT_EQ(drive.request(), kOff) << "not to go on by itself";
   EXPECT_EQ(drive.read("000#027FFF7FF8FF1E00"), DriveCondition::kFailed) << "until cleared";
   drive.family.codec->clear_error();
