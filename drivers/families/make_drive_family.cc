@@ -2,6 +2,7 @@
 #include <array>
 
 #include "drivers/families/cia402_family.h"
+#include "drivers/families/cubemars_family.h"
 #include "drivers/families/damiao_family.h"
 #include "drivers/families/moteus_family.h"
 #include "drivers/families/myactuator_family.h"
@@ -38,6 +39,10 @@ constexpr std::array kFamilies = {
         [](const JointConfig& joint, bool, double period_s) -> DriveFamily {
           return {myactuator_codec(joint, period_s), myactuator_startup(joint),
                   myactuator_intruders(joint)};
+        }},
+    Row{"cubemars",
+        [](const JointConfig& joint, bool, double) -> DriveFamily {
+          return {cubemars_codec(joint), cubemars_startup(joint), cubemars_intruders(joint)};
         }},
 };
 

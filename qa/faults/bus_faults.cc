@@ -191,7 +191,7 @@ std::vector<Fault> bus_faults() {
          instead->push_back(frame);
        }),
        .most_cycles = 3,
-       .protocols = only_damiao},
+       .protocols = {"damiao_mit", "cubemars"}},
       {.name = "replies of four bytes",
        .begin = replies([](CanFrame frame, auto* instead) {
          frame.length = 4;
@@ -235,7 +235,14 @@ std::vector<Fault> bus_faults() {
        .most_cycles = 400,
        .watched_cycles = 400},
       {.name = "the drive reports an error", .begin = drive_error, .most_cycles = 2},
-      {.name = "the drive disables itself", .begin = disabled, .most_cycles = 2},
+      {.name = "the drive disables itself",
+       .begin = disabled,
+       .most_cycles = 2,
+       .protocols = {"damiao_mit", "moteus", "cia402", "robstride", "myactuator"}},
+      {.name = "the drive disables itself, and its replies do not tell",
+       .begin = disabled,
+       .most_cycles = 20,
+       .protocols = {"cubemars"}},
       {.name = "another program disables the drive", .begin = foreign_disable, .most_cycles = 1},
       {.name = "another program commands the drive", .begin = foreign_master, .most_cycles = 1},
       {.name = "another program writes the drive's settings",

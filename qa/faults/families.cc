@@ -14,6 +14,7 @@ std::span<const Family> families() {
       Family{"cia402", "iiwa14", with_motion_of_cia402},
       Family{"robstride", "edulite_a3", with_motion_of_robstride},
       Family{"myactuator", "axol", with_motion_of_myactuator},
+      Family{"cubemars", "desktop2r_ak", with_motion_of_cubemars},
   };
   return kFamilies;
 }

@@ -31,5 +31,7 @@ CanFrame with_motion_of_robstride(const CanFrame& reply, const JointConfig& join
                                   const MotionChange& change);
 CanFrame with_motion_of_myactuator(const CanFrame& reply, const JointConfig& joint, bool fd,
                                    const MotionChange& change);
+CanFrame with_motion_of_cubemars(const CanFrame& reply, const JointConfig& joint, bool fd,
+                                 const MotionChange& change);
 
 }  // namespace limber::faults

@@ -106,7 +106,7 @@ bool FaultStage::is_mine(const CanFrame& frame) const {
   const DriveConfig& drive = joint().drive;
   std::uint32_t id = drive.reply_id;
   for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
-    if (has_kind(frame, drive, id)) return !tells_setting(frame);
+    if (has_kind(frame, drive, id)) return family_.codec->is_mine(frame) && !tells_setting(frame);
   }
   return false;
 }

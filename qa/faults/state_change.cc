@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "drivers/protocols/cia402_pdos.h"
+#include "drivers/protocols/cubemars.h"
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
@@ -79,6 +80,15 @@ CanFrame with_motion_of_myactuator(const CanFrame& reply, const JointConfig& joi
   motion.position_rad += change.angle_rad;
   motion.velocity_rad_per_s += change.speed_rad_per_s;
   return myactuator::encode_motion(motion, joint.drive.range, mit::Quantiser::kRound);
+}
+
+CanFrame with_motion_of_cubemars(const CanFrame& reply, const JointConfig& joint, bool /*fd*/,
+                                 const MotionChange& change) {
+  cubemars::State state;
+  if (!cubemars::decode_state(reply, joint.drive, &state)) return reply;
+  state.position_rad += change.angle_rad;
+  state.velocity_rad_per_s += change.speed_rad_per_s;
+  return cubemars::encode_state(state, joint.drive, mit::Quantiser::kRound);
 }
 
 CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,

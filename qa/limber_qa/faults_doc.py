@@ -42,7 +42,7 @@ def reaction_text(cell: dict[str, Any] | None) -> str:
 
 def cause_text(row: dict[str, Any]) -> str:
     """The code of JOINT_STATE.fault and the words behind it, without addresses and remedies; of
-    each family where they differ.
+    each family where they differ, the first three.
     """
     found: list[str] = []
     for cell in row["families"].values():
@@ -54,17 +54,23 @@ def cause_text(row: dict[str, Any]) -> str:
         text = (cause.code if cause else "none") + (f": {words}" if words else "")
         if text not in found:
             found.append(text)
-    return "; ".join(found)
+    return "; ".join(found[:3]) + ("; ..." if len(found) > 3 else "")
 
 
 def reactions_text(row: dict[str, Any]) -> str:
-    """One reaction if all families have it, else each with its families."""
+    """One reaction if all families have it, else each with its families; that of most comes last,
+    without them.
+    """
     families: dict[str, list[str]] = {}
     for entry in protocols():
         text = reaction_text(row["families"].get(entry.word))
         families.setdefault(text, []).append(entry.title)
     if len(families) == 1:
         return next(iter(families))
+    usual = max(families, key=lambda text: len(families[text]))
+    if "" not in families and len(families[usual]) > len(protocols()) / 2:
+        del families[usual]
+        families[usual] = ["others"]
     return "; ".join(f"{', '.join(names)}: {text}" for text, names in families.items() if text)
 
 

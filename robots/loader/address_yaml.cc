@@ -29,10 +29,12 @@ void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig
   const std::string taken = fmt::format("is taken by {} on the same bus", owner);
   const long id = yaml.integer("id", 1, 127);
   if (uses_id(other, mine.command_id)) yaml.refuse("id", fmt::format("{} {}", id, taken));
-  const bool reply_taken = uses_id(other, mine.reply_id);
+  const bool shared = other.protocol == mine.protocol && mine.protocol->shares_reply_id &&
+                      mine.reply_id == other.reply_id;
+  const bool reply_taken = !shared && uses_id(other, mine.reply_id);
   if (reply_taken && yaml.has("reply_id"))
     yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
-  if (reply_taken || uses_id(mine, other.command_id) || uses_id(mine, other.reply_id))
+  if (reply_taken || uses_id(mine, other.command_id) || (!shared && uses_id(mine, other.reply_id)))
     yaml.refuse("id", fmt::format("{}: one of its identifiers {}", id, taken));
 }
 

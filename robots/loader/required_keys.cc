@@ -80,7 +80,11 @@ void add_keys_of_protocols(const std::string& section, std::vector<RequiredKey>*
   }
   for (const DriveProtocol* protocol : drive_protocols()) {
     for (const ProtocolKey& key : protocol->required) {
-      if (std::string_view(key.section).starts_with(section + "."))
+      const auto same = [&](const RequiredKey& row) {
+        return row.section == std::string_view(key.section) && row.key == std::string_view(key.key);
+      };
+      if (std::string_view(key.section).starts_with(section + ".") &&
+          std::ranges::none_of(*all, same))
         all->push_back({key.section, key.key, "", key.what});
     }
   }

@@ -79,6 +79,8 @@ struct DriveConfig {
   NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
   double timeout_torque_Nm = 5.0;    ///< moteus: most that brakes the joint after a time-out
   double rated_torque_Nm = 1.0;      ///< CiA 402: torques count in thousandths of it (6076h)
+  int board = 0;                     ///< CubeMars: its generation, 1 to 3
+  int pole_pairs = 21;               ///< CubeMars V3: of the rotor
   double counts_per_turn = 16384.0;  ///< motor encoder, per joint revolution
   /// Above it the driver warns; infinite: never.
   double warning_temperature_degC = std::numeric_limits<double>::infinity();

@@ -3,6 +3,7 @@
 
 #include "robots/loader/protocols/drive_protocol.h"
 #include "sim/nodes/cia402_node.h"
+#include "sim/nodes/cubemars_node.h"
 #include "sim/nodes/damiao_node.h"
 #include "sim/nodes/moteus_node.h"
 #include "sim/nodes/myactuator_node.h"
@@ -36,6 +37,10 @@ constexpr std::array kNodes = {
     Row{"myactuator",
         [](const JointConfig& joint, bool) -> Node {
           return std::make_unique<MyactuatorNode>(joint);
+        }},
+    Row{"cubemars",
+        [](const JointConfig& joint, bool) -> Node {
+          return std::make_unique<CubemarsNode>(joint);
         }},
 };
 

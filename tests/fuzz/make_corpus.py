@@ -74,6 +74,7 @@ ROBOTS: dict[str, tuple[str, Callable[[int], bool]]] = {
     "damiao": ("quick", lambda id: id in (0x01, 0x11, 0x7FF)),
     "moteus": ("planar2r_push", moteus_first),
     "cia402": ("panda_push", lambda id: id in (0, 0x80) or id & 0x7F == 1),
+    "cubemars": ("desktop2r_ak_push", lambda id: id in (0x0, 0x01)),
     "myactuator": ("axol_push", lambda id: id in (0x141, 0x241, 0x401, 0x501)),
     "robstride": ("edulite_a3_push", lambda id: id & 0xFF == 1 or id & 0xFFFF == 0x1FD),
 }

@@ -59,6 +59,7 @@ TEST(Recovery, ADriveThatFailedIsEnabledAgain) {
                                      {"panda", "joint2"},
                                      {"ideal7", "joint_2"},
                                      {"axol", "shoulder_2"},
+                                     {"desktop2r_ak", "elbow"},
                                      {"testbench", "joint"}}) {
     const Course course = run(robot, 10.0,
                               "  - {at_s: 0.3, mode: hold}\n"

@@ -84,7 +84,7 @@ TEST(WrongArm, AnAngleThatIsOffIsReadSo) {
 
 // A drive that keeps one turn, switched on beyond half a turn from its zero: either way.
 TEST(WrongArm, ADriveThatReadsAWholeTurnOffIsHeldWhereItIs) {
-  for (const char* name : {"openarm", "edulite_a3", "axol"}) {
+  for (const char* name : {"openarm", "edulite_a3", "axol", "desktop2r_ak"}) {
     const LoadedRobot robot = load_robot(name);
     for (std::size_t i = 0; i < robot.robot.joints.size(); ++i) {
       for (const double turn : {2.0 * std::numbers::pi, -2.0 * std::numbers::pi}) {

@@ -12,6 +12,7 @@ from motor_bus import forgetful_drive, frames_of, sending
 ARMS = {
     "axol": ("myactuator", (1, 2, 3, 4, 5)),
     "desktop2r": ("damiao_mit", (1, 2)),
+    "desktop2r_ak": ("cubemars", (1, 2)),
     "edulite_a3": ("robstride", (1, 2, 3, 4, 5, 6)),
     "planar2r": ("moteus", (1, 2)),
     "testbench": ("cia402", (1,)),
@@ -105,7 +106,7 @@ def test_makers_tools_are_named_where_they_are_needed(motors):
         (["scan", "telepathy:0"], "virtual:NAME"),
         (
             ["show", "virtual:nobody", "damiao:3"],
-            "damiao_mit, robstride, myactuator, moteus, cia402",
+            "damiao_mit, robstride, myactuator, moteus, cia402, cubemars",
         ),
         (["show", "virtual:nobody", "moteus:3"], "need --fd"),
         (["zero", "virtual:nobody", "damiao_mit:x"], "1 to 127"),

@@ -57,6 +57,7 @@ def numbers(folder) -> dict[str, dict]:
         "trlc_dk1_push",
         "rebot_b601_dm_push",
         "axol_push",
+        "desktop2r_ak_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):

@@ -61,20 +61,6 @@ Value register_name(std::uint8_t reg) {
   return {row == nullptr ? "register " + std::to_string(reg) : row->name, "", ""};
 }
 
-const char* special_word(mit::Special special) {
-  switch (special) {
-    case mit::Special::kEnable:
-      return "enable";
-    case mit::Special::kDisable:
-      return "disable";
-    case mit::Special::kSetZero:
-      return "set zero";
-    case mit::Special::kClearError:
-      break;
-  }
-  return "clear error";
-}
-
 }  // namespace
 
 std::span<const DamiaoRegister> damiao_registers() noexcept { return kDamiaoRegisters; }

@@ -5,6 +5,7 @@
 
 #include "robots/loader/protocols/drive_protocol.h"
 #include "tools/can/canopen_decoder.h"
+#include "tools/can/cubemars_decoder.h"
 #include "tools/can/damiao_decoder.h"
 #include "tools/can/moteus_decoder.h"
 #include "tools/can/myactuator_decoder.h"
@@ -56,6 +57,13 @@ constexpr std::array kDecoders = {
           return std::make_unique<MyactuatorDecoder>(motor);
         },
         .add_messages = add_myactuator_messages,
+    },
+    DriveDecoders{
+        .protocol = "cubemars",
+        .make = [](const Motor& motor, const BusFacts&) -> Decoder {
+          return std::make_unique<CubemarsDecoder>(motor);
+        },
+        .add_messages = add_cubemars_messages,
     },
 };
 

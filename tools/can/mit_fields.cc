@@ -32,6 +32,20 @@ Signal one_sided(const char* name, int start, double range, const char* unit) {
 
 }  // namespace
 
+const char* special_word(mit::Special special) {
+  switch (special) {
+    case mit::Special::kEnable:
+      return "enable";
+    case mit::Special::kDisable:
+      return "disable";
+    case mit::Special::kSetZero:
+      return "set zero";
+    case mit::Special::kClearError:
+      break;
+  }
+  return "clear error";
+}
+
 std::vector<Value> mit_values(const mit::Command& command) {
   return {{"position", number(command.position_rad), "rad"},
           {"velocity", number(command.velocity_rad_per_s), "rad/s"},

@@ -7,6 +7,8 @@
 
 namespace limber::bus_tools {
 
+/// "set zero".
+const char* special_word(mit::Special special);
 std::vector<Value> mit_values(const mit::Command& command);
 /// Of a state. Drives truncate: half a count more is what they measured, on average.
 std::vector<Value> mit_values(const mit::Reply& reply, const CommandRange& range);

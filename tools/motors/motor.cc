@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <stdexcept>
 
 #include "common/config_error.h"
@@ -41,11 +42,16 @@ Wire open(const BusChoice& bus, const MotorTool* tool) {
 }
 
 void scan(Wire* wire, bool fd, const std::function<void(const Motor&, const Found&)>& found) {
+  std::set<int> taken;
   for (const MotorTool* tool : all_tools()) {
     if (tool->needs_fd() && !fd) continue;
     for (int number = 1; number <= tool->last_number(); ++number) {
+      if (tool->presence_switches_off() && taken.contains(number)) continue;
       wire->send(tool->presence(number, fd), kScan_s, [&](const CanFrame& frame) {
-        if (const auto motor = tool->found(frame)) found({tool, motor->number}, *motor);
+        const auto motor = tool->found(frame);
+        if (!motor) return;
+        taken.insert(motor->number);
+        found({tool, motor->number}, *motor);
       });
     }
   }

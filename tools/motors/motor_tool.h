@@ -70,6 +70,8 @@ class MotorTool {
 
   /// A request that the drive with this number answers, and that changes nothing.
   virtual CanFrame presence(int number, bool fd) const noexcept = 0;
+  /// Of presence(): it also does so to drives of other families with this number.
+  virtual bool presence_switches_off() const noexcept { return false; }
   virtual std::optional<Found> found(const CanFrame& frame) const = 0;
 
   Wire::Accept comes_from(int number) const;  ///< found() of this motor

@@ -21,12 +21,14 @@ constexpr double kAtZero_rad = 0.01;
 extern const MotorTool* const kDamiaoTool;
 extern const MotorTool* const kRobstrideTool;
 extern const MotorTool* const kMyactuatorTool;
+extern const MotorTool* const kCubemarsTool;
 extern const MotorTool* const kMoteusTool;
 extern const MotorTool* const kCanopenTool;
 
 std::span<const MotorTool* const> all_tools() noexcept {
-  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMyactuatorTool, kMoteusTool,
-                                  kCanopenTool};
+  // Those that switch off others come last.
+  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMyactuatorTool,
+                                  kMoteusTool, kCanopenTool,   kCubemarsTool};
   return kAll;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "robots/loader/protocols/drive_protocol.h"
+#include "robots/loader/protocols/mit_range.h"
 
 namespace limber {
 namespace {
@@ -29,19 +30,8 @@ constexpr ProtocolKey kDamiaoRequired[] = {
 };
 constexpr const char* kDamiaoKeys[] = {"mit_range", "reply_id"};
 
-CommandRange read_range(const YamlMap& yaml) {
-  CommandRange range;
-  range.position_rad = yaml.number("position_rad", {1.0, 200.0});
-  range.velocity_rad_per_s = yaml.number("velocity_rad_per_s", {0.1, 1000.0});
-  range.torque_Nm = yaml.number("torque_Nm", {0.01, 5e4});
-  range.kp_Nm_per_rad = yaml.number("kp_Nm_per_rad", {1.0, 5000.0});
-  range.kd_Nms_per_rad = yaml.number("kd_Nms_per_rad", {0.01, 500.0});
-  yaml.finish();
-  return range;
-}
-
 void read_damiao_mit_motor(const YamlMap& yaml, DriveConfig* drive) {
-  drive->range = read_range(yaml.map("mit_range"));
+  drive->range = read_mit_range(yaml.map("mit_range"));
   drive->counts_per_turn = std::exp2(yaml.integer("encoder_bits", 8, 24));
   if (!(drive->peak_torque_Nm <= drive->range.torque_Nm)) {
     const bool exchanged = drive->peak_torque_Nm <= drive->range.velocity_rad_per_s;

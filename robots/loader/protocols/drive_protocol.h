@@ -49,16 +49,17 @@ struct SettingFrames {
 };
 
 struct DriveProtocol {
-  std::string_view word;      ///< `protocol:` of a motor in robot.yaml
-  std::string_view title;     ///< its name in tables and texts
-  double enabling_s = 0.1;    ///< longest that a drive may take to be enabled
-  bool needs_fd = false;      ///< its frames are longer than eight bytes
-  bool usually_fd = true;     ///< `limber new` writes a CAN-FD bus
-  bool reports_link = false;  ///< its drives can have a link encoder and a torque sensor
-  bool needs_sync = false;    ///< one SYNC a cycle on each of its buses
-  bool rotary_only = false;   ///< counts turns
-  bool single_turn = false;   ///< unless a motor has `keeps_turns: true`
-  bool hex_ids = false;       ///< its makers' tools write identifiers in hexadecimal digits
+  std::string_view word;         ///< `protocol:` of a motor in robot.yaml
+  std::string_view title;        ///< its name in tables and texts
+  double enabling_s = 0.1;       ///< longest that a drive may take to be enabled
+  bool needs_fd = false;         ///< its frames are longer than eight bytes
+  bool usually_fd = true;        ///< `limber new` writes a CAN-FD bus
+  bool reports_link = false;     ///< its drives can have a link encoder and a torque sensor
+  bool needs_sync = false;       ///< one SYNC a cycle on each of its buses
+  bool rotary_only = false;      ///< counts turns
+  bool single_turn = false;      ///< unless a motor has `keeps_turns: true`
+  bool shares_reply_id = false;  ///< its drives may reply alike: the data name the sender
+  bool hex_ids = false;          ///< its makers' tools write identifiers in hexadecimal digits
   const char* id_found = "node number of the drive";
   double sample_point = 0.0;  ///< that its drives want on the bus; 0: any
   double usual_gear_ratio = 1.0;

@@ -10,10 +10,11 @@ extern const DriveProtocol kMoteus;
 extern const DriveProtocol kCia402;
 extern const DriveProtocol kRobstride;
 extern const DriveProtocol kMyactuator;
+extern const DriveProtocol kCubemars;
 
 std::span<const DriveProtocol* const> drive_protocols() noexcept {
   static constexpr std::array kAll = {
-      &kDamiaoMit, &kMoteus, &kCia402, &kRobstride, &kMyactuator,
+      &kDamiaoMit, &kMoteus, &kCia402, &kRobstride, &kMyactuator, &kCubemars,
   };
   return kAll;
 }

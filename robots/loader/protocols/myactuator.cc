@@ -69,7 +69,7 @@ bool reserves(const DriveConfig& drive, std::uint32_t id) {
 }
 
 /// Orders to all motors, and the number for all; and what starts the update of the firmware.
-bool accepts(const DriveConfig& drive, std::uint32_t id) {
+bool myactuator_accepts(const DriveConfig& drive, std::uint32_t id) {
   return id == 0x280 || id == 0x300 || id == ((number_of(drive) & 0x1FU) << 6U | 0x28U);
 }
 
@@ -106,7 +106,7 @@ const DriveProtocol kMyactuator = {
     .frames = myactuator_frames,
     .setting = myactuator_setting,
     .reserves_id = reserves,
-    .accepts_id = accepts,
+    .accepts_id = myactuator_accepts,
 };
 
 }  // namespace limber

@@ -9,7 +9,7 @@ import pytest
 from limber.errors import InputError
 from limber_qa.check_trace.arm import read_arm
 from limber_qa.check_trace.candump import Trace, read_trace
-from limber_qa.check_trace.drives import cia402, damiao_mit, moteus, myactuator, robstride
+from limber_qa.check_trace.drives import cia402, cubemars, damiao_mit, moteus, myactuator, robstride
 from limber_qa.check_trace.events import Kind
 from limber_qa.check_trace.judge import judge
 
@@ -179,6 +179,65 @@ def test_myactuator_states(tmp_path):
     assert [one.failed for one in found] == [False, False, True, True]
     assert found[0].position == pytest.approx(10, abs=1e-3)
     assert found[0].velocity == pytest.approx(1.032, abs=1e-3)
+
+
+AK60_6 = read_arm("desktop2r_ak").motors[0]
+AK80_9 = replace(
+    AK60_6, number=2, keys={"model": "AK80-9", "board": "V2", "gear_ratio": 9, "keeps_turns": True}
+)
+AK10_9 = replace(AK80_9, number=0x68, keys=AK80_9.keys | {"model": "AK10-9", "board": "V3"})
+
+
+@pytest.mark.parametrize(
+    ("drive", "frame", "expected"),
+    [
+        (AK80_9, "002#77CE87A0CC28F621", (-0.8, 3, 25, 0.8, -4.2)),
+        (AK10_9, "00000868#1EB4CC8A3076D85E", (1, -2, 60, 1.5, 2.5)),
+    ],
+)
+def test_cubemars_command(tmp_path, drive, frame, expected):
+    (hold,) = cubemars.commands(on_can0(drive), trace(tmp_path, frame))
+    assert hold.kind is Kind.HOLD
+    assert hold.position == pytest.approx(expected[0], abs=26 / 65535)
+    assert hold.velocity == pytest.approx(expected[1], abs=100 / 4095)
+    assert hold.kp == pytest.approx(expected[2], abs=500 / 4095)
+    assert hold.kd == pytest.approx(expected[3], abs=5 / 4095)
+    assert hold.torque == pytest.approx(expected[4], abs=cubemars.resolution_Nm(drive))
+
+
+@pytest.mark.parametrize(
+    ("drive", "frame", "kind"),
+    [
+        (AK80_9, "002#7FFF7FF0000007FF", Kind.FOLLOW),
+        (AK80_9, "002#FFFFFFFFFFFFFFFC", Kind.ENABLE),
+        (AK80_9, "002#FFFFFFFFFFFFFFFD", Kind.DISABLE),
+        (AK80_9, "002#FFFFFFFFFFFFFFFE", Kind.INVALID),
+        (AK80_9, "002#FFFFFFFFFFFF0000", Kind.INVALID),
+        (AK80_9, "002#7FFF7FF0000007", Kind.INVALID),
+        (AK10_9, "00000868#0000007FFF7FF7FF", Kind.FOLLOW),
+        (AK10_9, "00000168#00000000", Kind.DISABLE),
+        (AK10_9, "00000168#00000001", Kind.INVALID),
+        (AK10_9, "00000868#FFFFFFFFFFFFFFFD", Kind.INVALID),
+    ],
+)
+def test_cubemars_kinds(tmp_path, drive, frame, kind):
+    (command,) = cubemars.commands(on_can0(drive), trace(tmp_path, frame))
+    assert command.kind is kind
+
+
+def test_cubemars_states(tmp_path):
+    """Whose they are tells the first byte, whether it is on what it was told."""
+    state = "000#0277CE87A6212400"
+    frames = (state, "002#FFFFFFFFFFFFFFFD", state, "002#7FFF7FF0000007FF", state)
+    frames += ("002#FFFFFFFFFFFFFFFC", state, "000#0377CE87A6212400", "000#0277CE87A6212402")
+    found = cubemars.states(on_can0(AK80_9), trace(tmp_path, *frames))
+    assert [one.enabled for one in found] == [True, False, False, True, False]
+    assert [one.failed for one in found] == [False] * 4 + [True]
+    assert found[0].position == pytest.approx(-0.8, abs=25 / 65535)
+    assert found[0].velocity == pytest.approx(3, abs=100 / 4095)
+    (of_v3,) = cubemars.states(on_can0(AK10_9), trace(tmp_path, "00002968#0384FF9C00961F00"))
+    assert of_v3.position == pytest.approx(math.pi / 2)
+    assert of_v3.velocity == pytest.approx(-1000 / 60 * TURN_rad / 189)
 
 
 def test_moteus_command(tmp_path):

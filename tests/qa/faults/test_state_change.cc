@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "drivers/protocols/cia402_pdos.h"
+#include "drivers/protocols/cubemars.h"
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
@@ -40,6 +41,25 @@ TEST(StateChange, Damiao) {
   EXPECT_EQ(read.rotor_temperature_degC, 50);
   EXPECT_EQ(changed.id, 0x11U);
   EXPECT_EQ(changed.timestamp_ns, 7);
+}
+
+TEST(StateChange, Cubemars) {
+  JointConfig joint = joint_with("cubemars");
+  joint.drive.board = cubemars::kV2;
+  joint.drive.command_id = 3;
+  const CanFrame frame =
+      cubemars::encode_state({1.0, 2.0, 3.0, 40, 2}, joint.drive, mit::Quantiser::kRound);
+  const CanFrame changed = with_motion(frame, joint, false, {0.5, 3.0});
+  cubemars::State read;
+  ASSERT_TRUE(cubemars::decode_state(changed, joint.drive, &read));
+  EXPECT_NEAR(read.position_rad, 1.5, 25.0 / 65535);
+  EXPECT_NEAR(read.velocity_rad_per_s, 5.0, 60.0 / 4095);
+  EXPECT_NEAR(read.torque_Nm, 3.0, 20.0 / 4095);
+  EXPECT_EQ(read.temperature_degC, 40);
+  EXPECT_EQ(read.error, 2);
+  CanFrame of_another = frame;
+  of_another.data[0] = 4;
+  EXPECT_EQ(with_motion(of_another, joint, false, {0.5, 3.0}).data, of_another.data);
 }
 
 TEST(StateChange, Moteus) {

@@ -176,6 +176,50 @@ TEST_F(Myactuator, Orders) {
   EXPECT_EQ(said(decoder, "141#8000").substr(0, 25), "elbow command unreadable:");
 }
 
+// --- CubeMars: motor 2, an AK80-9 ----------------------------------------------------------------
+
+Robot ak80_9(int board) {
+  Robot robot = board == 3 ? one_motor("cubemars", 0x802, 0x2902) : one_motor("cubemars", 2, 0);
+  robot.joints[0].drive.board = board;
+  robot.joints[0].drive.range = {12.5, 50.0, 18.0, 500.0, 5.0};
+  robot.joints[0].drive.gear_ratio = 9.0;
+  robot.joints[0].drive.torque_constant_Nm_per_A = 2.0;
+  return robot;
+}
+
+// 30670, 2170, 204, 655 and 1569 counts; of states half a count more.
+TEST(Cubemars, BoardsV1AndV2) {
+  const Robot robot = ak80_9(2);
+  BusDecoder decoder{robot, 0};
+  EXPECT_EQ(said(decoder, "002#77CE87A0CC28F621"),
+            "elbow command MIT command: position -0.80014 rad, velocity 2.9915 rad/s, kp 24.908 N "
+            "m/rad, kd 0.79976 N m s/rad, torque -4.2066 N m");
+  EXPECT_EQ(said(decoder, "002#FFFFFFFFFFFFFFFC"), "elbow command enable: ");
+  EXPECT_EQ(said(decoder, "002#FFFFFFFFFFFFFFFE"), "elbow command set zero: ");
+  EXPECT_EQ(said(decoder, "000#0277CE87A6212402"),
+            "elbow reply state: over-current, position -0.79995 rad, velocity 3.0037 rad/s, torque "
+            "-4.2022 N m, T 36 degC");
+  EXPECT_EQ(said(decoder, "000#0377CE87A6212402").find("elbow"), std::string::npos);
+  EXPECT_EQ(said(decoder, "000#0277CE87A621").substr(0, 23), "elbow reply unreadable:");
+  EXPECT_EQ(said(decoder, "00002902#0000000000001E00"),
+            "elbow reply state of servo mode: it hears no MIT frame: ");
+  const Robot v1 = ak80_9(1);
+  BusDecoder of_v1{v1, 0};
+  EXPECT_EQ(said(of_v1, "000#0277CE87A621"),
+            "elbow reply state: position -0.79995 rad, velocity 3.0037 rad/s, torque -4.2022 N m");
+}
+
+TEST(Cubemars, BoardsV3) {
+  const Robot robot = ak80_9(3);
+  BusDecoder decoder{robot, 0};
+  EXPECT_EQ(said(decoder, "00000802#0CC28F77CE87A621").substr(0, 48),
+            "elbow command MIT command: position -0.80014 rad");
+  EXPECT_EQ(said(decoder, "00000102#00000000").substr(0, 23), "elbow command packet 1:");
+  EXPECT_EQ(said(decoder, "00002902#0384FF9C00961F07"),
+            "elbow reply state: stalled, position 1.5708 rad, velocity -0.55407 rad/s, torque 3 N "
+            "m, T 31 degC");
+}
+
 // --- moteus: servo 4 -----------------------------------------------------------------------------
 
 struct Moteus : ::testing::Test {

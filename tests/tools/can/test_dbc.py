@@ -85,7 +85,21 @@ def test_canopen_pdos(load):
     assert database.decode_message(0x000, b"\x81\x01") == {"command": "reset node", "node": 1}
 
 
-@pytest.mark.parametrize("robot", ["antagonist2r", "baxter", "desktop2r", "ideal7", "iiwa14"])
+def test_cubemars_states_are_of_all_motors(load):
+    """Both reply under 0, and the first byte tells who: 12.5 rad, 50 rad/s, 15 N m."""
+    database = load("desktop2r_ak", "arm")
+    state = database.decode_message(0x000, bytes.fromhex("0277CE87A6212402"))
+    assert (state["id"], state["T"], state["error"]) == (2, 36, 2)
+    assert state["position"] == pytest.approx(-0.8, abs=25 / 65535)
+    assert state["velocity"] == pytest.approx(3.0, abs=100 / 4095)
+    assert state["torque"] == pytest.approx((1569.5 / 4095 * 2 - 1) * 15, abs=30 / 4095)
+    command = database.decode_message(0x001, bytes.fromhex("77CE87A0CC28F621"))
+    assert command["kp"] == pytest.approx(25, abs=500 / 4095)
+
+
+@pytest.mark.parametrize(
+    "robot", ["antagonist2r", "baxter", "desktop2r", "desktop2r_ak", "ideal7", "iiwa14"]
+)
 def test_every_robots_files_are_accepted(limber, tmp_path, robot):
     """cantools refuses signals that overlap or leave their frame."""
     done = limber("can", "dbc", robot, "--out", str(tmp_path))

@@ -16,7 +16,8 @@ def test_a_word_or_its_beginning(word):
 @pytest.mark.parametrize("word", ["", "steam", "Moteus"])
 def test_any_other_word_lists_them(word):
     with pytest.raises(
-        InputError, match="there are damiao_mit, moteus, cia402, robstride, myactuator"
+        InputError,
+        match="there are damiao_mit, moteus, cia402, robstride, myactuator, cubemars",
     ):
         protocols.protocol(word)
 

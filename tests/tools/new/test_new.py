@@ -88,7 +88,9 @@ def test_the_first_scenario_never_starts_in_a_soft_wall(limber, tmp_path, kind):
     check_and_lab(limber, tmp_path)
 
 
-@pytest.mark.parametrize("drives", ["damiao", "moteus", "cia402", "robstride", "myactuator"])
+@pytest.mark.parametrize(
+    "drives", ["damiao", "moteus", "cia402", "robstride", "myactuator", "cubemars"]
+)
 def test_a_published_arm_with_each_kind_of_drives(limber, tmp_path, drives):
     told = made(limber, tmp_path, OPENARM, *ENDS, "--drives", drives)
     assert len(told.splitlines()) == 4  # what was made, and three steps
