@@ -20,7 +20,7 @@ NUMBERS = {"min": 1, "max": 127}
 
 @app.command(epilog="Example: limber motors scan can0 --fd")
 def scan(bus: BusName, fd: Fd = False) -> None:
-    """List the motors of every family that answer. Nothing is commanded or written."""
+    """List the motors of every family that answer. Nothing is written or switched on."""
     _become("scan", bus, fd)
 
 
