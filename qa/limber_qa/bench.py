@@ -76,22 +76,15 @@ def level_figures(level: str, medians: Medians) -> list[Figure]:
 
 def figures(medians: Medians) -> list[Figure]:
     """The others that have a peer."""
-    ode, bare = medians["plant_step/ode"], "plant_step/bare_ode"
-    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
-    return [
-        *(
-            Figure(f"{what}/limber/7", medians[f"{what}/limber/7"], kdl, medians[kdl])
-            for what, kdl in (("impedance", "impedance/kdl/7"), ("terms", "terms/kdl/7"))
-        ),
-        Figure("plant_step/ode", ode, bare, medians[bare], 1.1),
-        Figure(
-            "lab cycle without a log",
-            medians["lab_cycle/held"],
-            "its step and impedance",
-            kernels,
-            1.5,
-        ),
+    rows: list[tuple[str, str, float | None]] = [
+        ("impedance/limber/7", "impedance/kdl/7", None),
+        ("terms/limber/7", "terms/kdl/7", None),
+        ("plant_step/ode", "plant_step/bare_ode", 1.1),
     ]
+    found = [Figure(own, medians[own], peer, medians[peer], most) for own, peer, most in rows]
+    kernels = medians["plant_step/reference"] + medians["impedance/limber/7"]
+    lab = medians["lab_cycle/held"]
+    return [*found, Figure("lab cycle without a log", lab, "its step and impedance", kernels, 1.5)]
 
 
 def medians_of(found: dict) -> Medians:

@@ -13,8 +13,8 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,7 +23,7 @@ import msgspec
 import numpy as np
 import viser
 import zstandard
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from limber import messages
@@ -84,13 +84,20 @@ def _content(window: bytes) -> bytes:
     return zstandard.ZstdDecompressor().decompress(window[16 : 16 + size])
 
 
-async def view(address: str, joint: str) -> tuple[list[float], float]:
-    """Seconds from each jump to its arrival; when the page told that nothing comes any more."""
+@asynccontextmanager
+async def viewer(address: str) -> AsyncIterator[ClientConnection]:
+    """What a browser would be: windows of messages come."""
     protocol = Subprotocol(f"viser-v{viser.__version__}")
-    latencies: list[float] = []
-    shown = None
     async with connect(address, subprotocols=[protocol], max_size=None) as socket:
         await socket.send(msgspec.msgpack.encode(CAMERA))  # a viewer counts once it has one
+        yield socket
+
+
+async def view(address: str, joint: str) -> tuple[list[float], float]:
+    """Seconds from each jump to its arrival; when the page told that nothing comes any more."""
+    latencies: list[float] = []
+    shown = None
+    async with viewer(address) as socket:
         while True:
             window = await asyncio.wait_for(socket.recv(), GIVE_UP_S)
             assert isinstance(window, bytes)

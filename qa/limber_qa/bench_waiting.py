@@ -15,13 +15,8 @@ import time
 from collections.abc import Callable
 from importlib.util import find_spec
 
-import msgspec
-from viser import __version__ as viser_version
-from websockets.asyncio.client import connect
-from websockets.typing import Subprotocol
-
 from limber_qa.bench_figure import Figure
-from limber_qa.bench_page import CAMERA
+from limber_qa.bench_page import GIVE_UP_S, viewer
 
 REPEATS = 7
 LIMBER = [sys.executable, "-m", "limber"]
@@ -35,7 +30,6 @@ server.scene.add_frame("/base")
 print(f"http://localhost:{server.get_port()}", flush=True)
 time.sleep(60)
 """
-FIRST_PICTURE_S = 30.0
 
 
 def importing(package: str) -> list[str]:
@@ -55,18 +49,16 @@ def first_picture(command: list[str], folder: str) -> float:
     with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
-            address = process.stdout.readline().split()[0].replace("http", "ws")
-            asyncio.run(_first_messages(address))
+            told = next(line for line in process.stdout if line.startswith("http"))
+            asyncio.run(_first_messages(told.split()[0].replace("http", "ws")))
             return time.monotonic() - begun
         finally:
             process.terminate()
 
 
 async def _first_messages(address: str) -> None:
-    protocol = Subprotocol(f"viser-v{viser_version}")
-    async with connect(address, subprotocols=[protocol], max_size=None) as socket:
-        await socket.send(msgspec.msgpack.encode(CAMERA))
-        await asyncio.wait_for(socket.recv(), FIRST_PICTURE_S)
+    async with viewer(address) as socket:
+        await asyncio.wait_for(socket.recv(), GIVE_UP_S)
 
 
 def figures(folder: str) -> list[Figure]:

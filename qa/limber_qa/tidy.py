@@ -15,7 +15,7 @@ BUILD = ROOT / "build" / "tidy"  # each file's command; nothing but the messages
 CONFIGURE = [
     *("cmake", "-S", str(ROOT), "-B", str(BUILD), "-G", "Ninja", "-DCMAKE_CXX_COMPILER=clang++"),
     *("-DLIMBER_UNITY=0", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"),
-    *("-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "-DLIMBER_BUILD_BENCH=OFF"),
+    *("-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "-DLIMBER_BUILD_BENCH=ON"),
 ]
 
 

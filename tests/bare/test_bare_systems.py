@@ -33,6 +33,13 @@ def call(*words: object) -> str:
     return done.stdout
 
 
+def download(wheel: Path, folder: Path, python: str, machine: str) -> None:
+    """It and all that it needs."""
+    platforms = [f"--platform={name}_{machine}" for name in PLATFORMS]
+    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--only-binary=:all:", *platforms]
+    call(*pip, f"--python-version={python}", "-d", folder, wheel)
+
+
 def rows(text: str) -> list[list[str]]:
     return [row.split() for row in ROW.findall(text)]
 
@@ -57,9 +64,7 @@ def test_the_demo_runs(suite, wheel, tmp_path):
         *filter(None, [MIRROR]),
     )
     wheels = system / "wheels"
-    platforms = [f"--platform={name}_x86_64" for name in PLATFORMS]
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--only-binary=:all:", *platforms]
-    call(*pip, f"--python-version={SUITES[suite]}", "-d", wheels, wheel)
+    download(wheel, wheels, SUITES[suite], "x86_64")
     shutil.copy(Path(__file__).with_name("in-bare-system"), system)
     inside = ["unshare", "-m", "-p", "-f", "-n", "chroot", str(system)]
     shown = call(*inside, "/in-bare-system", "/wheels", ROOT / "robots")

@@ -6,17 +6,15 @@ whose aarch64 builds fuse multiply-adds. The emulator lacks socket options that 
 `limber run` need: they want a board.
 """
 
-import os
 import re
 import shutil
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import lcm
 import numpy as np
 import pytest
-from test_bare_systems import MIRROR, PLATFORMS, call
+from test_bare_systems import MIRROR, SUITES, call, download
 
 from limber.lcmtypes.sim_truth_t import sim_truth_t
 from limber.paths import ROOT
@@ -43,19 +41,8 @@ def sysroot() -> Path:
 
 @pytest.mark.timeout(3600)
 def test_the_unit_tests(sysroot, tmp_path):
-    environment = {**os.environ, **cross.environment(sysroot)}
-
-    def run(*words: object) -> str:
-        done = subprocess.run(
-            [str(word) for word in words],
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-        return done.stdout
-
+    words = [f"{name}={value}" for name, value in cross.environment(sysroot).items()]
+    run = partial(call, "env", *words)
     run("cmake", "-S", ROOT, "-B", BUILD / "tree", "-G", "Ninja")
     run("ninja", "-C", BUILD / "tree", *(f"test_{name}" for name in UNIT_TESTS))
     tests = "|".join(f"^{name}" for name in UNIT_TESTS)
@@ -63,13 +50,13 @@ def test_the_unit_tests(sysroot, tmp_path):
     assert "100% tests passed" in shown
     kernel = "tests/test_dynamics"
     report = tmp_path / "dynamics.xml"
-    words = ["--gtest_filter=Levels.GiveTheSameBits", f"--gtest_output=xml:{report}"]
+    options = ["--gtest_filter=Levels.GiveTheSameBits", f"--gtest_output=xml:{report}"]
     digests = set()
     for command in (
         [ROOT / "build/dev" / kernel],
         [*cross.emulator(sysroot), BUILD / "tree" / kernel],
     ):
-        run(*command, *words)
+        call(*command, *options)
         digests.add(DIGEST.search(report.read_text())[1])
     assert len(digests) == 1
 
@@ -82,9 +69,7 @@ def test_the_wheel(sysroot, tmp_path):
     system = tmp_path / "system"
     debian = ["mmdebstrap", "--variant=extract", "--architectures=arm64", f"--include={SYSTEM}"]
     call(*debian, "bookworm", system, *filter(None, [MIRROR]))
-    platforms = [f"--platform={name}_aarch64" for name in PLATFORMS]
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--only-binary=:all:", *platforms]
-    call(*pip, "--python-version=3.11", "-d", system / "wheels", wheel)
+    download(wheel, system / "wheels", SUITES["bookworm"], cross.MACHINE)
     inside = ["unshare", "-U", "-r", "-m", "-p", "-f", "-n", "--mount-proc"]
     script = Path(__file__).with_name("in-emulated-system")
     call(*inside, script, system)

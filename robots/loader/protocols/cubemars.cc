@@ -1,9 +1,9 @@
 // cubemars: CubeMars and T-Motor AK drives in MIT mode. id 1 to 127.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "robots/loader/protocols/drive_protocol.h"
 #include "robots/loader/protocols/mit_range.h"
