@@ -87,7 +87,7 @@ SharedObject::~SharedObject() { munmap(memory_, bytes_); }
 
 // A lock on one byte for each end. Unlike RunLock's names it is the object's, not the network's.
 bool SharedObject::take(int end) const {
-  flock lock{};
+  struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   lock.l_start = end;

@@ -7,6 +7,7 @@
 
 #include "common/overloaded.h"
 #include "common/types.h"
+#include "controller/kinds/within.h"
 #include "lcmtypes/gains_merge.h"
 
 namespace limber::controller {
@@ -18,8 +19,6 @@ using Message = compliance_gains_t;
 // carry seven digits.
 constexpr double kRounding = 1e-9;
 constexpr double kFloatRounding = 1e-6;
-
-bool within(double x, double low, double high) noexcept { return x >= low && x <= high; }
 
 std::string refusal_of(const GainRow& row) {
   if (row.is_choice() && !std::holds_alternative<std::int16_t(Message::*)[5]>(row.field)) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/kinds/within.h"
+
 namespace limber::controller {
 namespace {
 
 // Steps of the torque that tau_gravity may make in a cycle; the gate lets three pass.
 constexpr double kGravitySteps = 2.0;
-
-bool within(double x, double low, double high) noexcept { return x >= low && x <= high; }
 
 }  // namespace
 

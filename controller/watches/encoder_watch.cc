@@ -141,11 +141,14 @@ int EncoderWatch::stopped(const joint_state_t& state, const Model& model, double
       rest->residual = observer_.residual();
       rest->load_Nm = load_Nm;
     }
-    const double least_Nm = std::min(0.0, rest->load_Nm);
-    const double most_Nm = std::max(0.0, rest->load_Nm);
+    const double friction_Nm = rest->sudden ? 0.0 : joint.friction_Nm;
+    const double contact_Nm = rest->sudden ? 0.0 : held_Nm(state, i, model.M);
+    const double turns_Nm =
+        rest->stood_s >= kRests_s ? std::max(0.0, friction_Nm - contact_Nm) : 0.0;
+    const double least_Nm = std::min(0.0, rest->load_Nm - turns_Nm);
+    const double most_Nm = std::max(0.0, rest->load_Nm + turns_Nm);
     const double tau = load_Nm - std::clamp(load_Nm, least_Nm, most_Nm);
-    const double braking_Nm = rest->sudden ? 0.0 : joint.friction_Nm + held_Nm(state, i, model.M);
-    rest->move(tau / M_ii, braking_Nm / M_ii, dt_s);
+    rest->move(tau / M_ii, (friction_Nm + contact_Nm) / M_ii, dt_s);
     if (rest->stretched(state.tau[i], joint.stretch_Nm, dt_s)) return i;
     const double angle = std::abs(rest->expected_angle);
     if (rest->sudden) {

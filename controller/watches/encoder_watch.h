@@ -22,8 +22,10 @@ namespace limber::controller {
 ///          other joints
 ///
 /// where `balanced` is the part of load between zero and what it was then: that much a payload or a
-/// wall held, and may still hold or have let go since. A joint that truly stops is seen to slow
-/// down, so that v_0 is next to nothing. Found is
+/// wall held, and may still hold or have let go since. Friction may have helped it to hold, and may
+/// hold the joint against it now: once the reading has stood for kRests_s, `balanced` goes
+/// tau_friction further, less what a contact (below) may hold. A joint that truly stops is seen to
+/// slow down, so that v_0 is next to nothing. Found is
 ///
 ///   - a sudden stop: v_0 is kSudden at least, and more than can be braked within a cycle by
 ///     friction and by something hard in the joint's way, which gives way by kGivesWay at the
@@ -66,6 +68,7 @@ class EncoderWatch {
   static constexpr double kExpected = 0.03;  ///< rad (m for prismatic joints)
   static constexpr double kCoasted = 0.01;   ///< likewise
   static constexpr double kStood_s = 0.01;
+  static constexpr double kRests_s = 0.2;    ///< an unseen swing is mostly found sooner
   static constexpr double kSudden = 0.05;    ///< rad/s (m/s)
   static constexpr double kGivesWay = 1e-3;  ///< rad (m)
   static constexpr double kOthers = 0.01;    ///< likewise

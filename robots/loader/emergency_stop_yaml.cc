@@ -10,8 +10,6 @@
 namespace limber {
 namespace {
 
-constexpr int kMostId = 0x7FE;  // 0x7FF is Damiao's register identifier
-
 void check_free(const YamlMap& yaml, const EmergencyStopConfig& stop, const Robot& robot) {
   for (const JointConfig& joint : robot.driven()) {
     for (int motor = 0; motor < joint.motors(); ++motor) {

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kMostForce_N = 1e5;
 constexpr double kMostTorque_Nm = 1e4;
-constexpr int kMostId = 0x7FE;  // 0x7FF is Damiao's register identifier
 
 /// `name: {force_N: ..., torque_Nm: ...}`, one number each or three.
 SixAxes read_axes(const YamlMap& yaml, double least_N, double least_Nm) {

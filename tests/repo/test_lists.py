@@ -22,11 +22,11 @@ def programs(without: tuple[str, ...] = ()) -> set[str]:
 
 def test_the_script_builds_and_doctor_knows_every_program():
     script = (ROOT / "limber").read_text()
-    users, of_a_clone = (
+    demo, beyond_demo, of_a_clone = (
         set(re.search(rf"^{name}=\((.*?)\)", script, re.MULTILINE)[1].split())
-        for name in ("programs", "of_a_clone")
+        for name in ("programs", "beyond_demo", "of_a_clone")
     )
-    assert users | of_a_clone == {
+    assert demo | beyond_demo | of_a_clone == {
         *programs(),
         *("limber_messages", "limber_receiver", "limber_lab_library"),
     }

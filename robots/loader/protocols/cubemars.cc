@@ -90,7 +90,7 @@ void read_cubemars_ids(const YamlMap& yaml, DriveConfig* drive) {
   if (v3 && yaml.has("reply_id")) yaml.refuse("reply_id", "is not of boards V3");
   drive->command_id = v3 ? 0x800U | id : id;
   drive->reply_id =
-      v3 ? 0x2900U | id : static_cast<std::uint32_t>(yaml.integer_or("reply_id", 0, 0x7FE, 0));
+      v3 ? 0x2900U | id : static_cast<std::uint32_t>(yaml.integer_or("reply_id", 0, kMostId, 0));
   if (drive->reply_id == drive->command_id) yaml.refuse("reply_id", "must differ from id");
 }
 

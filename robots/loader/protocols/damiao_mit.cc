@@ -45,7 +45,7 @@ void read_damiao_mit_motor(const YamlMap& yaml, DriveConfig* drive) {
 void read_damiao_mit_ids(const YamlMap& yaml, DriveConfig* drive) {
   // The reply carries the identifier in four bits. 0x7FF is the register identifier.
   drive->command_id = static_cast<std::uint32_t>(yaml.integer("id", 1, 15));
-  drive->reply_id = static_cast<std::uint32_t>(yaml.integer("reply_id", 1, 0x7FE));
+  drive->reply_id = static_cast<std::uint32_t>(yaml.integer("reply_id", 1, kMostId));
   if (drive->reply_id == drive->command_id) yaml.refuse("reply_id", "must differ from id");
 }
 

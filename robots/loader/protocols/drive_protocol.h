@@ -17,6 +17,8 @@ namespace limber {
 
 /// From the end of a command to the start of the drive's reply. A guess: makers publish none.
 inline constexpr double kDriveReplyDelay_s = 50e-6;
+/// The highest 11-bit identifier that robot.yaml may name: 0x7FF carries Damiao's registers.
+inline constexpr int kMostId = 0x7FE;
 
 /// What a first value in robot.yaml is made from; figures at the joint.
 enum class Figure : std::uint8_t { kNone, kPeakTorque, kSpeed, kHoldKp, kHoldKd };

@@ -15,13 +15,14 @@ constexpr double kFastest = 100.0;  // rad/s
 constexpr double kInertia = 2.0;
 constexpr double kLong_s = 1.0;
 
-/// The watch of joint 1: a first state at rest without torque, then others of kLong_s each.
+/// The watch of joint 1: at rest for kRests_s without torque, then states of kLong_s each.
 class Bench {
  public:
   explicit Bench(const std::function<void(JointConfig&)>& change = [](JointConfig&) {})
       : watch_(robot(change)) {
     state_.num_joints = kJoints;
     next();
+    next(EncoderWatch::kRests_s);
   }
   /// The joint that is found in a state `dt_s` later; `gravity`: of joint 1, N m.
   int next(double dt_s = kLong_s, double gravity = 0.0) {
@@ -53,14 +54,15 @@ class Bench {
   joint_state_t state_{};
 };
 
-/// Friction that hides a torque of `holds` but not one a little greater.
+/// Friction of `holds`, which may have held as much the other way before, hides twice that torque
+/// but not one a little greater.
 void expect_friction(double holds, const std::function<void(JointConfig&)>& change) {
   for (const double sign : {1.0, -1.0}) {
     Bench bench(change);
     bench.state().theta[0] = 1.0;
-    bench.torque(sign * (holds - 0.01));
+    bench.torque(sign * (2.0 * holds - 0.01));
     EXPECT_EQ(bench.next(1e3), -1) << holds;
-    bench.torque(sign * (holds + 0.01));
+    bench.torque(sign * (2.0 * holds + 0.01));
     EXPECT_EQ(bench.next(1e3), 1) << holds;  // 0.01 N m / 2 kg m^2 (1000 s)^2
   }
 }
@@ -105,7 +107,7 @@ TEST(EncoderWatchEdges, ATwentiethOfTheTorqueLimitAtLeast) {
 TEST(EncoderWatchEdges, AnyReadingThatChangesBeginsAfresh) {
   const auto found_after = [](const std::function<void(joint_state_t&)>& change) {
     Bench bench;
-    bench.torque(3.0);  // 1 N m beyond friction: 0.5 rad in 1 s
+    bench.torque(5.0);  // 1 N m beyond twice friction: 0.5 rad in 1 s
     bench.state().theta[0] = 1.0;
     change(bench.state());
     return bench.next();
@@ -121,20 +123,21 @@ TEST(EncoderWatchEdges, AnyReadingThatChangesBeginsAfresh) {
 TEST(EncoderWatchEdges, AfreshMeansFromTheNewReadingAndItsLoad) {
   Bench bench;
   joint_state_t& state = bench.state();
-  bench.torque(3.0);
+  bench.torque(5.0);
   state.theta[0] = 0.011;
   EXPECT_EQ(bench.next(0.2), -1);  // 0.5 rad/s^2 (0.2 s)^2 = 0.02 rad
   state.theta[1] = state.q[1] = state.theta_dot[1] = state.v[1] = 1e-6;
   EXPECT_EQ(bench.next(0.3), -1);
-  EXPECT_EQ(bench.next(1e3), -1) << "3 N m are balanced since then";
-  bench.torque(6.0);  // 1 N m beyond load and friction
+  EXPECT_EQ(bench.next(1e3), -1) << "5 N m are balanced since then";
+  bench.torque(10.0);  // 1 N m beyond load and twice friction
   EXPECT_EQ(bench.next(0.2), -1) << "neither angle nor speed is left from before";
   EXPECT_EQ(bench.next(0.2), -1) << "0.06 rad are expected, but no other joint has moved since";
   state.theta[2] = -0.011;
   EXPECT_EQ(bench.next(1e-6), 1);
 }
 
-// What was held may be held no longer, in both directions; more than it, or the other way, is not.
+// What was held may be held no longer, in both directions. Friction, 2 N m, may have helped to hold
+// it, and may hold against it now: neither the other way.
 TEST(EncoderWatchEdges, BetweenNoLoadAndThatOfBeforeNothingMoves) {
   for (const double sign : {1.0, -1.0}) {
     const auto found_at = [sign](double load) {
@@ -142,20 +145,35 @@ TEST(EncoderWatchEdges, BetweenNoLoadAndThatOfBeforeNothingMoves) {
       bench.torque(sign * 8.0);
       bench.state().theta[1] = 1e-6;
       bench.next(1e-3);
+      bench.next(EncoderWatch::kRests_s);
       bench.torque(sign * load);
       bench.state().theta[0] = 1.0;
       return bench.next(1e3);
     };
-    for (const double load : {8.0, 4.0, 0.0, -1.99, 9.99}) EXPECT_EQ(found_at(load), -1) << load;
-    for (const double load : {-2.01, 10.01}) EXPECT_EQ(found_at(load), 1) << load;
+    for (const double load : {8.0, 4.0, 0.0, -1.99, 11.99}) EXPECT_EQ(found_at(load), -1) << load;
+    for (const double load : {-2.01, 12.01}) EXPECT_EQ(found_at(load), 1) << load;
   }
+}
+
+TEST(EncoderWatchEdges, FrictionOfAJointThatHasJustComeToRestCountsOnce) {
+  const auto found_after = [](double rest_s) {
+    Bench bench;
+    bench.state().theta[1] = 1e-6;
+    bench.next(1e-3);
+    bench.next(rest_s);
+    bench.torque(4.0);  // 2 N m beyond friction
+    bench.state().theta[0] = 1.0;
+    return bench.next(1e3);
+  };
+  EXPECT_EQ(found_after(std::nextafter(EncoderWatch::kRests_s, 0.0)), 1);
+  EXPECT_EQ(found_after(EncoderWatch::kRests_s), -1);
 }
 
 TEST(EncoderWatchEdges, AnotherJointMovesByMoreThanAHundredth) {
   for (const int other : {0, 2}) {
     for (const double sign : {1.0, -1.0}) {
       Bench bench;
-      bench.torque(3.0);
+      bench.torque(5.0);
       bench.state().theta[other] = sign * 0.01;
       EXPECT_EQ(bench.next(), -1);
       bench.state().theta[other] = sign * std::nextafter(0.01, 1.0);
@@ -171,11 +189,11 @@ TEST(EncoderWatchEdges, ThreeHundredthsAreExpectedAtLeast) {
   EXPECT_EQ(exact.next(), 1) << "0.03 rad in a second";
   for (const double sign : {1.0, -1.0}) {
     Bench bench;
-    bench.torque(sign * (2.0 + 2.0 * kInertia));
+    bench.torque(sign * (4.0 + 2.0 * kInertia));
     bench.state().theta[0] = 1.0;       // 2 rad/s^2
     EXPECT_EQ(bench.next(0.1224), -1);  // 0.02996 rad
     Bench later;
-    later.torque(sign * (2.0 + 2.0 * kInertia));
+    later.torque(sign * (4.0 + 2.0 * kInertia));
     later.state().theta[0] = 1.0;
     EXPECT_EQ(later.next(0.1226), 1);  // 0.03006 rad
   }
