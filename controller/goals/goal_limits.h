@@ -3,6 +3,7 @@
 
 #include <limber/compliance_goal_t.hpp>
 
+#include "common/types.h"
 #include "controller/kinds/law_entry.h"
 #include "controller/kinds/pose.h"
 #include "controller/kinds/refusal.h"

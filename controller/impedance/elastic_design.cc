@@ -80,7 +80,7 @@ MatrixJ elastic_joint_damping(const JointElasticity& joints, const ArmTerms& ter
   cholesky.matrixU().solveInPlace(U);
   const MatrixJ L = cholesky.matrixL();
   const MatrixJ P = L * eigen.eigenvectors();
-  const VectorJ k = eigen.eigenvalues();
+  const VectorJ& k = eigen.eigenvalues();
   VectorJ d = VectorJ::Zero(k.size());
   for (Eigen::Index i = 0; i < k.size(); ++i) {
     if (!(k[i] > kNoStiffness * k.maxCoeff())) continue;

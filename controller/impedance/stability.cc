@@ -51,7 +51,7 @@ StiffnessModes modes_of(const MatrixJ& M, const MatrixJ& K, const Damper& damper
     judge_damper(M.llt().solve(MatrixJ::Identity(M.rows(), M.cols())), damper.D, T, &found);
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixJ> eigen(K, M);
-  const VectorJ stiffness = eigen.eigenvalues();
+  const VectorJ& stiffness = eigen.eigenvalues();
   for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
     if (stiffness[i] <= kNoStiffness * stiffness.maxCoeff()) continue;
     const VectorJ u = eigen.eigenvectors().col(i);

@@ -52,4 +52,4 @@ struct LawPlugin {
   extern "C" LIMBER_PUBLIC const limber::controller::LawPlugin limber_law; \
   const limber::controller::LawPlugin limber_law = {                       \
       LIMBER_VERSION, limber::controller::kLawLayout.size(),               \
-      limber::controller::kLawLayout.data(), &function}
+      limber::controller::kLawLayout.data(), &(function)}

@@ -1,4 +1,5 @@
 // Laws that follow a goal of the tip.
+#include "controller/model/pose_error.h"
 #include "lecture/eval/choices.h"
 #include "lecture/eval/law_run.h"
 

@@ -5,12 +5,11 @@
 #include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
 #include <string>
-#include <utility>
 
 namespace limber::bench {
 
 struct PinocchioPeer::Data {
-  explicit Data(pinocchio::Model made) : model(std::move(made)), data(model) {}
+  explicit Data(const pinocchio::Model& made) : model(made), data(model) {}
   pinocchio::Model model;
   pinocchio::Data data;
 };

@@ -1,5 +1,7 @@
 #include "sim/nodes/hand_node.h"
 
+#include "common/joints.h"
+
 namespace limber::sim {
 namespace {
 
