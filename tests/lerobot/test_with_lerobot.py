@@ -1,107 +1,54 @@
-"""The plug-in with LeRobot itself, in an environment of its own (5 GB): a dataset of limber's is
-replayed, a second arm leads the first, and what is recorded then is read by LeRobot.
-
-`./limber test lerobot` makes the environment in build/lerobot, or takes the Python that
-LIMBER_LEROBOT names. Then the rest runs in a network namespace of its own.
+"""The plug-in with LeRobot's own commands, and a hand: a dataset of limber's is replayed, a second
+arm leads the first, and what is recorded then is read and replayed by LeRobot.
 """
 
-import os
+import json
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
-from pathlib import Path
+from itertools import cycle
 
+import numpy as np
 import pytest
-from own_network import leave_the_machines_network
-from processes import started
+from commands import ARM, FOLLOWER, OTHER, lerobot, stack
 
-from limber import Arm, NoStackError
-from limber.paths import ROOT
+from limber.model.robot import load_robot
 
-OTHER = {
-    "LCM_DEFAULT_URL": "udpm://239.255.76.67:7669?ttl=0",
-    "LIMBER_ARM_URL": "udpm://239.255.76.68:7670?ttl=0",
-}
-# The newest that this Python can have
-LEROBOT = "lerobot[dataset]==0.6.1" if sys.version_info >= (3, 12) else "lerobot==0.4.4"
-FOLLOWER = ["--robot.type=limber_follower", "--play_sounds=false"]
-LEADER = ["--teleop.type=limber_leader", f"--teleop.url={OTHER['LCM_DEFAULT_URL']}"]
-LOADED = """
-import sys
+OPEN_M = float(load_robot(ARM).hand.width_m.max())
+LEADER = [
+    "--teleop.type=limber_leader",
+    f"--teleop.arm={ARM}",
+    f"--teleop.url={OTHER['LCM_DEFAULT_URL']}",
+]
+FRAMES = """
+import json, sys
 from lerobot.datasets.lerobot_dataset import LeRobotDataset
 found = LeRobotDataset(sys.argv[1], root=sys.argv[2])
-frame = found[len(found) - 1]
-print(found.num_episodes, *frame["observation.state"].tolist(), "|", *frame["action"].tolist())
+frames = [found[i] for i in range(len(found))]
+columns = {key: [frame[key].tolist() for frame in frames] for key in sys.argv[3:]}
+print(json.dumps({"episodes": found.num_episodes, **columns}))
 """
 
 
-@pytest.fixture(scope="module")
-def python(installed):
-    """LeRobot's; this process has left the machine's network."""
-    leave_the_machines_network()
-    return installed
-
-
-@pytest.fixture(scope="module")
-def installed():
-    if "LIMBER_LEROBOT" in os.environ:
-        return Path(os.environ["LIMBER_LEROBOT"])
-    folder = ROOT / "build" / "lerobot"
-    found = folder / "bin" / "python"
-    if not found.exists():
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        subprocess.run([found, "-m", "pip", "install", "-q", LEROBOT], check=True)
-    plug_in = ROOT / "integrations" / "lerobot"
-    subprocess.run([found, "-m", "pip", "install", "-q", "--no-deps", "-e", plug_in], check=True)
-    return found
-
-
-@contextmanager
-def stack(folder, **address):
-    run = [sys.executable, "-m", "limber", "run", ROOT / "scenarios" / "ready.yaml"]
-    run += ["--one-process", "--no-record", "--out", folder]
-    with started(run, env={**os.environ, **address}):
-        yield
-
-
-def wait_until_ready(url=None):
-    for _ in range(60):
-        try:
-            with Arm(url=url) as arm:
-                arm.wait(until=lambda now: now.mode in ("hold", "active"), timeout_s=60)
-                return
-        except NoStackError:
-            time.sleep(1.0)
-    raise AssertionError("no stack")
-
-
-def lerobot(python, home, command, *options):
-    env = {**os.environ, "HF_HUB_OFFLINE": "1", "HF_LEROBOT_HOME": str(home)}
-    env["PYTHONPATH"] = str(ROOT / "tools")
-    program = [python.with_name(command), *options] if command else [python, *options]
-    done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr[-2000:]
-    return done.stdout
-
-
-def numbers(python, home, name, root):
-    """Episodes; observation.state and action of the last frame."""
-    state, action = lerobot(python, home, "", "-c", LOADED, name, str(root)).split("|")
-    episodes, *values = (float(word) for word in state.split())
-    return int(episodes), values, [float(word) for word in action.split()]
+def frames(python, home, name, root):
+    """Episodes; observation.state and action, a row each frame."""
+    columns = ("observation.state", "action")
+    said = lerobot(python, home, "-c", FRAMES, name, root, *columns).splitlines()[-1]
+    found = json.loads(said)
+    return found["episodes"], *(np.array(found[column]) for column in columns)
 
 
 @pytest.fixture
 def made(tmp_path):
-    """A dataset of limber's own: a joint that moves along a stream."""
+    """A dataset of limber's own: a joint moves along a stream, and the hand closes by half."""
     scenario = tmp_path / "moves.yaml"
     rest = "0.3, 0.3, 0, 1.4, 0, 0, 0"
     turned = "0.2, 0.3, 0, 1.4, 0, 0, 0"
+    stream = f"{{dt_s: [0, 2], joints_rad: [[{rest}], [{turned}]], hand_width_m: {OPEN_M / 2}}}"
     scenario.write_text(
-        "format: limber-scenario/1\nrobot: openarm\nduration_s: 4\ntimeline:\n"
+        f"format: limber-scenario/1\nrobot: {ARM}\nduration_s: 4\ntimeline:\n"
         "  - {at_s: 0.3, mode: hold}\n  - {at_s: 0.8, mode: active}\n"
-        f"  - {{at_s: 1.0, stream: {{dt_s: [0, 2], joints_rad: [[{rest}], [{turned}]]}}}}\n",
+        f"  - {{at_s: 1.0, stream: {stream}}}\n",
         encoding="utf-8",
     )
     limber = [sys.executable, "-m", "limber"]
@@ -112,33 +59,84 @@ def made(tmp_path):
     return out
 
 
-def test_replay_teleoperate_record(python, made, tmp_path):
-    home, recorded = tmp_path / "home", tmp_path / "recorded"
-    with stack(tmp_path / "follower"), stack(tmp_path / "leader", **OTHER):
-        wait_until_ready()
-        wait_until_ready(OTHER["LCM_DEFAULT_URL"])
-        dataset = ["--dataset.repo_id=limber/made", f"--dataset.root={made}"]
-        lerobot(python, home, "lerobot-replay", *FOLLOWER, *dataset, "--dataset.episode=0")
-        with Arm() as arm:  # the last target, as far as gear friction lets a soft arm come
-            assert arm.q[0] == pytest.approx(0.2, abs=0.05)
-            assert arm.targets.refused == 0 and arm.mode in ("active", "hold")
+def replay(python, home, name, root, **options):
+    dataset = [f"--dataset.repo_id={name}", f"--dataset.root={root}", "--dataset.episode=0"]
+    lerobot(python, home, "lerobot-replay", *FOLLOWER, "--play_sounds=false", *dataset, **options)
+
+
+def test_replay(python, made, home, tmp_path):
+    with stack(tmp_path / "follower") as arm:
+        replay(python, home, "limber/made", made)
+        # the last target, as far as gear friction lets a soft arm come
+        assert arm.q[0] == pytest.approx(0.2, abs=0.05)
+        assert arm.hand.state.width_m == pytest.approx(OPEN_M / 2, abs=2e-3)
+        assert arm.targets.refused == 0 and arm.mode in ("active", "hold")
+
+
+def test_teleoperate_record_and_replay_with_a_hand(python, home, tmp_path):
+    recorded = tmp_path / "recorded"
+    with stack(tmp_path / "follower") as arm, stack(tmp_path / "leader", **OTHER) as leader:
+        leader.gains(law="gravity_compensation")
+        leader.activate()
+        widths, seen = cycle((0.25 * OPEN_M, 0.9 * OPEN_M)), []
+
+        def squeeze():
+            """As the fingers that lead it would."""
+            leader.hand(width_m=next(widths))
+            for _ in range(20):
+                time.sleep(0.1)
+                seen.append(arm.hand.state.width_m)
+
         lerobot(
             python,
             home,
             "lerobot-record",
             *FOLLOWER,
             *LEADER,
+            "--play_sounds=false",
             "--dataset.repo_id=limber/recorded",
             f"--dataset.root={recorded}",
             "--dataset.push_to_hub=false",
             "--dataset.single_task=hold",
             "--dataset.num_episodes=2",
-            "--dataset.episode_time_s=3",
+            "--dataset.episode_time_s=6",
             "--dataset.reset_time_s=1",
+            meanwhile=squeeze,
         )
-        with Arm() as arm:
-            assert arm.targets.refused == 0
-    episodes, state, action = numbers(python, home, "limber/recorded", recorded)
-    assert (episodes, len(state), len(action)) == (2, 21, 7)
-    # The follower has come to where the leader is: at home, in degrees.
-    assert action[0] == pytest.approx(17.2, abs=1.0) and state[0] == pytest.approx(17.2, abs=3.0)
+        assert min(seen) < 0.35 * OPEN_M and max(seen) > 0.8 * OPEN_M
+        episodes, state, action = frames(python, home, "limber/recorded", recorded)
+        assert (episodes, state.shape[1], action.shape[1]) == (2, 8, 8)
+        # The follower has come to where the leader is: at home, in degrees.
+        assert action[-1, 0] == pytest.approx(17.2, abs=1.0)
+        assert state[-1, 0] == pytest.approx(17.2, abs=3.0)
+        # The gripper, of 100: open and closed, and the observation a little behind the action.
+        assert np.percentile(action[:, 7], [10, 90]) == pytest.approx([25, 90], abs=3)
+        assert np.percentile(state[:, 7], [10, 90]) == pytest.approx([25, 90], abs=5)
+        behind = [np.abs(state[k:, 7] - action[: len(action) - k, 7]).mean() for k in range(15)]
+        assert 1 <= np.argmin(behind) <= 9 and min(behind) < 5
+
+        seen.clear()
+        arm.wait(for_s=0.1)
+        replay(
+            python,
+            home,
+            "limber/recorded",
+            recorded,
+            meanwhile=lambda: (time.sleep(0.02), seen.append(arm.hand.state.width_m)),
+        )
+        assert np.ptp(seen) == pytest.approx(0.65 * OPEN_M, abs=0.08 * OPEN_M)
+        assert arm.targets.refused == 0
+
+
+def test_a_leader_opens_its_hand_softly(python, home, tmp_path):
+    with stack(tmp_path / "follower"), stack(tmp_path / "leader", **OTHER) as leader:
+        seen = set()
+
+        def look():
+            time.sleep(0.05)
+            goal = leader.hand.state
+            seen.add((leader.mode, leader.law, goal.goal_width_m, goal.goal_force_N))
+
+        words = ["lerobot-teleoperate", *FOLLOWER, *LEADER, "--teleop_time_s=2"]
+        lerobot(python, home, *words, meanwhile=look)
+        assert ("active", "gravity_compensation", OPEN_M, 5.0) in seen

@@ -5,13 +5,13 @@ Python that LIMBER_ROS2 names. Then the rest runs in a network namespace of its 
 """
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 import ros2_peer
+from other_python import make_environment
 from own_network import leave_the_machines_network
 from processes import started
 from ros2_peer import until
@@ -36,28 +36,14 @@ timeline:
 """
 
 
-def runs(command: list) -> bool:
-    """As Python 3.12; a launcher of that name may be there without it."""
-    try:
-        return subprocess.run([*command, "--version"], capture_output=True).returncode == 0
-    except OSError:
-        return False
-
-
 @pytest.fixture(scope="module")
 def installed():
     if "LIMBER_ROS2" in os.environ:
         return Path(os.environ["LIMBER_ROS2"])
     folder = ROOT / "build" / "ros2"
     found = folder / "bin" / "python"
-    if not found.exists():
-        this = [sys.executable] if sys.version_info[:2] == (3, 12) else []
-        if this or runs(["python3.12"]):
-            subprocess.run([*(this or ["python3.12"]), "-m", "venv", folder], check=True)
-        elif uv := shutil.which("uv"):
-            subprocess.run([uv, "venv", "--seed", "--python", "3.12", folder], check=True)
-        else:
-            pytest.fail("needs Python 3.12 (python3.12 or uv), or LIMBER_ROS2=PYTHON")
+    if not found.exists() and not make_environment(folder, "3.12"):
+        pytest.fail("needs Python 3.12 (python3.12 or uv), or LIMBER_ROS2=PYTHON")
     subprocess.run([found, "-m", "pip", "install", "-q", *WHEELS], check=True)
     return found
 

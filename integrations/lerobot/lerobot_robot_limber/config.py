@@ -17,7 +17,8 @@ class LimberFollowerConfig(RobotConfig):
     """`arm`: robot of the running stack, a shipped one or a folder with robot.yaml.
 
     `observe`: groups of the observation, of pos, vel, torque (measured), contact (estimated torque
-    of the world), tip (position, rotation vector), force (of the world at the tip, N).
+    of the world), tip (position, rotation vector), force (of the world at the tip, N). To a policy
+    lerobot-rollout hands pos and vel alone.
     `action`: joints, or pose (`ee.x` ... `ee.wz`). `units`: of rotary joints; the gripper is 0
     closed to 100 open, or, with rad, its width in m. `stiffness`: the action has one, as a share of
     the arm's, 0.05 to 1. `rate_hz`: of the loop; `delay_s`: how far behind the action the goal
@@ -26,7 +27,7 @@ class LimberFollowerConfig(RobotConfig):
     """
 
     arm: str = "openarm"
-    observe: list[str] = field(default_factory=lambda: ["pos", "torque", "contact"])
+    observe: list[str] = field(default_factory=lambda: ["pos"])
     action: str = "joints"
     units: str = "degrees"
     stiffness: bool = False
@@ -53,13 +54,17 @@ class LimberFollowerConfig(RobotConfig):
 class LimberLeaderConfig(TeleoperatorConfig):
     """An arm that is moved by hand: its stack runs the law gravity_compensation.
 
-    `url`: LCM address of the leader's stack, where it is not this machine's only one.
+    `gripper_force_N`: with which the hand opens, so that it is pressed together by hand. `url`: LCM
+    address of the leader's stack, where it is not this machine's only one.
     """
 
     arm: str = "openarm"
     units: str = "degrees"
+    gripper_force_N: float = 5.0
     url: str | None = None
 
     def __post_init__(self) -> None:
         if self.units not in UNITS:
             raise ValueError(f"units: {self.units!r}; expected {', '.join(UNITS)}")
+        if not self.gripper_force_N > 0.0:
+            raise ValueError(f"gripper_force_N: {self.gripper_force_N}; expected more than 0")

@@ -19,7 +19,8 @@ UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 class LimberFollower(Robot):
     """Every action is one message of a target stream: it never waits, and the goal is smooth
     whatever the loop does. A jump is faded within bounds of speed and acceleration; without actions
-    the arm comes to rest and goes on with the next.
+    the arm comes to rest and goes on with the next. An arm held after `silence_s` is taken up again
+    by the next, which waits for it.
     """
 
     config_class = LimberFollowerConfig

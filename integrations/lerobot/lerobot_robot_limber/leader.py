@@ -41,11 +41,15 @@ class LimberLeader(Teleoperator):
         return self._arm is not None
 
     def connect(self, calibrate: bool = True) -> None:
-        self._arm = Arm(
-            self.config.arm if "/" not in self.config.arm else None, url=self.config.url
-        )
-        self._arm.gains(law="gravity_compensation")
-        self._arm.activate()
+        """An arm that another script leads already is only read."""
+        arm = Arm(self.config.arm if "/" not in self.config.arm else None, url=self.config.url)
+        self._arm = arm
+        if arm.mode == "active" and arm.law == "gravity_compensation":
+            return
+        arm.gains(law="gravity_compensation")
+        arm.activate()
+        if self._keys.hand_width_m is not None:
+            arm.hand(width_m=self._keys.hand_width_m, force_N=self.config.gripper_force_N)
 
     @property
     def is_calibrated(self) -> bool:

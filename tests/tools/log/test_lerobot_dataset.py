@@ -18,7 +18,7 @@ JOINTS = 2
 NAMES = Names(["shoulder", "elbow"], [])
 
 
-def events(active_s, stream=(), marks=()):
+def events(active_s, stream=(), marks=(), hand=()):
     """Four seconds: q = 0.1 t and 0.2 t, torque 1 and 2, contact 3 and 4; ACTIVE in `active_s`."""
     state, status = records("joint_state_t", 4000), records("controller_status_t", 800)
     t, status_t = np.arange(4000) * 1e-3, np.arange(800) * 5e-3
@@ -38,13 +38,14 @@ def events(active_s, stream=(), marks=()):
     ]
     made += [(int(at * 1e6), "TARGET_STREAM", message.encode()) for at, message in stream]
     made += [(int(at * 1e6), "EPISODE", message.encode()) for at, message in marks]
+    made += [(int(at * 1e6), "HAND_STATE", message.encode()) for at, message in hand]
     made.sort(key=lambda event: event[0])
     return [event_bytes(name, data, i, at) for i, (at, name, data) in enumerate(made)]
 
 
-def converted(tmp_path, active_s, stream=(), marks=()):
+def converted(tmp_path, active_s, stream=(), marks=(), hand=()):
     log = tmp_path / "run.lcmlog"
-    log.write_bytes(b"".join(events(active_s, stream, marks)))
+    log.write_bytes(b"".join(events(active_s, stream, marks, hand)))
     out = tmp_path / "dataset"
     conversion.convert(log, "lerobot", out, (), NAMES, Console(quiet=True))
     data = parquet.read_table(out / "data/chunk-000/file-000.parquet").to_pydict()
@@ -78,8 +79,29 @@ def test_frames_are_degrees_torque_and_contact_and_the_action_is_the_next_frame(
     t = 0.5 + data["frame_index"] / FPS
     state = data["observation.state"]
     np.testing.assert_allclose(state[:, 0], np.degrees(0.1 * t), atol=np.degrees(0.1) * 0.011)
-    np.testing.assert_allclose(state[:, 2:], np.tile([1, 2, 3, 4], (len(t), 1)))
+    assert state.shape[1] == 2
+    np.testing.assert_allclose(data["torque"], np.tile([1, 2], (len(t), 1)))
+    np.testing.assert_allclose(data["contact"], np.tile([3, 4], (len(t), 1)))
     np.testing.assert_allclose(data["action"][:-1], state[1:, :2], atol=1e-4)
+
+
+def hand_state(at_s, width_m, goal_m):
+    message = message_class("hand_state_t")()
+    message.time_ns = round(at_s * 1e9)
+    message.width_m, message.goal_width_m, message.max_width_m = width_m, goal_m, 0.08
+    return at_s, message
+
+
+def test_the_gripper_is_of_100_and_its_action_the_goal(tmp_path):
+    """Half open; from 2 s on told to press something thin, 0.02 m beyond closed."""
+    hand = [hand_state(t, 0.04, 0.06 if t < 2.0 else -0.02) for t in np.arange(400) / 100]
+    out, data = converted(tmp_path, [(0.5, 3.5)], hand=hand)
+    then = 0.5 + (data["frame_index"] + 1) / FPS
+    np.testing.assert_allclose(data["observation.state"][:, 2], 50)
+    np.testing.assert_allclose(data["action"][:, 2], np.where(then < 2.0, 75, 0))
+    features = json.loads((out / "meta/info.json").read_text())["features"]
+    assert features["action"]["names"] == ["joint_1.pos", "joint_2.pos", "gripper.pos"]
+    assert features["observation.state"]["names"] == features["action"]["names"]
 
 
 def test_targets_of_a_stream_are_the_actions(tmp_path):

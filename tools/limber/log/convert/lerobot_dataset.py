@@ -1,9 +1,11 @@
 """A dataset of LeRobot's, format v3.0, written with pyarrow alone.
 
 Episodes are those that the log's marks tell, with task and success; without marks the times in
-ACTIVE of a second or more. A frame has the joints in degrees, their torque
-and the estimated contact; its action is the target of the next frame's time, where the log has
-targets of joints (TARGET_STREAM), else the joints then. Times are index / fps, as LeRobot's are.
+ACTIVE of a second or more. A frame has the joints in degrees and the gripper, 0 closed to 100 open;
+its action is the target of the next frame's time, where the log has targets of joints
+(TARGET_STREAM), else the joints then, and the hand's goal then. Torque and estimated contact stand
+beside, where a policy's state is what lerobot-rollout gives it. Times are index / fps, as LeRobot's
+are.
 """
 
 import json
@@ -30,7 +32,7 @@ TASK = "limber"  # where none is named
 DONE, SUCCESS = "next.done", "next.success"  # of the last frame
 CHUNK = "chunk-000/file-000.parquet"
 QUANTILES = (1, 10, 50, 90, 99)
-STATE, STATUS, STREAM = "JOINT_STATE", "CONTROLLER_STATUS", "TARGET_STREAM"
+STATE, STATUS, STREAM, HAND = "JOINT_STATE", "CONTROLLER_STATUS", "TARGET_STREAM", "HAND_STATE"
 
 
 @dataclass
@@ -63,6 +65,7 @@ class LeRobotDataset:
         self._marked = marked
         self._tasks = list(dict.fromkeys(_task(one) for one in marked or [])) or [TASK]
         self._state, self._contact, self._mode = Samples(), Samples(), Samples()
+        self._hand = Samples()  # opening and goal, of 100; no rows: the arm has none
         self._targets: list[tuple[float, Floats]] = []  # arm time, s
         self._zero_us = 0
 
@@ -80,6 +83,10 @@ class LeRobotDataset:
             elif batch.channel == STATUS:
                 self._contact.add(batch.stamps_us, found["tau_ext"][:, :n].astype(float))
                 self._mode.add(batch.stamps_us, found["mode"].astype(float)[:, None])
+            elif batch.channel == HAND:
+                widths = np.stack((found["width_m"], found["goal_width_m"]), axis=1)
+                rows = 100.0 * widths / found["max_width_m"][:, None]
+                self._hand.add(batch.stamps_us, np.clip(rows, 0.0, 100.0))
             elif batch.channel == STREAM:
                 self._take_targets(batch.stamps_us, found, n)
 
@@ -126,14 +133,13 @@ class LeRobotDataset:
             return [0] * len(lengths)
         return [self._tasks.index(_task(one)) for one in self._marked]
 
-    def _frames(self, span: tuple[int, int]) -> tuple[Floats, Floats]:
-        """observation.state and action, a row a frame."""
+    def _frames(self, span: tuple[int, int]) -> dict[str, Floats]:
+        """Columns, a row a frame."""
         n = len(self._joints)
         count = max(int((span[1] - span[0]) * 1e-6 * FPS), 1)
         times_us = span[0] + np.arange(count + 1) * 1e6 / FPS
         state = self._state.at(times_us)
         q = np.degrees(state[:, :n])
-        observation = np.hstack((q, state[:, n:], self._contact.at(times_us)))[:count]
         action = q[1:]
         if self._targets:
             at = np.array([time_s for time_s, _ in self._targets])
@@ -142,13 +148,21 @@ class LeRobotDataset:
             aimed = np.stack([np.interp(then_s, at, column) for column in knots.T], axis=1)
             known = (then_s >= at[0]) & (then_s <= at[-1] + 1.0)
             action = np.where(known[:, None], aimed, action)
-        return observation, action
+        if self._hand.rows:
+            hand = self._hand.at(times_us)
+            q, action = np.hstack((q, hand[:, :1])), np.hstack((action, hand[1:, 1:]))
+        found = {"observation.state": q, "torque": state[:, n:]}
+        found["contact"] = self._contact.at(times_us)
+        return {**{key: rows[:count] for key, rows in found.items()}, "action": action}
 
     def _features(self) -> dict[str, Any]:
         joints = [f"joint_{i + 1}" for i in range(len(self._joints))]
+        positions = [f"{joint}.pos" for joint in joints]
+        positions += ["gripper.pos"] if self._hand.rows else []
         names = {
-            "observation.state": [f"{j}.{g}" for g in ("pos", "torque", "contact") for j in joints],
-            "action": [f"{joint}.pos" for joint in joints],
+            "observation.state": positions,
+            **{group: [f"{joint}.{group}" for joint in joints] for group in ("torque", "contact")},
+            "action": positions,
         }
         own = {
             key: {"dtype": "float32", "shape": [len(words)], "names": words}
@@ -163,12 +177,11 @@ class LeRobotDataset:
             **{key: {"dtype": "int64", "shape": [1], "names": None} for key in indices},
         }
 
-    def _write_data(self, frames: list[tuple[Floats, Floats]]) -> None:
-        lengths = [len(observation) for observation, _ in frames]
+    def _write_data(self, frames: list[dict[str, Floats]]) -> None:
+        lengths = [len(one["action"]) for one in frames]
         within = np.concatenate([np.arange(length) for length in lengths])
         columns = {
-            "observation.state": _lists(np.concatenate([o for o, _ in frames])),
-            "action": _lists(np.concatenate([a for _, a in frames])),
+            **{key: _lists(rows) for key, rows in _joined(frames).items()},
             "timestamp": pyarrow.array((within / FPS).astype(np.float32)),
             "frame_index": pyarrow.array(within),
             "episode_index": pyarrow.array(np.repeat(np.arange(len(lengths)), lengths)),
@@ -182,8 +195,8 @@ class LeRobotDataset:
             columns |= {DONE: pyarrow.array(done), SUCCESS: pyarrow.array(done & good)}
         self._parquet(f"data/{CHUNK}", pyarrow.table(columns))
 
-    def _write_meta(self, frames: list[tuple[Floats, Floats]]) -> None:
-        lengths = np.array([len(observation) for observation, _ in frames])
+    def _write_meta(self, frames: list[dict[str, Floats]]) -> None:
+        lengths = np.array([len(one["action"]) for one in frames])
         ends = np.cumsum(lengths)
         zeros = np.zeros(len(lengths), np.int64)
         episodes = {
@@ -222,8 +235,7 @@ class LeRobotDataset:
             "features": self._features(),
         }
         self._json("meta/info.json", info)
-        observation, action = (np.concatenate(part) for part in zip(*frames, strict=True))
-        stats = {"observation.state": _stats(observation), "action": _stats(action)}
+        stats = {key: _stats(rows) for key, rows in _joined(frames).items()}
         self._json("meta/stats.json", stats)
 
     def _parquet(self, name: str, table: pyarrow.Table) -> None:
@@ -234,6 +246,10 @@ class LeRobotDataset:
     def _json(self, name: str, content: dict[str, Any]) -> None:
         text = json.dumps(content, indent=4) + "\n"
         (self._folder / name).write_text(text, encoding="utf-8")
+
+
+def _joined(frames: list[dict[str, Floats]]) -> dict[str, Floats]:
+    return {key: np.concatenate([one[key] for one in frames]) for key in frames[0]}
 
 
 def _task(episode: Episode) -> str:
