@@ -12,7 +12,9 @@ import pytest
 
 from limber.paths import ROOT
 
-NINJA = 'echo start >>"$STEPS"; sleep "${NINJA_S:-0}"; echo end >>"$STEPS"'
+NINJA = (
+    'echo "$*" >>"$STEPS.built"; echo start >>"$STEPS"; sleep "${NINJA_S:-0}"; echo end >>"$STEPS"'
+)
 CMAKE = 'echo configure >>"$STEPS"'
 LIMBER = 'echo "hand over: $*"; sleep "${LIMBER_S:-0}"'
 
@@ -42,9 +44,10 @@ def tree(tmp_path):
 
 
 def stamp(root: Path) -> None:
-    """As ./limber does when it has made the Python environment."""
+    """As ./limber does when it has made the Python environment, and what is not the demo's."""
     digest = hashlib.sha256((root / "pyproject.toml").read_bytes()).hexdigest()
-    (root / ".venv" / ".limber-environment").write_text(f"{root} {digest}  -\n")
+    for name in ("environment", "dev"):
+        (root / ".venv" / f".limber-{name}").write_text(f"{root} {digest}  -\n")
 
 
 def start(root: Path, *words: str, **environment: str) -> subprocess.Popen:
@@ -95,6 +98,20 @@ def test_two_at_once_take_turns(tree):
 def test_a_part_of_the_tests_builds_only_what_it_needs(tree, words, built):
     assert start(tree, *words).communicate(timeout=20) == (f"hand over: {' '.join(words)}\n", "")
     assert steps(tree) == (["start", "end"] if built else [])
+
+
+def test_the_demo_installs_and_builds_less(tree):
+    (tree / ".venv" / ".limber-dev").unlink()
+    executable(tree / ".venv" / "bin" / "python", 'echo "$*" >>"$STEPS.installed"')
+    built, installed = (tree.parent / f"steps.{name}" for name in ("built", "installed"))
+    assert start(tree, "demo").communicate(timeout=20) == ("hand over: demo\n", "")
+    assert "limber-sim" in built.read_text() and "limber-send" not in built.read_text()
+    assert not installed.exists()
+    for told in ("limber: installing the packages of limber-arm[dev]: 0.6 GB\n", ""):
+        assert start(tree, "lab").communicate(timeout=20) == ("hand over: lab\n", told)
+    assert "limber-send" in built.read_text()
+    assert installed.read_text().splitlines()[0].endswith(f"--editable {tree}[dev]")
+    assert len(installed.read_text().splitlines()) == 1
 
 
 def test_nobody_waits_for_the_program(tree):
