@@ -73,8 +73,9 @@ class UdpPing {
   static void connect_to(const FileDescriptor& from, const FileDescriptor& to) {
     sockaddr_in address{};
     socklen_t size = sizeof address;
-    getsockname(to.get(), reinterpret_cast<sockaddr*>(&address), &size);
-    connect(from.get(), reinterpret_cast<sockaddr*>(&address), size);
+    if (getsockname(to.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0 ||
+        connect(from.get(), reinterpret_cast<sockaddr*>(&address), size) != 0)
+      throw std::runtime_error("no UDP on this machine");
   }
 
   FileDescriptor socket_ = open();

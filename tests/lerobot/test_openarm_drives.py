@@ -41,17 +41,6 @@ def bus(python):
         yield found
 
 
-def patiently(python, home, *words, **options):
-    """LeRobot gives a drive 0.1 s to answer, which a busy machine may not have: once more then."""
-    for left in reversed(range(4)):
-        try:
-            return lerobot(python, home, *words, **options)
-        except AssertionError as error:
-            if not left or "Handshake failed" not in str(error):
-                raise
-    raise AssertionError
-
-
 def state(bus, motor):
     """Its error nibble and its angle in degrees; None without an answer."""
     while bus.recv(0.0) is not None:
@@ -77,7 +66,7 @@ def test_the_example(python, bus, home):
         enabled.add(all(one is not None and one[0] == 1 for one in seen))
 
     example = ROOT / "examples" / "lerobot" / "openarm_follower.py"
-    said = patiently(python, home, example, GROUP, meanwhile=look)
+    said = lerobot(python, home, example, GROUP, meanwhile=look)
     elbow, gripper = (
         [float(x) for x in re.search(rf"{key}.pos: from (\S+) to (\S+) deg", said).groups()]
         for key in ("joint_4", "gripper")
@@ -93,7 +82,7 @@ def test_the_example(python, bus, home):
 
 def test_the_damiao_bus_alone(python, bus, home):
     """Its enabling handshake, a zero, a reading."""
-    position, temperature = patiently(python, home, "-c", READ_ALL, GROUP).split()[-2:]
+    position, temperature = lerobot(python, home, "-c", READ_ALL, GROUP).split()[-2:]
     assert float(position) == pytest.approx(0.0, abs=0.05)
     assert float(temperature) > 20
     assert state(bus, 8) == (0, pytest.approx(0.0, abs=0.05))
@@ -102,7 +91,7 @@ def test_the_damiao_bus_alone(python, bus, home):
 def test_lerobot_calibrate(python, bus, home):
     """The present pose becomes the zero."""
     words = ["--robot.type=openarm_follower", "--robot.id=sim", f"--robot.port={GROUP}"]
-    patiently(python, home, "lerobot-calibrate", *words, "--robot.can_interface=udp_multicast")
+    lerobot(python, home, "lerobot-calibrate", *words, "--robot.can_interface=udp_multicast")
     assert (home / "calibration" / "robots" / "openarm_follower" / "sim.json").exists()
     zeros = [state(bus, motor) for motor in MOTORS]
     assert zeros == [(0, pytest.approx(0.0, abs=0.1))] * 8
