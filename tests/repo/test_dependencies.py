@@ -11,7 +11,12 @@ from importlib import metadata
 from limber.paths import LACKING, ROOT
 
 COMES_WITH = {"trimesh": "viser", "websockets": "viser"}
-CALLED = {"google": "protobuf", "rerun": "rerun-sdk", "yaml": "pyyaml"}  # in pyproject.toml
+CALLED = {
+    "google": "protobuf",
+    "foxglove": "foxglove-sdk",
+    "rerun": "rerun-sdk",
+    "yaml": "pyyaml",
+}  # in pyproject.toml
 
 
 def package(requirement: str) -> str:
@@ -38,7 +43,7 @@ def imported(source: str) -> set[str]:
 def test_what_is_imported_is_named():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    users = ("identify", "mcap", "can", "parquet", "sweep", "rerun", "gym", "ros2")
+    users = ("identify", "mcap", "can", "parquet", "sweep", "rerun", "gym", "ros2", "foxglove")
     needed = [*project["dependencies"], *(line for extra in users for line in extras[extra])]
     assert set(LACKING.values()) <= set(needed), "what the Debian package has pip install"
     named = {package(requirement) for requirement in needed}

@@ -31,8 +31,9 @@ timeline:
   - {at_s: 1.1, push: {force_N: [3, 0, 0], ramp_s: 0.1, for_s: 1}}
 """
 VARY = ["--vary", "gains.K_x=20..3000:log", "--vary", "payload_kg=0..0.5", "--vary", "loss=0,2e-4"]
-# Counts the labs: a worker's limber-lab is this script.
+# Counts the labs: a worker's limber-lab is this script. With a gate none begins beyond its number.
 COUNTED = """#!/bin/sh
+while [ -e "{gate}" ] && [ "$(wc -l < "{counts}")" -ge "$(cat "{gate}")" ]; do sleep 0.02; done
 "{program}" "$@"
 code=$?
 sed -n 's/^seed: //p' "$1" >> "{counts}"
@@ -44,7 +45,7 @@ class Bench:
     """Scheduler and workers; programs whose labs are counted, and an arm that no worker has."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.counts = folder, folder / "counts"
+        self.folder, self.counts, self.gate = folder, folder / "counts", folder / "gate"
         self.counts.touch()
         shutil.copytree(robots_root() / "desktop2r", folder / "mine")
         self.scenario = folder / "soft.yaml"
@@ -55,7 +56,8 @@ class Bench:
             (programs / program.name).symlink_to(program)
         lab = programs / "limber-lab"
         lab.unlink()
-        lab.write_text(COUNTED.format(program=programs_folder() / lab.name, counts=self.counts))
+        program = programs_folder() / lab.name
+        lab.write_text(COUNTED.format(program=program, counts=self.counts, gate=self.gate))
         lab.chmod(0o755)
         (programs.parent / "lib").symlink_to(programs_folder().parent / "lib")
         self.environment = {**os.environ, "LIMBER_BIN": str(programs)}
@@ -133,6 +135,7 @@ def test_no_kill_loses_a_run_or_does_it_twice(bench):
     """Worker, client and scheduler are killed; the table is that of one local worker."""
     scheduler, address = bench.scheduler()
     first, _second = bench.worker(address), bench.worker(address)
+    bench.gate.write_text("8", encoding="utf-8")
     client = bench.begin("killed", "--on", address)
     bench.until(lambda: len(bench.done("killed")) >= 2, client)
     first.kill()
@@ -143,6 +146,7 @@ def test_no_kill_loses_a_run_or_does_it_twice(bench):
     assert 5 <= len(kept) < RUNS
     counted = len(bench.counts.read_text(encoding="utf-8").split())
 
+    bench.gate.write_text(str(counted + 5), encoding="utf-8")
     client = bench.sweep("killed", "--resume", "--on", address)
     bench.until(lambda: len(bench.done("killed")) >= len(kept) + 2, client)
     scheduler.kill()
@@ -151,6 +155,7 @@ def test_no_kill_loses_a_run_or_does_it_twice(bench):
     assert f"limber: the scheduler at {address} has gone" in told, told
     assert "Traceback" not in told, told
 
+    bench.gate.unlink()
     told = bench.end(bench.sweep("killed", "--resume", "--processes", "2"), 0)
     assert f"of {RUNS} runs are there" in told and "holds" in told, told
     assert (bench.folder / "killed" / "sweep.png").exists()

@@ -108,6 +108,7 @@ def cache_folder() -> Path:
 # Packages of optional parts, by the module that is imported.
 EXTRAS = {"scipy": "identify", "mcap": "mcap", "google": "mcap", "distributed": "sweep"}
 EXTRAS |= {"pyarrow": "parquet", "rerun": "rerun", "gymnasium": "gym", "cyclonedds": "ros2"}
+EXTRAS |= {"foxglove": "foxglove"}
 # For the Debian package: what Debian has, and what it lacks, as in pyproject.toml. The latter goes
 # into an environment of the user's that has Debian's packages, too; there `python -m limber`.
 DEBIAN = {"scipy": "python3-scipy", "google": "python3-protobuf"}
@@ -115,6 +116,7 @@ LACKING = {"lcm": "lcm==1.5.3", "viser": "viser>=1.1,<1.2", "mcap": "mcap>=1.2,<
 LACKING |= {"pyarrow": "pyarrow>=18", "rerun": "rerun-sdk>=0.41,<0.42"}
 LACKING |= {"distributed": "distributed>=2025.1"}
 LACKING |= {"gymnasium": "gymnasium>=1.0,<2", "cyclonedds": "cyclonedds>=11.0.1,<12"}
+LACKING |= {"foxglove": "foxglove-sdk>=0.30,<0.31"}
 
 
 def command_for(module: str) -> str | None:

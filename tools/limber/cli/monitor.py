@@ -24,19 +24,41 @@ def monitor(
         bool,
         typer.Option("--control", help="The page may move the arm, not only show and stop it."),
     ] = False,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="On this machine only.")] = 8080,
+    port: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=65535,
+            help="On this machine only.",
+            show_default="8080; 8765 with --foxglove",
+        ),
+    ] = None,
     scenario: Annotated[
         Path | None, typer.Option(help="The running scenario, whose walls are shown.")
     ] = None,
+    foxglove: Annotated[
+        bool,
+        typer.Option("--foxglove", help="For the Foxglove app instead of a page; read only."),
+    ] = False,
 ) -> None:
     """Show a running arm, or a recorded run, in the browser: 3D, charts, faults, STOP."""
     from limber.live.network import require_multicast
     from limber.monitor import commands
 
+    if foxglove and (log is not None or control or scenario is not None):
+        raise InputError(
+            "--foxglove shows a running arm, read only: no log (limber log convert --to mcap makes "
+            "the file that Foxglove opens), no --control, no --scenario"
+        )
     if log is not None:
         if control or scenario is not None:
             raise InputError("--control and --scenario are for a running arm: a log cannot move")
-        commands.play(log, robot, port, console)
+        commands.play(log, robot, port or commands.PORT, console)
         return
     require_multicast()
-    commands.live(robot, port, control, scenario, console)
+    if foxglove:
+        from limber.monitor import foxglove_feed
+
+        foxglove_feed.live(robot, port or foxglove_feed.PORT, console)
+        return
+    commands.live(robot, port or commands.PORT, control, scenario, console)

@@ -33,6 +33,7 @@ from limber.monitor.typed import TypedFields
 from limber.monitor.view_options import add_view_options
 from limber.monitor.walls import wall_changes
 
+PORT = 8080
 NICENESS = 5  # the control loop goes first
 
 

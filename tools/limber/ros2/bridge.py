@@ -16,12 +16,12 @@ from rich.console import Console
 from limber.live.arm import Arm
 from limber.live.arm_errors import StackLostError
 from limber.live.arm_state import State
+from limber.live.stamps import Stamps
 from limber.model.robot import Robot, load_robot
 from limber.ros2 import diagnostics, to_ros
 from limber.ros2 import ros_types as ros
 from limber.ros2.domain import Participant, domain_id
 from limber.ros2.from_ros import Requests
-from limber.ros2.stamps import Stamps
 
 DIAGNOSTICS_S = 1.0
 CHANGED_S = 0.1  # diagnostics that have changed come sooner

@@ -3,7 +3,8 @@
 import json
 from typing import Any
 
-from limber.log.convert.mcap_file import BASE_FRAME, LOG_TOPIC, POSES
+from limber.log.convert.foxglove_messages import BASE_FRAME, POSES
+from limber.log.convert.mcap_file import LOG_TOPIC
 
 TERMS = ("stiffness", "damping", "null", "gravity", "coriolis", "friction", "sent")
 ERROR = ("x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad")

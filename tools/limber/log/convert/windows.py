@@ -73,7 +73,7 @@ def joint_names(log: Log, otherwise: Sequence[str]) -> tuple[tuple[str, ...], bo
     if not names:
         counts = [_first_count(log, name) for name in ("JOINT_STATE", "CONTROLLER_STATUS")]
         names = tuple(f"joint{i + 1}" for i in range(max(counts)))
-    return _identifiers(names), len(told) > 1
+    return identifiers(names), len(told) > 1
 
 
 def _first_count(log: Log, channel: str) -> int:
@@ -83,7 +83,7 @@ def _first_count(log: Log, channel: str) -> int:
     return min(max(int(found["num_joints"][0]), 0), NUM_JOINTS) if len(found) else 0
 
 
-def _identifiers(names: Sequence[str]) -> tuple[str, ...]:
+def identifiers(names: Sequence[str]) -> tuple[str, ...]:
     """Letters, digits and _ only, no digit first, each once: what every tool accepts in a name."""
     made: list[str] = []
     for i, name in enumerate(names):

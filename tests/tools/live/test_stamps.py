@@ -1,7 +1,7 @@
 """Stamps of ROS from arm time."""
 
 from limber.live.stack_link import LOCKSTEP_SESSION
-from limber.ros2.stamps import Stamps
+from limber.live.stamps import Stamps
 
 SESSION = 7
 MS, S = 1_000_000, 1_000_000_000

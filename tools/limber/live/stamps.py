@@ -1,4 +1,4 @@
-"""Arm time as the wall clock, which ROS's stamps follow."""
+"""Arm time as the wall clock, for what goes to other programs live (ROS 2, Foxglove)."""
 
 from limber.live.stack_link import LOCKSTEP_SESSION
 
