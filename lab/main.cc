@@ -27,6 +27,7 @@ constexpr std::int64_t kProgressEvery_ns = 200'000'000;
 
 struct Arguments {
   std::string scenario;
+  std::string robot;
   std::string log;
   std::string can;
   bool progress = false;
@@ -112,7 +113,8 @@ int run_live(const Arguments& given, const Robot& robot, const Scenario& scenari
 
 int run(const Arguments& given) {
   controller::load_laws(scenario_laws(given.scenario));
-  LoadedRobot robot = load_robot(scenario_robot(given.scenario));
+  LoadedRobot robot =
+      load_robot(given.robot.empty() ? scenario_robot(given.scenario) : given.robot);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
   if (given.rate_hz > 0.0) robot.robot.rate_hz = given.rate_hz;
   Lab lab(robot, scenario);
@@ -128,6 +130,7 @@ LIMBER_MAIN(lab) {
       "Runs a scenario in one process, in lock step, as fast as the processor allows.");
   Arguments given;
   line.text("scenario", &given.scenario, "scenario file").required();
+  line.text("--robot", &given.robot, "name or folder of the robot (default: the scenario's)");
   line.text("--log", &given.log, "LCM event log to write; compressed if it ends in .zst");
   line.text("--can", &given.can, "CAN frames to write, in candump's log format, in arm time");
   line.flag("--progress", &given.progress, "show how far it is");

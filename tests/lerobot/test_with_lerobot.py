@@ -20,6 +20,34 @@ LEADER = [
     f"--teleop.arm={ARM}",
     f"--teleop.url={OTHER['LCM_DEFAULT_URL']}",
 ]
+HELD = """
+import sys, threading, time
+from lerobot_robot_limber import LimberFollower, LimberFollowerConfig
+from limber import Arm
+
+robot = LimberFollower(LimberFollowerConfig(arm=sys.argv[1], silence_s=0.5))
+robot.connect()
+action, arm = robot.get_observation(), robot._arm
+robot.send_action(action)
+arm.wait(mode="hold")
+activate, may, longest_s = Arm.activate, threading.Event(), 0.0
+Arm.activate = lambda arm: (may.wait(30), activate(arm))
+begun_s = time.monotonic()
+for _ in range(30):
+    at_s = time.monotonic()
+    robot.send_action(action)
+    longest_s = max(longest_s, time.monotonic() - at_s)
+    time.sleep(1 / 30)
+assert time.monotonic() - begun_s < 25 and arm.mode == "hold"
+taken = arm.targets.taken
+may.set()
+while arm.targets.taken < taken + 30:
+    robot.send_action(action)
+    time.sleep(1 / 30)
+assert arm.mode == "active"
+robot.disconnect()
+print(f"{longest_s * 1e3:.2f} ms at most")
+"""
 FRAMES = """
 import json, sys
 from lerobot.datasets.lerobot_dataset import LeRobotDataset
@@ -126,6 +154,13 @@ def test_teleoperate_record_and_replay_with_a_hand(python, home, tmp_path):
         )
         assert np.ptp(seen) == pytest.approx(0.65 * OPEN_M, abs=0.08 * OPEN_M)
         assert arm.targets.refused == 0
+
+
+def test_an_action_does_not_wait_for_an_arm_that_is_held(python, home, tmp_path):
+    """It has been silent; drives and law may take as long as they want."""
+    with stack(tmp_path / "follower") as arm:
+        print(lerobot(python, home, "-c", HELD, ARM))
+        arm.wait(mode="hold")
 
 
 def test_a_leader_opens_its_hand_softly(python, home, tmp_path):

@@ -1,8 +1,10 @@
 """Targets with times from a script to the real processes."""
 
+import signal
 import struct
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -93,6 +95,24 @@ def test_scripts_at_the_same_time_have_different_numbers(standing):
     ) as other:
         assert int(other.stdout.readline()) != script_client()
         other.kill()
+
+
+def test_a_target_does_not_wait_for_another_threads_request(standing):
+    controller = standing.processes["controller"]
+    with Arm() as arm:
+        arm.activate()
+        stream, before = arm.stream(), arm.targets.taken
+        controller.send_signal(signal.SIGSTOP)
+        asking = threading.Thread(target=arm.gains, kwargs={"damping_ratio": 0.9})
+        asking.start()
+        while not arm._port._turn.locked():
+            time.sleep(0.001)
+        for _ in range(3):
+            stream.send(joints_rad=arm.q)
+        assert asking.is_alive(), "there is no answer yet"
+        controller.send_signal(signal.SIGCONT)
+        asking.join()
+        arm.wait(until=lambda now: now.targets.taken == before + 3, timeout_s=5)
 
 
 def test_torques_on_top_at_500_hz_make_no_cycle_late(standing):

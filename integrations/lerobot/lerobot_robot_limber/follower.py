@@ -1,5 +1,6 @@
 """The arm that acts."""
 
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cached_property
 from typing import Any
 
@@ -7,6 +8,7 @@ import numpy as np
 from lerobot.robots.robot import Robot
 
 from limber import Arm
+from limber.live.arm_base import check_fault
 from limber.live.arm_state import State
 from limber.model.rotations import between, quaternion_about
 
@@ -19,8 +21,8 @@ UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 class LimberFollower(Robot):
     """Every action is one message of a target stream: it never waits, and the goal is smooth
     whatever the loop does. A jump is faded within bounds of speed and acceleration; without actions
-    the arm comes to rest and goes on with the next. An arm held after `silence_s` is taken up again
-    by the next, which waits for it.
+    the arm comes to rest and goes on with the next. An arm held after `silence_s` is made active
+    beside the loop, whose actions until then are left out.
     """
 
     config_class = LimberFollowerConfig
@@ -33,6 +35,8 @@ class LimberFollower(Robot):
         self.config = config
         self.cameras = _cameras(config.cameras)
         self._stream: Any = None
+        self._beside: ThreadPoolExecutor
+        self._activation: Future[None] | None = None
 
     @cached_property
     def _keys(self) -> Keys:
@@ -59,6 +63,7 @@ class LimberFollower(Robot):
 
     def connect(self, calibrate: bool = True) -> None:
         """Waits for the stack, enables the drives and starts the law; may take 15 s."""
+        self._beside = ThreadPoolExecutor(1, "limber_follower")
         self._arm = Arm(self.config.arm if "/" not in self.config.arm else None)
         if "contact" in self.config.observe or "force" in self.config.observe:
             self._arm.gains(contact="joint_torque")
@@ -91,7 +96,7 @@ class LimberFollower(Robot):
         return {**found, **{key: camera.async_read() for key, camera in self.cameras.items()}}
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
-        """Returns what was sent."""
+        """Returns what was sent. FaultError in FAULT and ESTOP."""
         arm = self._connected()
         sent = {key: float(action[key]) for key in self.action_features}
         target: dict[str, Any] = {}
@@ -106,18 +111,31 @@ class LimberFollower(Robot):
             target["hand_width_m"] = self._keys.width_m(sent[GRIPPER])
         if self.config.stiffness:
             target["stiffness_scale"] = min(max(sent[STIFFNESS], 0.05), 1.0)
-        if arm.mode != "active":
-            arm.activate()  # after silence; a fault is raised
-        self._stream.send(**target)
+        if arm.mode == "active":
+            self._stream.send(**target)
+        else:
+            self._activate(arm)
         return sent
+
+    def _activate(self, arm: Arm) -> None:
+        """Does not wait for it. Raises why it has failed before."""
+        check_fault(arm.state)
+        before = self._activation
+        if before is not None and not before.done():
+            return
+        self._activation = None
+        if before is not None:
+            before.result()
+        self._activation = self._beside.submit(arm.activate)
 
     def disconnect(self) -> None:
         """The arm stays held."""
         for camera in self.cameras.values():
             camera.disconnect()
         if self._arm is not None:
+            self._beside.shutdown()  # an arm that is being made active is so before it is held
             self._arm.close()
-        self._arm = None
+        self._arm, self._activation = None, None
 
     def _connected(self) -> Arm:
         if self._arm is None:

@@ -41,6 +41,10 @@ OneProcess = Annotated[
     ),
 ]
 
+OtherRobot = Annotated[
+    str | None, typer.Option("--robot", help="Another arm than the scenario's: name or folder.")
+]
+
 Plain = Annotated[
     bool,
     typer.Option("--record-plain", help="Leave run.lcmlog, not the compressed run.lcmlog.zst."),
@@ -93,6 +97,7 @@ def demo(
 @app.command(epilog="Example: limber run scenarios/push.yaml --out out/push")
 def run(
     scenario: ScenarioPath,
+    robot: OtherRobot = None,
     out: Out = None,
     lockstep: Lockstep = None,
     one_process: OneProcess = False,
@@ -131,6 +136,7 @@ def run(
         record_plain=record_plain,
         record_can=can,
         page=page,
+        robot=robot,
     )
     raise typer.Exit(commands.run(scenario, options, console))
 
@@ -138,6 +144,7 @@ def run(
 @app.command(epilog="Example: limber lab scenarios/push.yaml --out out/push")
 def lab(
     scenario: ScenarioPath,
+    robot: OtherRobot = None,
     out: Out = None,
     can: Annotated[
         bool, typer.Option("--can", help="Write the CAN frames, too: run.can.log.")
@@ -148,7 +155,7 @@ def lab(
     from limber.run import commands
     from limber.run.options import RunOptions
 
-    options = RunOptions(out, record_can=can, record_plain=record_plain)
+    options = RunOptions(out, record_can=can, record_plain=record_plain, robot=robot)
     raise typer.Exit(commands.lab(scenario, options, console))
 
 

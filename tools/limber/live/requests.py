@@ -32,7 +32,8 @@ class RequestPort:
         self.client = script_client() if client is None else client
         self._link = link
         self._answers = link.receiver.stream("REQUEST_ANSWER")
-        self._turn = threading.Lock()
+        self._turn = threading.Lock()  # one request at a time waits for its answer
+        self._leaving = threading.Lock()  # messages leave in the order of their seq
         self._seq = 0
 
     def send(self, message: Any, timeout_s: float = ANSWER_S) -> Any:
@@ -40,7 +41,7 @@ class RequestPort:
         with self._turn:
             self._answers.raw()
             self._publish(message)
-            message_seq, end_s = self._seq, time.monotonic() + timeout_s
+            message_seq, end_s = message.seq, time.monotonic() + timeout_s
             while (left_s := end_s - time.monotonic()) > 0 and self._answers.wait(left_s):
                 for data in self._answers.raw():
                     answer = _answer(data)
@@ -52,10 +53,15 @@ class RequestPort:
         )
 
     def stream(self, message: Any) -> None:
-        """Sends what is answered only where it is refused: RefusedError, by the next call."""
-        with self._turn:
+        """Sends what is answered only where it is refused: RefusedError, by the next call.
+
+        Does not wait while another thread's request does: a refusal of then is told later.
+        """
+        waiting: list[bytes] = []
+        if self._turn.acquire(blocking=False):
             waiting = self._answers.raw()
-            self._publish(message)
+            self._turn.release()
+        self._publish(message)
         for data in waiting:
             answer = _answer(data)
             if answer and answer.client == self.client and not answer.accepted:
@@ -63,18 +69,18 @@ class RequestPort:
 
     def post(self, message: Any) -> None:
         """Sends to the simulator, which answers nothing."""
-        with self._turn:
-            self._publish(message)
+        self._publish(message)
 
     def _publish(self, message: Any) -> None:
         # Greater than that of any sender with this client's number before.
         self._link.check()
-        self._seq = max(self._seq + 1, time.monotonic_ns())
-        message.seq, message.time_ns = self._seq, time.monotonic_ns()
-        if hasattr(message, "client"):
-            message.client = self.client
-            message.controller = int(self._link.records()[1]["controller"])
-        self._link.receiver.publish(CHANNELS[type(message).__name__], message)
+        with self._leaving:
+            self._seq = max(self._seq + 1, time.monotonic_ns())
+            message.seq, message.time_ns = self._seq, time.monotonic_ns()
+            if hasattr(message, "client"):
+                message.client = self.client
+                message.controller = int(self._link.records()[1]["controller"])
+            self._link.receiver.publish(CHANNELS[type(message).__name__], message)
 
 
 def _answer(data: bytes) -> Any:

@@ -11,7 +11,7 @@ from limber.log.reader import Log, log_file
 from limber.measure.results import Summary, load_header
 from limber.measure.summarize import measure
 from limber.model.scenario import Scenario, load_scenario, scenario_beside
-from limber.paths import run_folder
+from limber.paths import robot_folder, run_folder
 from limber.run import buses, runner
 from limber.run.drive_words import with_words
 from limber.run.options import FinishedRun, RunOptions
@@ -24,8 +24,8 @@ def next_folder(name: str, inside: Path = Path("out")) -> Path:
     return inside / f"{name}-{number}"
 
 
-def _load(path: Path, console: Console) -> Scenario:
-    scenario = load_scenario(path)
+def _load(path: Path, robot: str | None, console: Console) -> Scenario:
+    scenario = load_scenario(path, None if robot is None else robot_folder(robot))
     for line in scenario.warnings:
         console.print(
             f"warning: {line}", style="yellow", markup=False, highlight=False, soft_wrap=True
@@ -38,7 +38,7 @@ def _load(path: Path, console: Console) -> Scenario:
 
 
 def run(path: Path, options: RunOptions, console: Console) -> int:
-    scenario = _load(path, console)
+    scenario = _load(path, options.robot, console)
     addresses = buses.addresses(scenario.robot, options.buses)
     buses.warn_of_motion(addresses, options.with_simulator, console)
     if options.page:
@@ -52,7 +52,7 @@ def run(path: Path, options: RunOptions, console: Console) -> int:
 
 
 def lab(path: Path, options: RunOptions, console: Console) -> int:
-    scenario = _load(path, console)
+    scenario = _load(path, options.robot, console)
     folder = run_folder(options.out or next_folder(scenario.name))
     finished = runner.lab(scenario, folder, console, options.record_can, options.log_name)
     return report(finished, scenario, console)

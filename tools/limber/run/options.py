@@ -24,6 +24,7 @@ class RunOptions:
     record_can: bool = False  # the frames, too
     page: bool = False  # `limber monitor` beside it
     leave_when_behind: bool = False  # end a paced run that the machine does not keep up with
+    robot: str | None = None  # name or folder; None: the scenario's
 
     @property
     def log_name(self) -> str:

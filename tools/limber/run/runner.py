@@ -66,8 +66,8 @@ def lab(
     """The whole stack in one process, in lock step, as fast as the processor allows."""
     keep_scenario(scenario, folder)
     result = FinishedRun(folder, "lab", log_name=log_name)
-    path = str(scenario.path)
-    command = [str(program("limber-lab")), path, "--log", str(result.log), "--progress"]
+    words = _scenario_words(scenario)
+    command = [str(program("limber-lab")), *words, "--log", str(result.log), "--progress"]
     if record_can:
         command += ["--can", str(result.can_log)]
     with process_group(folder) as group, sigterm_as_interrupt():
@@ -107,6 +107,10 @@ def _commands(
     return started
 
 
+def _scenario_words(scenario: Scenario) -> list[str]:
+    return [str(scenario.path), "--robot", str(scenario.robot.folder)]
+
+
 def _length_words(scenario: Scenario, options: RunOptions, pace: Pace) -> list[str]:
     rate = [] if options.rate_hz is None else ["--rate", f"{options.rate_hz:.9g}"]
     if pace == Pace.REALTIME:
@@ -119,7 +123,7 @@ def _lab_words(
     scenario: Scenario, folder: Path, options: RunOptions, pace: Pace, recorded: bool
 ) -> list[str]:
     """It writes the log itself: no recorder has to keep up."""
-    words = [str(scenario.path), "--live", *["--paced"] * (pace == Pace.PACED)]
+    words = [*_scenario_words(scenario), "--live", *["--paced"] * (pace == Pace.PACED)]
     words += ["--log", str(folder / options.log_name)] * recorded
     words += ["--can", str(folder / CAN_LOG_NAME)] * options.record_can
     return words + _length_words(scenario, options, pace)
@@ -138,7 +142,8 @@ def _process_words(
         can_log = str(folder / CAN_LOG_NAME)
         commands["limber-can"] = ["record", robot, "--out", can_log, *buses]
     if options.with_simulator:
-        commands["limber-sim"] = ["--scenario", path, *buses, *rate, pace.option]
+        played = ["--scenario", path, "--robot", robot]
+        commands["limber-sim"] = [*played, *buses, *rate, pace.option]
     commands["limber-controller"] = ["--scenario", path, "--robot", robot, pace.option]
     length = _length_words(scenario, options, pace)
     commands[DRIVER] = ["--robot", robot, *buses, *length, pace.option]
