@@ -40,6 +40,7 @@ format: limber-scenario/1
 name: policy
 description: a policy picks and places with pauses, jitter, loss, and an end in the middle
 robot: openarm_right
+mode: realtime
 duration_s: 15
 
 objects:

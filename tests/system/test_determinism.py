@@ -8,7 +8,7 @@ from stack import ROOT
 pytestmark = pytest.mark.lockstep
 
 
-@pytest.mark.parametrize("name", ["quick", "planar2r_push"])
+@pytest.mark.parametrize("name", ["quick", "planar2r_push", "policy"])
 def test_same_bytes_every_time(name, tmp_path):
     scenario = ROOT / "scenarios" / f"{name}.yaml"
     lab = of_the_lab(scenario, tmp_path)

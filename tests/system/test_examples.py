@@ -73,6 +73,19 @@ def test_the_one_in_the_readme(openarm, tmp_path):
     openarm.until(lambda: openarm.mode == Status.MODE_HOLD, 5, "the arm to be left")
 
 
+def test_the_one_of_the_policies(stack, tmp_path):
+    """As it is printed there, in ten seconds: an arm with a hand goes round."""
+    page = (ROOT / "docs" / "policies.md").read_text("utf-8")
+    script = tmp_path / "policy.py"
+    script.write_text(re.search(r"^```python\n(.*?)^```", page, re.M | re.S)[1], encoding="utf-8")
+    stack.robot = "openarm_right"
+    stack.start_all()
+    stack.until(lambda: stack.mode == Status.MODE_IDLE, 20, "IDLE")
+    taken = int(re.search(r"(\d+) taken, 0 late, 0 stale, 0 refused", run(script, tmp_path))[1])
+    assert taken > 200
+    stack.until(lambda: stack.mode == Status.MODE_HOLD, 5, "the arm to be left")
+
+
 def test_stiffer_moves_less(openarm, tmp_path):
     lines = run(EXAMPLES / "soften.py", tmp_path).splitlines()
     moved = [float(line.split(":")[1].split("mm")[0]) for line in lines]

@@ -89,6 +89,22 @@ def test_lockstep_run_leaves_everything(limber, tmp_path):
     assert json.loads((tmp_path / "summary.json").read_text())["results"] == summary["results"]
 
 
+@pytest.mark.parametrize("how", [["run", "--private", "--lockstep"], ["lab"]])
+def test_another_arm_than_the_scenarios(limber, tmp_path, how):
+    held = tmp_path / "held.yaml"
+    timeline = "timeline:\n  - {at_s: 0.3, mode: hold}\n"
+    held.write_text(LONG.replace("100", "1") + timeline, encoding="utf-8")
+    out = tmp_path / "run"
+    done = limber(how[0], str(held), "--robot", "openarm_right", "--out", str(out), *how[1:])
+    assert done.returncode == 0, done.stderr
+    assert json.loads((out / "summary.json").read_text())["robot"] == "openarm_right"
+    assert {"HAND_STATE", "HAND_TRUTH"} <= set(Log(out).channels), "the arm with a hand"
+    again = limber("measure", str(out))
+    assert again.returncode == 0, again.stderr
+    wrong = limber(how[0], str(held), "--robot", "openarm_rigth", *how[1:])
+    assert wrong.returncode == 2 and "no robot 'openarm_rigth'" in wrong.stderr
+
+
 def test_ctrl_c_ends_in_good_order(long_run):
     process, folder, programs = long_run
     assert set(programs) == {"limber-record", "limber-sim", "limber-controller", "limber-driver"}

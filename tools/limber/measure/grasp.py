@@ -24,7 +24,7 @@ def grasp_results(log: Log, scenario: Scenario) -> list[Result]:
         if not len(held) or not len(hand):
             results.append(Result(f"{name} grasped", False))
             continue
-        results += _grasp(name, held, hand, scenario)
+        results += _grasp(name, held, hand)
         slips = message_class("hand_truth_t").OBJECT_SLIPS
         up = -np.array(scenario.robot.gravity) / np.linalg.norm(scenario.robot.gravity)
         height = (truth["p_BO"][:, i] - truth["p_BO"][0, i]) @ up
@@ -34,12 +34,12 @@ def grasp_results(log: Log, scenario: Scenario) -> list[Result]:
     return results
 
 
-def _grasp(name: str, held: np.ndarray, hand: np.ndarray, scenario: Scenario) -> list[Result]:
-    """Of its last grasp, at its end."""
+def _grasp(name: str, held: np.ndarray, hand: np.ndarray) -> list[Result]:
+    """Of its last grasp, at its end: where the hand is to open, by whatever message."""
     t, state_t = time_s(held), time_s(hand)
     begin_s = t[np.flatnonzero(np.diff(t, prepend=-np.inf) > STATIC_S)[-1]]
-    goals = [e["at_s"] for e in scenario.timeline if "hand" in e and begin_s < e["at_s"] <= t[-1]]
-    end_s = min([t[-1], *goals])
+    opening = (state_t > begin_s) & (hand["goal_width_m"] > hand["width_m"])
+    end_s = min([t[-1], *state_t[opening]])
     window = (t >= end_s - STATIC_S) & (t < end_s)
     grasped = hand[(state_t > begin_s) & (state_t < end_s)]
     if not window.any() or not grasped["grasped"].any():

@@ -32,7 +32,7 @@ def _load(path: Path, robot: str | None, console: Console) -> Scenario:
         )
     if scenario.notes:
         count = "1 note" if len(scenario.notes) == 1 else f"{len(scenario.notes)} notes"
-        line = f"{count} on {scenario.robot.folder}: limber check {path} lists them"
+        line = f"{count} on {scenario.robot.folder}: limber check {robot or path} lists them"
         console.print(line, style="dim", markup=False, highlight=False, soft_wrap=True)
     return scenario
 
