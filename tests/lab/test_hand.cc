@@ -19,27 +19,43 @@ using testing::Mutation;
 
 /// A shipped arm that gets a hand: motor and gains of holding differ between families.
 struct Family {
+  const char* name;
   const char* robot;
   const char* motor;
   const char* hold;
 };
 const Family kFamilies[] = {
-    {"desktop2r",
+    {"damiao_mit", "desktop2r",
      "  grip:\n    protocol: damiao_mit\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n"
      "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n"
      "    peak_torque_Nm: 7\n    encoder_bits: 14\n    mit_range: {position_rad: 12.5, "
      "velocity_rad_per_s: 30, torque_Nm: 10, kp_Nm_per_rad: 500, kd_Nms_per_rad: 5}\n",
      "  reply_id: 24\n"},
-    {"planar2r",
+    {"moteus", "planar2r",
      "  grip:\n    protocol: moteus\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n"
      "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n"
      "    peak_torque_Nm: 7\n    timeout_torque_Nm: 2\n    encoder_bits: 14\n"
      "    pid_position: {kp_Nm_per_turn: 100, kd_Nms_per_turn: 10}\n",
      ""},
-    {"testbench",
+    {"cia402", "testbench",
      "  grip:\n    protocol: cia402\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n"
      "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n"
      "    peak_torque_Nm: 7\n    rated_torque_Nm: 3\n    encoder_bits: 16\n",
+     ""},
+    {"cubemars", "desktop2r_ak",
+     "  grip:\n    protocol: cubemars\n    board: V2\n    model: AK60-6\n    gear_ratio: 10\n"
+     "    rotor_inertia_kgm2: 1.8e-5\n    rotor_torque_constant_Nm_per_A: 0.0945\n"
+     "    phase_resistance_ohm: 0.85\n    peak_torque_Nm: 7\n",
+     ""},
+    {"robstride", "planar2r",
+     "  grip:\n    protocol: robstride\n    model: RS00\n    gear_ratio: 10\n"
+     "    rotor_inertia_kgm2: 1.8e-5\n    rotor_torque_constant_Nm_per_A: 0.0945\n"
+     "    phase_resistance_ohm: 0.85\n    peak_torque_Nm: 7\n",
+     ""},
+    {"myactuator", "axol",
+     "  grip:\n    protocol: myactuator\n    firmware: V4.4\n    model: X6\n    gear_ratio: 10\n"
+     "    rotor_inertia_kgm2: 1.8e-5\n    rotor_torque_constant_Nm_per_A: 0.0945\n"
+     "    phase_resistance_ohm: 0.85\n    peak_torque_Nm: 7\n",
      ""},
 };
 
@@ -95,7 +111,7 @@ class HandStage {
   LoadedRobot load(const Family& family) {
     const std::string from = source_path("robots/") + family.robot + "/";
     folder.write("robot.urdf", testing::read_text(from + "robot.urdf"));
-    const Mutation motor = {"", "\njoints:", std::string(family.motor) + "\njoints:", ""};
+    const Mutation motor = {"", "\njoints:", "\n" + std::string(family.motor) + "joints:", ""};
     folder.write("robot.yaml", testing::apply(testing::read_text(from + "robot.yaml"), motor).text +
                                    hand_yaml(family));
     return load_robot(folder.path());
@@ -188,8 +204,9 @@ TEST_P(EveryFamily, CycleAllocatesNothing) {
   EXPECT_EQ(allocations() - before, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Drives, EveryFamily, ::testing::Range(0, 3),
-                         [](const auto& family) { return kFamilies[family.param].robot; });
+INSTANTIATE_TEST_SUITE_P(Drives, EveryFamily,
+                         ::testing::Range(0, static_cast<int>(std::size(kFamilies))),
+                         [](const auto& family) { return kFamilies[family.param].name; });
 
 TEST(Hand, HoldsAHardThingForTenMinutesWithinItsMotorsRating) {
   HandStage stage(kFamilies[0]);
