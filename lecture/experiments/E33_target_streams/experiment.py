@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from limber_lecture.context import Comparison, Context, at_most, case
 from limber_lecture.pictures import BLACK, name_axes
@@ -44,7 +45,8 @@ def run(context: Context) -> list[Comparison]:
     signal = motion(context.rng.uniform(0.0, 2.0 * np.pi, len(HZ)))
     ideal = figures(np.array([signal(t) for t in clock()]), signal)
     found: dict[tuple[str, str], tuple[float, ...]] = {("the motion itself", "-"): ideal}
-    curves = {}
+    curves: dict[str, Goals] = {}
+    chunk_curves: dict[str, Goals] = {}
     for link in LINKS:
         arrivals = single_targets(signal, link, context.rng)
         for name, goal in goals(context, signal, link, arrivals).items():
@@ -54,8 +56,10 @@ def run(context: Context) -> list[Comparison]:
     for size in (16, 50):
         for name, goal in chunk_goals(context, signal, size).items():
             found[name, f"chunks of {size}"] = figures(goal, signal)
+            if size == 16:
+                chunk_curves[name] = goal
     write_table(context, found)
-    draw(context, curves, signal, found)
+    draw(context, curves, chunk_curves, signal, found)
     return comparisons(found)
 
 
@@ -144,7 +148,9 @@ def evaluated(context: Context, x0: float, messages: list[list[object]]) -> Goal
 
 
 def chunk_goals(context: Context, signal: Callable[[float], float], size: int) -> dict[str, Goals]:
-    """Chunks at 30 Hz, a new one after half of one, 0.1 s late; those that disagree by 20 mrad."""
+    """Chunks at 30 Hz, a new one after half of one, 0.1 s late; those that disagree do so by 20
+    mrad, and a tenth of them are lost.
+    """
     h, every = 1.0 / 30.0, size // 2
     chunks, off_chunks = [], []
     for first in range(0, round(LENGTH_S / h), every):
@@ -154,7 +160,8 @@ def chunk_goals(context: Context, signal: Callable[[float], float], size: int) -
         parts = [slice(k, k + 16) for k in range(0, size, 16)]
         at = h * first + 0.1
         chunks += [[at, times[p].tolist(), values[p].tolist()] for p in parts]
-        off_chunks.append((at, times, values + off))
+        if context.rng.uniform() >= LOSS:
+            off_chunks.append((at, times, values + off))
     faded = [
         [at, times[p].tolist(), values[p].tolist()]
         for at, times, values in off_chunks
@@ -283,22 +290,37 @@ def write_table(context: Context, found: dict[tuple[str, str], tuple[float, ...]
 def draw(
     context: Context,
     curves: dict[str, Goals],
+    chunk_curves: dict[str, Goals],
     signal: Callable[[float], float],
     found: dict[tuple[str, str], tuple[float, ...]],
 ) -> None:
-    rows = slice(6000, 7600)
-    t = clock()[rows] - clock()[rows.start]
-    with context.picture(TITLE, columns=2, size=(14.0, 6.0)) as (goal_axes, jerk_axes):
-        goal_axes.plot(t, [signal(at) for at in clock()[rows]], color=BLACK, lw=2.5, label="motion")
-        for name, goal in curves.items():
-            goal_axes.plot(t, goal[rows], lw=1.1, label=name)
-        name_axes(goal_axes, "time (s)", "goal at 30 Hz (rad)")
-        goal_axes.legend(loc="best", fontsize=8)
+    with context.picture(TITLE, rows=2, columns=2, size=(14.0, 11.0)) as axes:
+        draw_goals(axes[0, 0], curves, signal, slice(6000, 7600), "goal at 30 Hz (rad)")
+        draw_goals(axes[1, 0], chunk_curves, signal, slice(6000, 9000), "chunks of 16 (rad)")
+        rates = [f"{link.hz:g} Hz" for link in LINKS]
         for name in curves:
-            points = [found[name, f"{link.hz:g} Hz"] for link in LINKS]
-            lag, jerk = [p[0] for p in points], [p[3] for p in points]
-            jerk_axes.plot(lag, jerk, "o-", lw=1.0, label=name)
-        jerk_axes.axhline(found["the motion itself", "-"][3], color=BLACK, ls="--", lw=1.2)
-        jerk_axes.set_yscale("log")
-        name_axes(jerk_axes, "lag (ms) at 50, 30, 10 Hz", "rms jerk (rad/s³); dashed: the motion")
-        jerk_axes.legend(loc="best", fontsize=8)
+            lag, _, _, jerk, force = zip(*(found[name, rate] for rate in rates), strict=True)
+            axes[0, 1].plot(lag, jerk, "o-", lw=1.0, label=name)
+            axes[1, 1].plot(rates, force, "o-", lw=1.0, label=name)
+        _, _, _, jerk, force = found["the motion itself", "-"]
+        axes[0, 1].axhline(jerk, color=BLACK, ls="--", lw=1.2)
+        axes[0, 1].set_yscale("log")
+        name_axes(axes[0, 1], "lag (ms) at 50, 30, 10 Hz", "rms jerk (rad/s³); dashed: the motion")
+        axes[1, 1].axhline(force, color=BLACK, ls="--", lw=1.2)
+        name_axes(axes[1, 1], "targets", "greatest contact force (N); dashed: the motion")
+        for ax in axes.flat:
+            ax.legend(loc="best", fontsize=8)
+
+
+def draw_goals(
+    ax: Axes,
+    curves: dict[str, Goals],
+    signal: Callable[[float], float],
+    rows: slice,
+    what: str,
+) -> None:
+    t = clock()[rows] - clock()[rows.start]
+    ax.plot(t, [signal(at) for at in clock()[rows]], color=BLACK, lw=2.5, label="motion")
+    for name, goal in curves.items():
+        ax.plot(t, goal[rows], lw=1.1, label=name)
+    name_axes(ax, "time (s)", what)
