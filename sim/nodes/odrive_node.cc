@@ -47,12 +47,9 @@ CanFrame OdriveNode::told(Message message, const JointReading& joint) const noex
   const auto tell = [&](auto... fields) { return odrive::encode(node, message, fields...); };
   switch (message) {
     case Message::kVersion:  // protocol 2, hardware 4.4
-      return tell(0x00040402U, static_cast<std::uint8_t>(drive_.firmware >> 16U),
-                  static_cast<std::uint8_t>(drive_.firmware >> 8U),
-                  static_cast<std::uint8_t>(drive_.firmware), std::uint8_t{0});
+      return tell(0x00040402U, __builtin_bswap32(drive_.firmware << 8U));
     case Message::kHeartbeat:
-      return tell(errors_, static_cast<std::uint8_t>(state_), static_cast<std::uint8_t>(result_),
-                  std::uint16_t{1});
+      return tell(errors_, state_ | result_ << 8U | 1U << 16U);
     case Message::kError:
       return tell(errors_, disarm_reason_);
     case Message::kAddress:
@@ -114,11 +111,9 @@ void OdriveNode::obey(const CanFrame& frame, const JointReading& joint) noexcept
   } else if (is(Message::kSetPosition, 4)) {
     if (settings_.calibrated && std::isfinite(number)) zero_turns_ += number - turns(joint);
   } else if (is(Message::kAddress, 7)) {
-    const auto serial = [](const CanFrame& of) {
-      return odrive::field<std::uint64_t>(of, 0) >> 8U;
-    };
-    if (serial(frame) == serial(told(Message::kAddress, joint)))
-      settings_.node = frame.data[0] & odrive::kEverybody;
+    const CanFrame own = told(Message::kAddress, joint);
+    const bool meant = std::equal(&own.data[1], &own.data[7], &frame.data[1]);
+    if (meant) settings_.node = frame.data[0] & odrive::kEverybody;
   } else if (is(Message::kReboot, 1)) {
     reboot(frame.data[0], joint);
   }

@@ -15,8 +15,9 @@ namespace limber::sim {
 
 /// Idle (phases open), or in closed loop with the last torque. As in the real drive
 ///   - commands are not answered; a remote or an empty frame is, with the message of its number;
-///   - as delivered it is in position control, has no watchdog and sends estimates every 10 ms
-///     unasked; the heartbeat comes every 100 ms, whatever happens in between;
+///   - as delivered it is in position control, has no watchdog, sends estimates every 10 ms
+///   unasked,
+///     and its heartbeat every 100 ms, whatever happens in between;
 ///   - its velocity limit, 2 turns/s as delivered, takes torque away below it, too;
 ///   - an error disarms it, and once cleared it is still idle; the watchdog is fed by torques
 ///   alone;

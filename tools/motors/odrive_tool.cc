@@ -44,8 +44,8 @@ class OdriveTool final : public MotorTool {
   bool sends_unasked(const CanFrame& frame) const noexcept override {
     const std::uint32_t node = odrive::node_of(frame.id);
     const auto usual = [&](std::size_t at) {
-      const float value = std::abs(odrive::field<float>(frame, at));
-      return value == 0.0F || (value > 1e-9F && value < 1e6F) || std::isnan(value);
+      const auto value = odrive::field<float>(frame, at);
+      return value == 0.0F || (std::isnormal(value) && std::abs(value) < 1e6F) || std::isnan(value);
     };
     if (odrive::is_message(frame, node, Message::kHeartbeat, 7))
       return frame.data[4] <= 14 && frame.data[5] <= 16 && frame.data[6] <= 1;

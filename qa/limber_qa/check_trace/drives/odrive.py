@@ -1,4 +1,4 @@
-"""ODrive axes in CANSimple: identifier node << 5 | message; a torque out, a message for each request.
+"""ODrive axes in CANSimple: identifier node << 5 | message; a torque out, an answer a request.
 
 Turns and torques are the motor's. The heartbeat tells the state, the answer to message 3 errors.
 """
