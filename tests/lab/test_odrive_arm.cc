@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controller/laws/registry.h"
+#include "drivers/protocols/odrive.h"
 #include "lab/lab.h"
 #include "tests/support/mutation.h"
 
@@ -93,6 +94,24 @@ TEST(OdriveArm, ADriveThatDisarmsIsNoticedAndComesBack) {
   EXPECT_EQ(arm.lab.state().fault_joint, 0);
   arm.run_to(10.0);
   EXPECT_EQ(arm.lab.controller_status().mode, +controller_status_t::MODE_ACTIVE);
+}
+
+// Of each drive the seven settings that the start-up reads, one of both every 20 cycles, and the
+// wrong one twice.
+TEST(OdriveArm, AWatchdogThatIsSwitchedOffPastTheBusIsRead) {
+  Arm arm(load_robot("desktop2r_odrive"), kActive);
+  arm.run_to(2.0);
+  ASSERT_EQ(arm.lab.state().drive_state, +joint_state_t::DRIVE_ON);
+  arm.lab.simulator().tell_past_the_bus(
+      1, odrive::encode(2, odrive::Message::kWriteEndpoint, std::uint8_t{1}, std::uint16_t{244},
+                        std::uint8_t{0}, std::uint8_t{0}));
+  arm.run_to(2.0 + 2e-3 * 20 * 2 * (7 + 2));
+  EXPECT_EQ(arm.lab.state().fault, +joint_state_t::FAULT_DRIVE_ERROR);
+  EXPECT_EQ(arm.lab.state().fault_joint, 1);
+  const ArmDriver& driver = arm.lab.driver();
+  const std::string text =
+      driver.fault_text(joint_state_t::FAULT_DRIVE_ERROR, 1, driver.fault_detail());
+  EXPECT_NE(text.find("enable_watchdog is 0, expected 1"), std::string::npos) << text;
 }
 
 }  // namespace
