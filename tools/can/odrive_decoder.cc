@@ -69,7 +69,8 @@ void add_odrive_messages(const Motor& motor, const BusFacts& /*bus*/,
   for (std::uint32_t id = first; id < first + 32; ++id) {
     const odrive::Layout* layout = odrive::layout_of(id);
     if (layout == nullptr) continue;
-    dbc::Message message = message_of(motor, layout->name, id, false, 0, !layout->from_drive);
+    dbc::Message message =
+        message_of(motor, dbc::identifier(layout->name), id, false, 0, !layout->from_drive);
     for (const OdriveField& field : odrive_fields(*layout)) {
       message.signals.push_back(
           plain(field.name.c_str(), 8 * field.byte, 8 * field.bytes(), false, field.unit.c_str()));
