@@ -191,7 +191,12 @@ void ArmDrives::add_commands(std::vector<BusEnd>* buses) noexcept {
     std::vector<Drive>& motors = joints_[i].motors();
     for (std::size_t m = 0; m < motors.size(); ++m) {
       const double tau = joints_[i].share(torque_[i], m);
-      (*buses)[motors[m].bus()].add(motors[m].next_frame(machine_.state(), tau, settling));
+      BusEnd& bus = (*buses)[motors[m].bus()];
+      const CanFrame frame = motors[m].next_frame(machine_.state(), tau, settling);
+      bus.add(frame);
+      for (const CanFrame& request : motors[m].part_requests(machine_.state())) {
+        if (!frame.remote || frame.id != request.id) bus.add(request);
+      }
     }
   }
   ++cycles_in_state_;

@@ -70,8 +70,11 @@ Traffic traffic(const Robot& robot, int index, FrameTime time_s = longest_s) {
   for (const Exchange& exchange : cycle_frames(robot, index)) {
     const double command_s = time_s(bus, exchange.command);
     out.commands_s += command_s;
-    ++out.commands;
-    for (const CanFrame& reply : exchange.replies) out.add_reply(time_s(bus, reply), command_s);
+    for (const CanFrame& request : exchange.requests) out.commands_s += time_s(bus, request);
+    out.commands += 1 + static_cast<int>(exchange.requests.size());
+    const double asked_s =
+        exchange.requests.empty() ? command_s : time_s(bus, exchange.requests.front());
+    for (const CanFrame& reply : exchange.replies) out.add_reply(time_s(bus, reply), asked_s);
     for (const CanFrame& frame : exchange.setting) out.settings_s += time_s(bus, frame);
     if (!exchange.setting.empty()) ++out.drives;
     out.sync = out.sync || exchange.at_sync;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ class Drive {
 
   /// This cycle's one frame. `tau` counts in ON, `settling` in FALLBACK (the first 100 ms).
   CanFrame next_frame(DriveState state, double tau, bool settling) noexcept;
+  /// What follows it: see DriveCodec::part_requests().
+  std::span<const CanFrame> part_requests(DriveState state) const noexcept {
+    if (awaits_answer(state)) return {};
+    return link_.family().codec->part_requests();
+  }
   /// One of the drive's settings is asked for, besides; see SettingsWatch.
   bool ask_for_setting(CanFrame* request) noexcept { return settings_->request(request); }
   void begin_cycle() noexcept;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,9 @@ class DriveCodec {
   /// The next step towards being enabled, with zero torque.
   virtual CanFrame enable(const DriveMemory& memory) noexcept = 0;
   virtual CanFrame state_request() const noexcept = 0;
+  /// Frames that ask for the parts of the state, behind each cycle's frame; none: that one asks for
+  /// all. Valid as long as the codec.
+  virtual std::span<const CanFrame> part_requests() const noexcept { return {}; }
   /// True if the drives of this family take effect and answer at a frame of their own: the driver
   /// sends `bus_frame` once a cycle on their bus, after all commands, and it is their request of
   /// state.

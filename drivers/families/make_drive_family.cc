@@ -6,6 +6,7 @@
 #include "drivers/families/damiao_family.h"
 #include "drivers/families/moteus_family.h"
 #include "drivers/families/myactuator_family.h"
+#include "drivers/families/odrive_family.h"
 #include "drivers/families/robstride_family.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
@@ -43,6 +44,10 @@ constexpr std::array kFamilies = {
     Row{"cubemars",
         [](const JointConfig& joint, bool, double) -> DriveFamily {
           return {cubemars_codec(joint), cubemars_startup(joint), cubemars_intruders(joint)};
+        }},
+    Row{"odrive",
+        [](const JointConfig& joint, bool, double period_s) -> DriveFamily {
+          return {odrive_codec(joint, period_s), odrive_startup(joint), odrive_intruders(joint)};
         }},
 };
 

@@ -30,10 +30,11 @@ Exchange exchange_with(const std::string& joint, const DriveConfig& drive, bool 
                {},
                drive.protocol->needs_sync,
                setting_frames(drive, fd)};
-  std::uint32_t reply_id = drive.reply_id;
-  for (const int bytes : drive.frames.replies) {
-    out.replies.push_back(empty_frame(reply_id, bytes, fd));
-    reply_id += drive.frames.reply_step;
+  for (std::size_t i = 0; i < drive.frames.replies.size(); ++i)
+    out.replies.push_back(empty_frame(drive.reply(i), drive.frames.replies[i], fd));
+  for (const std::uint32_t id : drive.frames.asked) {
+    out.requests.push_back(empty_frame(id, 0, false));
+    out.requests.back().remote = true;
   }
   return out;
 }

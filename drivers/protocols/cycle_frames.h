@@ -22,6 +22,8 @@ struct Exchange {
   std::vector<CanFrame> replies;
   bool at_sync = false;           ///< answers the SYNC at the end of all commands, not its command
   std::vector<CanFrame> setting;  ///< request and answer, where the protocol has them
+  /// Remote frames behind the command, one for each reply; none: the command asks for them.
+  std::vector<CanFrame> requests = {};
 };
 
 /// In the order in which the driver sends the commands. Set-up only.

@@ -35,13 +35,15 @@ std::function<void(FaultStage*)> lose(int count) {
   };
 }
 
-/// Each reply is lost with this probability.
+/// Each reply is lost with this probability, of several frames by one of them.
 std::function<void(FaultStage*)> lose_share(double probability) {
-  return replies(
-      [probability, random = std::minstd_rand(7)](const CanFrame& frame, Frames* instead) mutable {
-        if (std::uniform_real_distribution<>(0.0, 1.0)(random) >= probability)
-          instead->push_back(frame);
-      });
+  return [probability](FaultStage* stage) {
+    const auto frames = static_cast<double>(stage->joint().drive.frames.replies.size());
+    stage->change_replies([share = probability / frames, random = std::minstd_rand(7)](
+                              const CanFrame& frame, Frames* instead) mutable {
+      if (std::uniform_real_distribution<>(0.0, 1.0)(random) >= share) instead->push_back(frame);
+    });
+  };
 }
 
 /// The motion in the drive's replies is changed, in the first `count` or, below 0, in all.
@@ -242,7 +244,7 @@ std::vector<Fault> bus_faults() {
       {.name = "the drive disables itself, and its replies do not tell",
        .begin = disabled,
        .most_cycles = 20,
-       .protocols = {"cubemars"}},
+       .protocols = {"cubemars", "odrive"}},
       {.name = "another program disables the drive", .begin = foreign_disable, .most_cycles = 1},
       {.name = "another program commands the drive", .begin = foreign_master, .most_cycles = 1},
       {.name = "another program writes the drive's settings",

@@ -15,6 +15,7 @@ std::span<const Family> families() {
       Family{"robstride", "edulite_a3", with_motion_of_robstride},
       Family{"myactuator", "axol", with_motion_of_myactuator},
       Family{"cubemars", "desktop2r_ak", with_motion_of_cubemars},
+      Family{"odrive", "desktop2r_odrive", with_motion_of_odrive},
   };
   return kFamilies;
 }

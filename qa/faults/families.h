@@ -33,5 +33,7 @@ CanFrame with_motion_of_myactuator(const CanFrame& reply, const JointConfig& joi
                                    const MotionChange& change);
 CanFrame with_motion_of_cubemars(const CanFrame& reply, const JointConfig& joint, bool fd,
                                  const MotionChange& change);
+CanFrame with_motion_of_odrive(const CanFrame& reply, const JointConfig& joint, bool fd,
+                               const MotionChange& change);
 
 }  // namespace limber::faults

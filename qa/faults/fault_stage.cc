@@ -104,9 +104,9 @@ bool has_kind(const CanFrame& frame, const DriveConfig& drive, std::uint32_t id)
 
 bool FaultStage::is_mine(const CanFrame& frame) const {
   const DriveConfig& drive = joint().drive;
-  std::uint32_t id = drive.reply_id;
-  for (std::size_t i = 0; i < drive.frames.replies.size(); ++i, id += drive.frames.reply_step) {
-    if (has_kind(frame, drive, id)) return family_.codec->is_mine(frame) && !tells_setting(frame);
+  for (std::size_t i = 0; i < drive.frames.replies.size(); ++i) {
+    if (has_kind(frame, drive, drive.reply(i)))
+      return family_.codec->is_mine(frame) && !tells_setting(frame);
   }
   return false;
 }

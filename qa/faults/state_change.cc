@@ -10,6 +10,7 @@
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
 #include "drivers/protocols/myactuator.h"
+#include "drivers/protocols/odrive.h"
 #include "drivers/protocols/robstride.h"
 #include "qa/faults/families.h"
 
@@ -89,6 +90,18 @@ CanFrame with_motion_of_cubemars(const CanFrame& reply, const JointConfig& joint
   state.position_rad += change.angle_rad;
   state.velocity_rad_per_s += change.speed_rad_per_s;
   return cubemars::encode_state(state, joint.drive, mit::Quantiser::kRound);
+}
+
+CanFrame with_motion_of_odrive(const CanFrame& reply, const JointConfig& joint, bool /*fd*/,
+                               const MotionChange& change) {
+  const std::uint32_t node = odrive::node_of(joint.drive.command_id);
+  if (!odrive::is_message(reply, node, odrive::Message::kEstimates, 8)) return reply;
+  const auto moved = [&](std::size_t at, double rad) {
+    return static_cast<float>(odrive::field<float>(reply, at) +
+                              rad / kTurn * joint.drive.gear_ratio);
+  };
+  return odrive::encode(node, odrive::Message::kEstimates, moved(0, change.angle_rad),
+                        moved(4, change.speed_rad_per_s));
 }
 
 CanFrame with_motion(const CanFrame& reply, const JointConfig& joint, bool fd,

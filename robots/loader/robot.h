@@ -2,6 +2,7 @@
 // that the driver and its gate stay small. The kinematic chain itself is in robots/load_robot.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -51,6 +52,9 @@ struct FrameSizes {
   int command = 8;
   std::vector<int> replies = {8};
   std::uint32_t reply_step = 0;  ///< from the identifier of one reply to that of the next
+  /// Identifiers of the replies, if each is asked for by a remote frame of its own, behind the
+  /// command; empty: the command asks for all.
+  std::vector<std::uint32_t> asked = {};
 };
 
 enum class NodeWatchdogReaction : std::uint8_t {
@@ -77,11 +81,13 @@ struct DriveConfig {
   double short_circuit_damping_Nms = 0.0;  ///< joint damping with shorted phases (kDamp)
   double watchdog_s = 0.02;                ///< written to the drive
   NodeWatchdogReaction watchdog_reaction = NodeWatchdogReaction::kDamp;
-  double timeout_torque_Nm = 5.0;    ///< moteus: most that brakes the joint after a time-out
-  double rated_torque_Nm = 1.0;      ///< CiA 402: torques count in thousandths of it (6076h)
-  int board = 0;                     ///< CubeMars: its generation, 1 to 3
-  int pole_pairs = 21;               ///< CubeMars V3: of the rotor
-  double counts_per_turn = 16384.0;  ///< motor encoder, per joint revolution
+  double timeout_torque_Nm = 5.0;  ///< moteus: most that brakes the joint after a time-out
+  double rated_torque_Nm = 1.0;    ///< CiA 402: torques count in thousandths of it (6076h)
+  int board = 0;                   ///< CubeMars: its generation, 1 to 3
+  int pole_pairs = 21;             ///< CubeMars V3: of the rotor
+  std::uint32_t firmware = 0;      ///< ODrive: major, minor, revision, a byte each
+  std::array<std::uint16_t, 7> endpoints{};  ///< ODrive: of the firmware, odrive_endpoints.h
+  double counts_per_turn = 16384.0;          ///< motor encoder, per joint revolution
   /// Above it the driver warns; infinite: never.
   double warning_temperature_degC = std::numeric_limits<double>::infinity();
   /// Above it the driver stops the arm while the drive can hold it; infinite: never.
@@ -89,6 +95,12 @@ struct DriveConfig {
   ActuatorConfig actuator;          ///< what makes torque of the command; for the simulator
   double hold_kp_Nm_per_rad = 0.0;  ///< driver's own holding when the controller is lost
   double hold_kd_Nms_per_rad = 0.0;
+
+  /// Identifier of a reply of a cycle.
+  std::uint32_t reply(std::size_t i) const noexcept {
+    return frames.asked.empty() ? reply_id + static_cast<std::uint32_t>(i) * frames.reply_step
+                                : frames.asked[i];
+  }
 };
 
 enum class JointType : std::uint8_t { kRevolute, kContinuous, kPrismatic };

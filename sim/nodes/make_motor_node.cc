@@ -7,6 +7,7 @@
 #include "sim/nodes/damiao_node.h"
 #include "sim/nodes/moteus_node.h"
 #include "sim/nodes/myactuator_node.h"
+#include "sim/nodes/odrive_node.h"
 #include "sim/nodes/robstride_node.h"
 
 namespace limber::sim {
@@ -42,6 +43,8 @@ constexpr std::array kNodes = {
         [](const JointConfig& joint, bool) -> Node {
           return std::make_unique<CubemarsNode>(joint);
         }},
+    Row{"odrive",
+        [](const JointConfig& joint, bool) -> Node { return std::make_unique<OdriveNode>(joint); }},
 };
 
 }  // namespace

@@ -34,7 +34,10 @@ std::vector<FrameTimes> bus_timeline(const Robot& robot, int bus) {
   Wire wire(config, {.on = true}, static_cast<int>(all.size()) + 1, 0);
   const auto start_ns = static_cast<std::int64_t>(1e9 * timing_of(config.adapter).send_s);
   const auto delay_ns = static_cast<std::int64_t>(1e9 * kDriveReplyDelay_s);
-  for (const Exchange& exchange : all) wire.send(kMaster, exchange.command, start_ns);
+  for (const Exchange& exchange : all) {
+    wire.send(kMaster, exchange.command, start_ns);
+    for (const CanFrame& request : exchange.requests) wire.send(kMaster, request, start_ns);
+  }
   const bool sync = std::ranges::any_of(all, &Exchange::at_sync);
   if (sync) wire.send(kMaster, canopen::encode_sync(), start_ns);
 
@@ -51,8 +54,14 @@ std::vector<FrameTimes> bus_timeline(const Robot& robot, int bus) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const bool its_command = event.sender == kMaster && event.frame.id == all[i].command.id;
       if (its_command || event.sender == static_cast<int>(i) + 1) entry.name = all[i].name;
+      for (std::size_t k = 0; k < all[i].requests.size(); ++k) {
+        if (!event.frame.remote || event.frame.id != all[i].requests[k].id) continue;
+        entry.name = all[i].name;
+        wire.send(static_cast<int>(i) + 1, all[i].replies[k], event.end_ns + delay_ns);
+      }
       const bool is_sync = event.sender == kMaster && event.frame.id == canopen::kSyncId;
-      if (all[i].at_sync ? is_sync : its_command) answer(i, event.end_ns);
+      const bool asked = all[i].at_sync ? is_sync : its_command && all[i].requests.empty();
+      if (asked) answer(i, event.end_ns);
     }
     times.push_back(std::move(entry));
   }

@@ -100,6 +100,19 @@ TEST(BusLoad, CanopenDrivesOnAClassicBusAnswerInSeveralFrames) {
               1e-9);
 }
 
+// Classic, 11 bits: a command of 4 bytes 95 bits, three requests without data 55 each, three
+// replies of 8 bytes 135 each.
+TEST(BusLoad, EachPartOfAStateMayHaveARequestOfItsOwn) {
+  Robot robot = seven_joints(false);
+  robot.joints.resize(1);
+  robot.joints[0].drive.protocol = &protocol_named("odrive");
+  robot.joints[0].drive.command_id = 0x2E;
+  robot.joints[0].drive.frames = protocol_named("odrive").frames(robot.joints[0], false);
+  EXPECT_NEAR(predicted_bus_load(robot, 0), 0.665 + kSettings_s * 1000, 1e-9);
+  EXPECT_NEAR(predicted_end_s(robot, 0), 60e-6 + 665e-6, 1e-9);
+  EXPECT_NEAR(least_round_trip_s(robot, 0), 40e-6 + 0.8 * (55e-6 + 135e-6), 1e-9);
+}
+
 // A single motor's reply finds the wire free after the drive's delay of 50 us.
 TEST(BusLoad, AReplyComesAfterTheDrivesDelay) {
   Robot robot = seven_joints(false);

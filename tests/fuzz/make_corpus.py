@@ -34,17 +34,19 @@ class Frame:
     extended: bool
     fd: bool
     data: bytes
+    remote: bool = False
 
     def record(self) -> bytes:
         """As fuzz_input.h reads it."""
-        flags = self.extended | self.fd << 3
+        flags = self.extended | self.remote << 1 | self.fd << 3
         return struct.pack("<BIB", flags, self.id, len(self.data)) + self.data
 
 
 def parse(line: str) -> Frame:
-    match = re.fullmatch(r"\(.*\) \S+ ([0-9A-F]+)#(#[0-9A-F])?([0-9A-F]*)", line)
+    match = re.fullmatch(r"\(.*\) \S+ ([0-9A-F]+)#(#[0-9A-F])?(R?)([0-9A-F]*)", line)
     assert match, line
-    return Frame(int(match[1], 16), len(match[1]) > 3, bool(match[2]), bytes.fromhex(match[3]))
+    data = bytes.fromhex(match[4])
+    return Frame(int(match[1], 16), len(match[1]) > 3, bool(match[2]), data, bool(match[3]))
 
 
 def run(scenario: str, folder: Path) -> tuple[list[str], Path]:
@@ -75,6 +77,7 @@ ROBOTS: dict[str, tuple[str, Callable[[int], bool]]] = {
     "moteus": ("planar2r_push", moteus_first),
     "cia402": ("panda_push", lambda id: id in (0, 0x80) or id & 0x7F == 1),
     "cubemars": ("desktop2r_ak_push", lambda id: id in (0x0, 0x01)),
+    "odrive": ("desktop2r_odrive_push", lambda id: id >> 5 == 1),
     "myactuator": ("axol_push", lambda id: id in (0x141, 0x241, 0x401, 0x501)),
     "robstride": ("edulite_a3_push", lambda id: id & 0xFF == 1 or id & 0xFFFF == 0x1FD),
 }
@@ -103,6 +106,7 @@ def bus_inputs(protocol: str, lines: list[str], frames: list[Frame]) -> None:
             arbitration_id=frame.id,
             is_extended_id=frame.extended,
             is_fd=frame.fd,
+            is_remote_frame=frame.remote,
             data=frame.data,
             timestamp=1.5,
         )

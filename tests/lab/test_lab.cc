@@ -53,8 +53,8 @@ TEST(Lab, GivesTheSameBytesTwice) {
 }
 
 TEST(Lab, NeverAllocatesInTheCycle) {
-  for (const char* name :
-       {"quick.yaml", "desktop2r_push.yaml", "planar2r_push.yaml", "desktop2r_ak_push.yaml"}) {
+  for (const char* name : {"quick.yaml", "desktop2r_push.yaml", "planar2r_push.yaml",
+                           "desktop2r_ak_push.yaml", "desktop2r_odrive_push.yaml"}) {
     Stage stage(name);
     stage.run_to(0.01);
     const std::int64_t before = allocations();
@@ -70,7 +70,7 @@ TEST(Lab, EveryArmRunsOnItsWire) {
        {"push.yaml", "desktop2r_push.yaml", "planar2r_push.yaml", "ideal7_push.yaml",
         "iiwa14_push.yaml", "panda_push.yaml", "baxter_push.yaml", "antagonist2r_stiffness.yaml",
         "edulite_a3_push.yaml", "yam_push.yaml", "trlc_dk1_push.yaml", "rebot_b601_dm_push.yaml",
-        "axol_push.yaml", "desktop2r_ak_push.yaml"}) {
+        "axol_push.yaml", "desktop2r_ak_push.yaml", "desktop2r_odrive_push.yaml"}) {
     Stage stage(name);
     stage.run_to(1.0);
     const driver_status_t before = stage.lab.driver_status();

@@ -60,6 +60,7 @@ TEST(Recovery, ADriveThatFailedIsEnabledAgain) {
                                      {"ideal7", "joint_2"},
                                      {"axol", "shoulder_2"},
                                      {"desktop2r_ak", "elbow"},
+                                     {"desktop2r_odrive", "elbow"},
                                      {"testbench", "joint"}}) {
     const Course course = run(robot, 10.0,
                               "  - {at_s: 0.3, mode: hold}\n"

@@ -29,7 +29,7 @@ JointConfig with_sensors() {
 TEST(DriveProtocols, EveryProtocolIsFoundByItsWord) {
   const std::vector<std::string> words = protocol_words();
   EXPECT_EQ(words, (std::vector<std::string>{"damiao_mit", "moteus", "cia402", "robstride",
-                                             "myactuator", "cubemars"}));
+                                             "myactuator", "cubemars", "odrive"}));
   for (const std::string& word : words) {
     const DriveProtocol& protocol = protocol_named(word);
     EXPECT_EQ(protocol.word, word);

@@ -17,8 +17,8 @@ namespace {
 const std::string kRobots = source_path("robots/");
 
 /// One of each protocol.
-const char* const kNames[] = {"desktop2r",  "planar2r", "iiwa14",      "openarm_right",
-                              "edulite_a3", "axol",     "desktop2r_ak"};
+const char* const kNames[] = {"desktop2r",  "planar2r", "iiwa14",       "openarm_right",
+                              "edulite_a3", "axol",     "desktop2r_ak", "desktop2r_odrive"};
 
 /// The mappings that a section stands for: "motors.*.mit_range" is that of every motor.
 std::vector<YAML::Node> mappings(const YAML::Node& yaml, const std::string& section) {

@@ -215,8 +215,8 @@ TEST(RobotYamlRefusals, UnknownRobot) {
   EXPECT_NE(complaint.find("did you mean 'openarm'?"), std::string::npos) << complaint;
   EXPECT_NE(
       complaint.find(
-          "one of: antagonist2r, antagonist7, axol, baxter, desktop2r, desktop2r_ak, edulite_a3, "
-          "ideal7, iiwa14, openarm, "
+          "one of: antagonist2r, antagonist7, axol, baxter, desktop2r, desktop2r_ak, "
+          "desktop2r_odrive, edulite_a3, ideal7, iiwa14, openarm, "
           "openarm_left, openarm_right, panda, planar2r, rebot_b601_dm, testbench, trlc_dk1, yam"),
       std::string::npos)
       << complaint;

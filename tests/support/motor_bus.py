@@ -48,6 +48,20 @@ def frames_of(robot: str):
             heard.append(message)
 
 
+@contextmanager
+def all_frames_of(robot: str):
+    """The same where drives never cease to send by themselves."""
+    heard: list[can.Message] = []
+
+    def listen(bus: can.BusABC, end: threading.Event) -> None:
+        while not end.is_set():
+            if message := bus.recv(0.1):
+                heard.append(message)
+
+    with meanwhile(robot, listen):
+        yield heard
+
+
 def forgetful_drive(bus_name: str, error: int = 0):
     """A Damiao drive, number 1, that takes a value and has the old one as soon as it stores it.
     `error`: the first four bits of its state.

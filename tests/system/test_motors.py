@@ -7,12 +7,13 @@ import struct
 import can
 import pytest
 from local_drive import multicast_group
-from motor_bus import forgetful_drive, frames_of, sending
+from motor_bus import all_frames_of, forgetful_drive, frames_of, sending
 
 ARMS = {
     "axol": ("myactuator", (1, 2, 3, 4, 5)),
     "desktop2r": ("damiao_mit", (1, 2)),
     "desktop2r_ak": ("cubemars", (1, 2)),
+    "desktop2r_odrive": ("odrive", (1, 2)),
     "edulite_a3": ("robstride", (1, 2, 3, 4, 5, 6)),
     "planar2r": ("moteus", (1, 2)),
     "testbench": ("cia402", (1,)),
@@ -53,6 +54,32 @@ def test_number_and_zero(motors, robot, number):
     assert call("zero", f"{family}:{number}").returncode == 0
     shown = call("show", f"{family}:{number}").stdout
     assert abs(float(shown.splitlines()[-1].split()[1])) < 0.01
+
+
+def test_an_odrive_gets_a_number_and_keeps_no_zero(motors):
+    call = motors("desktop2r_odrive")
+    with all_frames_of("desktop2r_odrive") as heard:
+        done = call("set-id", "odrive:1", "40")
+    assert done.returncode == 0, done.stderr
+    sent = [f"{one.arbitration_id:03X}#{bytes(one.data).hex().upper()}" for one in heard]
+    assert "7E6#2801000000003000" in sent and "516#01" in sent  # its serial number, then: save
+    assert listed(call("scan")) == ["odrive:2", "odrive:40"]
+    shown = call("show", "odrive:40").stdout
+    assert "0.6.11" in shown and "01 00 00 00 00 30" in shown and "idle" in shown
+    kept = call("zero", "odrive:40")
+    assert kept.returncode == 3 and "offset_rad" in kept.stderr
+    refused = call("set-id", "odrive:40", "63")
+    assert refused.returncode == 3 and "no number" in refused.stderr
+
+
+def test_a_scan_leaves_an_odrive_alone(motors):
+    """What asks other families would command it: 7FF starts the update of its firmware."""
+    with all_frames_of("desktop2r_odrive") as heard:
+        motors("desktop2r_odrive")("scan")
+    told = {one.arbitration_id for one in heard if not one.is_remote_frame and len(one.data) > 0}
+    of_nodes = {number for number in told if number >> 5 in (1, 2, 63)}
+    assert {number & 0x1F for number in of_nodes} <= {0x00, 0x01, 0x06, 0x09}  # told by the nodes
+    assert any(number >> 5 not in (1, 2, 63) for number in told)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +133,7 @@ def test_makers_tools_are_named_where_they_are_needed(motors):
         (["scan", "telepathy:0"], "virtual:NAME"),
         (
             ["show", "virtual:nobody", "damiao:3"],
-            "damiao_mit, robstride, myactuator, moteus, cia402, cubemars",
+            "odrive, damiao_mit, robstride, myactuator, moteus, cia402, cubemars",
         ),
         (["show", "virtual:nobody", "moteus:3"], "need --fd"),
         (["zero", "virtual:nobody", "damiao_mit:x"], "1 to 127"),

@@ -58,6 +58,7 @@ def numbers(folder) -> dict[str, dict]:
         "rebot_b601_dm_push",
         "axol_push",
         "desktop2r_ak_push",
+        "desktop2r_odrive_push",
     ],
 )
 def test_stiffness_without_friction(name, tmp_path):

@@ -9,6 +9,7 @@
 #include "tools/can/damiao_decoder.h"
 #include "tools/can/moteus_decoder.h"
 #include "tools/can/myactuator_decoder.h"
+#include "tools/can/odrive_decoder.h"
 #include "tools/can/robstride_decoder.h"
 
 namespace limber::bus_tools {
@@ -64,6 +65,13 @@ constexpr std::array kDecoders = {
           return std::make_unique<CubemarsDecoder>(motor);
         },
         .add_messages = add_cubemars_messages,
+    },
+    DriveDecoders{
+        .protocol = "odrive",
+        .make = [](const Motor& motor, const BusFacts&) -> Decoder {
+          return std::make_unique<OdriveDecoder>(motor);
+        },
+        .add_messages = add_odrive_messages,
     },
 };
 

@@ -43,14 +43,23 @@ Wire open(const BusChoice& bus, const MotorTool* tool) {
 
 void scan(Wire* wire, bool fd, const std::function<void(const Motor&, const Found&)>& found) {
   std::set<int> taken;
+  std::vector<Motor> all;
+  const auto would_obey = [&](const CanFrame& frame) {
+    return !frame.extended && std::ranges::any_of(all, [&](const Motor& motor) {
+      return motor.tool->obeys(motor.number, frame.id);
+    });
+  };
   for (const MotorTool* tool : all_tools()) {
     if (tool->needs_fd() && !fd) continue;
     for (int number = 1; number <= tool->last_number(); ++number) {
       if (tool->presence_switches_off() && taken.contains(number)) continue;
-      wire->send(tool->presence(number, fd), kScan_s, [&](const CanFrame& frame) {
+      const CanFrame presence = tool->presence(number, fd);
+      if (!presence.remote && would_obey(presence)) continue;
+      wire->send(presence, kScan_s, [&](const CanFrame& frame) {
         const auto motor = tool->found(frame);
         if (!motor) return;
         taken.insert(motor->number);
+        all.push_back({tool, motor->number});
         found({tool, motor->number}, *motor);
       });
     }

@@ -73,6 +73,12 @@ class MotorTool {
   /// Of presence(): it also does so to drives of other families with this number.
   virtual bool presence_switches_off() const noexcept { return false; }
   virtual std::optional<Found> found(const CanFrame& frame) const = 0;
+  /// Whether the drive with this number takes any frame with this 11-bit identifier for its own.
+  virtual bool obeys(int number, std::uint32_t id) const noexcept {
+    static_cast<void>(number);
+    static_cast<void>(id);
+    return false;
+  }
 
   Wire::Accept comes_from(int number) const;  ///< found() of this motor
 

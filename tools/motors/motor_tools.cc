@@ -22,13 +22,15 @@ extern const MotorTool* const kDamiaoTool;
 extern const MotorTool* const kRobstrideTool;
 extern const MotorTool* const kMyactuatorTool;
 extern const MotorTool* const kCubemarsTool;
+extern const MotorTool* const kOdriveTool;
 extern const MotorTool* const kMoteusTool;
 extern const MotorTool* const kCanopenTool;
 
 std::span<const MotorTool* const> all_tools() noexcept {
-  // Those that switch off others come last.
-  static const std::array kAll = {kDamiaoTool, kRobstrideTool, kMyactuatorTool,
-                                  kMoteusTool, kCanopenTool,   kCubemarsTool};
+  // Those that others could take for an order are known first; those that switch off others come
+  // last.
+  static const std::array kAll = {kOdriveTool, kDamiaoTool,  kRobstrideTool, kMyactuatorTool,
+                                  kMoteusTool, kCanopenTool, kCubemarsTool};
   return kAll;
 }
 

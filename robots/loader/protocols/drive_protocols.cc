@@ -11,10 +11,11 @@ extern const DriveProtocol kCia402;
 extern const DriveProtocol kRobstride;
 extern const DriveProtocol kMyactuator;
 extern const DriveProtocol kCubemars;
+extern const DriveProtocol kOdrive;
 
 std::span<const DriveProtocol* const> drive_protocols() noexcept {
   static constexpr std::array kAll = {
-      &kDamiaoMit, &kMoteus, &kCia402, &kRobstride, &kMyactuator, &kCubemars,
+      &kDamiaoMit, &kMoteus, &kCia402, &kRobstride, &kMyactuator, &kCubemars, &kOdrive,
   };
   return kAll;
 }

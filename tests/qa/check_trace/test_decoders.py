@@ -9,7 +9,15 @@ import pytest
 from limber.errors import InputError
 from limber_qa.check_trace.arm import read_arm
 from limber_qa.check_trace.candump import Trace, read_trace
-from limber_qa.check_trace.drives import cia402, cubemars, damiao_mit, moteus, myactuator, robstride
+from limber_qa.check_trace.drives import (
+    cia402,
+    cubemars,
+    damiao_mit,
+    moteus,
+    myactuator,
+    odrive,
+    robstride,
+)
 from limber_qa.check_trace.events import Kind
 from limber_qa.check_trace.judge import judge
 
@@ -340,3 +348,37 @@ def test_a_line_that_is_none_is_named(tmp_path, line):
 def test_a_trace_of_another_arm_is_refused(tmp_path):
     with pytest.raises(InputError, match="can0"):
         judge(trace(tmp_path, "001#00"), read_arm("openarm"))
+
+
+S1 = replace(read_arm("desktop2r_odrive").motors[1], sign=-1, offset=0.1)  # geared 8 to 1
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        ("04E#CDCC4CBE", Kind.FOLLOW),
+        ("04E#CDCC4CBE00000000", Kind.INVALID),
+        ("047#08000000", Kind.ENABLE),
+        ("047#01000000", Kind.DISABLE),
+        ("047#03000000", Kind.INVALID),
+        ("058#", Kind.ENABLE),
+    ],
+)
+def test_odrive_kinds(tmp_path, frame, kind):
+    (command,) = odrive.commands(on_can0(S1), trace(tmp_path, frame, "049#R", "05C#R"))
+    assert command.kind is kind
+    if kind is Kind.FOLLOW:
+        assert command.torque == pytest.approx(1.6)
+
+
+def test_odrive_states(tmp_path):
+    """On until a heartbeat or an order says otherwise; errors have an answer of their own."""
+    estimates = "049#87F9A23E0000C0BF"
+    frames = ("049#R", estimates, "041#0000000001000100", estimates, "041#0000000008000100")
+    frames += (estimates, "043#0000000000040000", estimates, "043#0000000000000000", estimates)
+    frames += ("047#01000000", estimates)
+    found = odrive.states(on_can0(S1), trace(tmp_path, *frames))
+    assert [one.enabled for one in found] == [True, False, True, False, True, False]
+    assert [one.failed for one in found] == [False, False, False, True, False, False]
+    assert found[0].position == pytest.approx(-(2 / 8 - 0.1), abs=1e-5)
+    assert found[0].velocity == pytest.approx(1.5 * TURN_rad / 8)

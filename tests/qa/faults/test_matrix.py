@@ -31,7 +31,7 @@ def test_in_lock_step(run):
     assert result.problems == []
 
 
-@pytest.mark.parametrize("family", ["moteus", "cia402", "myactuator", "cubemars"])
+@pytest.mark.parametrize("family", ["moteus", "cia402", "myactuator", "cubemars", "odrive"])
 @pytest.mark.parametrize(
     "run",
     [

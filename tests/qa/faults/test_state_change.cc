@@ -8,6 +8,7 @@
 #include "drivers/protocols/mit.h"
 #include "drivers/protocols/moteus.h"
 #include "drivers/protocols/moteus_frame.h"
+#include "drivers/protocols/odrive.h"
 #include "qa/faults/state_change.h"
 #include "robots/loader/protocols/drive_protocol.h"
 
@@ -60,6 +61,21 @@ TEST(StateChange, Cubemars) {
   CanFrame of_another = frame;
   of_another.data[0] = 4;
   EXPECT_EQ(with_motion(of_another, joint, false, {0.5, 3.0}).data, of_another.data);
+}
+
+// Geared 8 to 1: half a turn of the joint is four of the motor.
+TEST(StateChange, Odrive) {
+  JointConfig joint = joint_with("odrive");
+  joint.drive.command_id = odrive::id_of(3, odrive::Message::kTorque);
+  joint.drive.gear_ratio = 8.0;
+  const CanFrame frame = odrive::encode(3, odrive::Message::kEstimates, 1.0F, -2.0F);
+  const CanFrame changed =
+      with_motion(frame, joint, false, {std::numbers::pi, 2.0 * std::numbers::pi});
+  EXPECT_EQ(changed.id, frame.id);
+  EXPECT_NEAR(odrive::field<float>(changed, 0), 5.0, 1e-6);
+  EXPECT_NEAR(odrive::field<float>(changed, 4), 6.0, 1e-6);
+  const CanFrame torques = odrive::encode(3, odrive::Message::kTorques, 1.0F, -2.0F);
+  EXPECT_EQ(with_motion(torques, joint, false, {0.5, 3.0}).data, torques.data);
 }
 
 TEST(StateChange, Moteus) {

@@ -220,6 +220,30 @@ TEST(Cubemars, BoardsV3) {
             "m, T 31 degC");
 }
 
+// --- ODrive: node 2 ------------------------------------------------------------------------------
+
+TEST(Odrive, ItsMessages) {
+  const Robot robot = one_motor("odrive", 0x4E, 0x49);
+  BusDecoder decoder{robot, 0};
+  EXPECT_EQ(said(decoder, "04E#CDCC4CBE"), "elbow command torque: torque -0.2 N m");
+  EXPECT_EQ(said(decoder, "04B#0100000001000000"),
+            "elbow command set mode: control_mode 1, input_mode 1");
+  EXPECT_EQ(said(decoder, "047#08000000"), "elbow command set state: state closed loop");
+  EXPECT_EQ(said(decoder, "049#87F9A23E0000C0BF"),
+            "elbow reply estimates: position 0.31831 turn, velocity -1.5 turn/s");
+  EXPECT_EQ(said(decoder, "05C#CDCC4CBE000040BE"),
+            "elbow reply torques: target -0.2 N m, estimate -0.1875 N m");
+  EXPECT_EQ(said(decoder, "041#0000000101030000"),
+            "elbow reply heartbeat: error watchdog expired, state idle, result 3, done 0");
+  EXPECT_EQ(said(decoder, "043#0000000000040000"),
+            "elbow reply error: active_errors 0, disarm_reason over-current");
+  EXPECT_EQ(said(decoder, "044#01F30000"), "elbow command endpoint request: write 1, endpoint 243");
+  EXPECT_EQ(said(decoder, "05C#"), "elbow command torques asked for: ");
+  EXPECT_EQ(said(decoder, "04C#0000000000000000").substr(0, 25), "elbow command message 0C:");
+  EXPECT_EQ(said(decoder, "058#"), "elbow command clear errors: ");
+  EXPECT_EQ(said(decoder, "069#87F9A23E0000C0BF").find("elbow"), std::string::npos);
+}
+
 // --- moteus: servo 4 -----------------------------------------------------------------------------
 
 struct Moteus : ::testing::Test {

@@ -97,8 +97,23 @@ def test_cubemars_states_are_of_all_motors(load):
     assert command["kp"] == pytest.approx(25, abs=500 / 4095)
 
 
+def test_odrive_messages(load):
+    database = load("desktop2r_odrive", "arm")
+    estimates = database.decode_message(0x049, bytes.fromhex("87F9A23E0000C0BF"))
+    assert estimates["position"] == pytest.approx(1 / math.pi, rel=1e-5)
+    assert estimates["velocity"] == -1.5
+    assert database.decode_message(0x04E, bytes.fromhex("CDCC4CBE")) == {
+        "torque": pytest.approx(-0.2)
+    }
+    beat = database.decode_message(0x041, bytes.fromhex("0000000101030000"))
+    assert (beat["error"], beat["state"], beat["result"]) == (1 << 24, 1, 3)
+    told = database.decode_message(0x045, bytes.fromhex("00F30000CDCCCC3D"))
+    assert (told["endpoint"], told["raw"]) == (243, 0x3DCCCCCD)
+
+
 @pytest.mark.parametrize(
-    "robot", ["antagonist2r", "baxter", "desktop2r", "desktop2r_ak", "ideal7", "iiwa14"]
+    "robot",
+    ["antagonist2r", "baxter", "desktop2r", "desktop2r_ak", "desktop2r_odrive", "ideal7", "iiwa14"],
 )
 def test_every_robots_files_are_accepted(limber, tmp_path, robot):
     """cantools refuses signals that overlap or leave their frame."""

@@ -17,7 +17,7 @@ def test_a_word_or_its_beginning(word):
 def test_any_other_word_lists_them(word):
     with pytest.raises(
         InputError,
-        match="there are damiao_mit, moteus, cia402, robstride, myactuator, cubemars",
+        match="there are damiao_mit, moteus, cia402, robstride, myactuator, cubemars, odrive",
     ):
         protocols.protocol(word)
 

@@ -89,7 +89,7 @@ def test_the_first_scenario_never_starts_in_a_soft_wall(limber, tmp_path, kind):
 
 
 @pytest.mark.parametrize(
-    "drives", ["damiao", "moteus", "cia402", "robstride", "myactuator", "cubemars"]
+    "drives", ["damiao", "moteus", "cia402", "robstride", "myactuator", "cubemars", "odrive"]
 )
 def test_a_published_arm_with_each_kind_of_drives(limber, tmp_path, drives):
     told = made(limber, tmp_path, OPENARM, *ENDS, "--drives", drives)
