@@ -85,7 +85,8 @@ class BusEnd {
   CanBus* bus_;
   BusConfig config_;
   double load_predicted_;
-  std::array<CanFrame, 4 * kMaxMotors + 3> batch_;  ///< motors, tip sensor, last_, question_
+  /// Motors, up to three requests of each, tip sensor, last_, question_.
+  std::array<CanFrame, 4 * kMaxMotors + 3> batch_;
   std::size_t batched_ = 0;
   std::optional<CanFrame> last_;
   std::optional<CanFrame> question_;

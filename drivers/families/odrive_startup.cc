@@ -19,8 +19,6 @@ using odrive::Message;
 
 constexpr std::uint32_t kOdriveFirmware = 100;  // beside the numbers of endpoints
 constexpr std::uint32_t kOdriveEstimate = 101;
-/// N m s a turn, of the firmware: the torque of a joint at rest is at most this times vel_limit.
-constexpr double kOdriveVelocityGain = 1.0 / 6.0;
 
 constexpr std::uint32_t kOdriveSets = 0x100;  // it is written, and that not answered
 /// Endpoints, in the order of odrive_endpoints.h, and those above.
@@ -50,9 +48,9 @@ class OdriveStartup final : public StartupDialogue {
       : drive_(joint.drive),
         node_(odrive_node(drive_)),
         most_A_(static_cast<float>(drive_.peak_torque_Nm / drive_.torque_constant_Nm_per_A)),
-        most_turns_per_s_(
-            static_cast<float>(2.0 * joint.velocity_limit * odrive_turns_per_rad(drive_) +
-                               drive_.peak_torque_Nm / drive_.gear_ratio / kOdriveVelocityGain)) {}
+        most_turns_per_s_(static_cast<float>(
+            2.0 * joint.velocity_limit * odrive_turns_per_rad(drive_) +
+            drive_.peak_torque_Nm / drive_.gear_ratio / odrive::kVelocityGain_Nms_per_turn)) {}
 
   CanFrame presence_request() const noexcept override {
     return odrive::ask(node_, Message::kVersion);

@@ -38,8 +38,8 @@ struct Layout {
   Message message;
   bool from_drive;
   const char* name;
-  const char*
-      fields;  ///< "f torque Nm": kind (f float32, b 8, h 16, i 32 bits), name, unit; by ','
+  /// "f torque N m": kind (f float32; b, h, i: 8, 16, 32 bits), name, unit; the next behind a ','.
+  const char* fields;
 };
 /// nullptr: not among those that are read here.
 const Layout* layout_of(std::uint32_t id) noexcept;
@@ -50,6 +50,8 @@ inline constexpr std::uint32_t kIdle = 1;
 inline constexpr std::uint32_t kClosedLoop = 8;
 inline constexpr std::uint32_t kTorqueControl = 1;
 inline constexpr std::uint32_t kPassThrough = 1;
+/// N m s a turn, as delivered: the torque of a motor at rest is at most this times vel_limit.
+inline constexpr double kVelocityGain_Nms_per_turn = 1.0 / 6.0;
 inline constexpr std::uint32_t kDisarmed = 3;  // procedure results
 inline constexpr std::uint32_t kNotCalibrated = 14;
 inline constexpr std::uint32_t kOverCurrent = 1U << 10U;  // errors

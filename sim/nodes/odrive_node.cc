@@ -17,7 +17,6 @@ using odrive::Message;
 constexpr std::int64_t kOdriveMs_ns = 1'000'000;
 constexpr std::uint64_t kOdriveSerials = 0x3000'0000'0000;
 constexpr std::uint32_t kOdriveCalibration = 3;
-constexpr double kOdriveVelocityGain = 1.0 / 6.0;  // N m s a turn, as delivered
 constexpr double kOdriveTurn_rad = 2.0 * std::numbers::pi;
 
 }  // namespace
@@ -193,8 +192,9 @@ DriveLaw OdriveNode::law() const noexcept {
   if (!enabled() || settings_.raw[kOdriveControlMode] != odrive::kTorqueControl) return {};
   const double most = std::fmax(settings_.real(kOdriveVelocityLimit), 0.0);
   const double speed = turns_per_s(joint_);
-  const double torque = std::fmax(std::fmin(torque_Nm_, (most - speed) * kOdriveVelocityGain),
-                                  (-most - speed) * kOdriveVelocityGain);
+  const double torque =
+      std::fmax(std::fmin(torque_Nm_, (most - speed) * odrive::kVelocityGain_Nms_per_turn),
+                (-most - speed) * odrive::kVelocityGain_Nms_per_turn);
   const double most_Nm = std::fmax(settings_.most_A, 0.0) * drive_.torque_constant_Nm_per_A;
   return {.tau_ff = drive_.sign * torque * drive_.gear_ratio,
           .limit = std::fmin(drive_.peak_torque_Nm, most_Nm)};

@@ -1,4 +1,4 @@
-// Replies of a ODrive axis, as the driver reads them.
+// Replies of an ODrive axis, as the driver reads them.
 #include "tests/fuzz/support/arms.h"
 #include "tests/fuzz/support/drive_replies.h"
 

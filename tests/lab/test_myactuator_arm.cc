@@ -7,15 +7,20 @@
 #include <string>
 #include <tuple>
 
-#include "controller/laws/registry.h"
-#include "lab/lab.h"
 #include "robots/loader/protocols/drive_protocol.h"
-#include "tests/support/mutation.h"
+#include "tests/lab/family_arm.h"
 
 namespace limber::test_myactuator_arm {
 namespace {
 
+using testing::kActive;
 using Status = controller_status_t;
+
+/// By the scenarios' own integrator.
+struct Arm : testing::FamilyArm {
+  Arm(const LoadedRobot& given, const std::string& timeline, const LoadedRobot* real = nullptr)
+      : FamilyArm(given, timeline, real, "ode") {}
+};
 
 bool is_myactuator(const JointConfig& joint) { return joint.drive.protocol->word == "myactuator"; }
 
@@ -31,32 +36,6 @@ LoadedRobot axol_of_v42() {
   }
   return robot;
 }
-
-struct Arm {
-  Arm(const LoadedRobot& given, const std::string& timeline, const LoadedRobot* real = nullptr)
-      : robot(given),
-        path(folder.write("scenario.yaml",
-                          "format: limber-scenario/1\nrobot: axol\nmode: lockstep\n"
-                          "duration_s: 20\nseed: 7\nfriction: false\ntimeline:\n" +
-                              timeline)),
-        scenario(load_scenario(path, robot, &controller::law_catalog())),
-        lab(robot, scenario, LabOptions{real, {}, {}}) {}
-
-  void run_to(double time_s) {
-    while (lab.time_ns() < static_cast<std::int64_t>(std::llround(time_s * 1e9))) lab.step();
-  }
-  int mode() { return lab.controller_status().mode; }
-
-  testing::TemporaryFolder folder;
-  LoadedRobot robot;
-  std::string path;
-  Scenario scenario;
-  Lab lab;
-};
-
-const std::string kActive =
-    "  - {at_s: 0.3, mode: hold}\n"
-    "  - {at_s: 0.8, mode: active}\n";
 
 TEST(MyactuatorArm, HoldsAndSoftensWithEitherFirmware) {
   for (const LoadedRobot& robot : {axol(), axol_of_v42()}) {

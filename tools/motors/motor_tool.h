@@ -74,11 +74,7 @@ class MotorTool {
   virtual bool presence_switches_off() const noexcept { return false; }
   virtual std::optional<Found> found(const CanFrame& frame) const = 0;
   /// Whether the drive with this number takes any frame with this 11-bit identifier for its own.
-  virtual bool obeys(int number, std::uint32_t id) const noexcept {
-    static_cast<void>(number);
-    static_cast<void>(id);
-    return false;
-  }
+  virtual bool obeys(int /*number*/, std::uint32_t /*id*/) const noexcept { return false; }
 
   Wire::Accept comes_from(int number) const;  ///< found() of this motor
 

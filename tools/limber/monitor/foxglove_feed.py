@@ -1,8 +1,8 @@
 """`limber monitor --foxglove`: the running arm in the Foxglove app, read only.
 
 The topics are those of `limber log convert --to mcap`, so that one layout fits both; /joint_states
-beside them moves a URDF in the 3D panel. Every message of the user plane goes out; poses and
-joint states once a turn.
+beside them moves a URDF in the 3D panel. Every message of the user plane goes out
+that a viewer has subscribed to; poses and joint states once a turn.
 """
 
 import os
@@ -19,7 +19,7 @@ from rich.console import Console
 from limber import messages
 from limber.errors import RunError
 from limber.live.stamps import Stamps
-from limber.log.convert.foxglove_messages import Message, Messages, Topic, time_of
+from limber.log.convert.foxglove_messages import POSES, Message, Messages, time_of, topic_of
 from limber.log.convert.windows import Batch, identifiers
 from limber.model.robot import Robot
 from limber.monitor.commands import NICENESS
@@ -75,7 +75,7 @@ class Outlet:
             raise RunError(f"port {port} of {HOST}: {error}; give another --port") from error
         self._joints = robot.joint_names
         self._messages = Messages(identifiers(robot.joint_names))
-        self._channels: dict[Topic, foxglove.Channel] = {}
+        self._channels: dict[str, foxglove.Channel] = {}  # by topic
         self._stamps = Stamps()
 
     def close(self) -> None:
@@ -101,13 +101,19 @@ class Outlet:
         stamps = [self._stamps.of(t, now_ns) // 1000 for t in _arm_times_ns(rows)]
         type_name = messages.channels()[channel].type_name
         batch = Batch(channel, type_name, np.array(stamps, np.int64), rows)
-        yield from self._messages.encode(batch)
-        last = Batch(channel, type_name, batch.stamps_us[-1:], rows[-1:])
-        if channel == "CONTROLLER_STATUS":
+        if self._wanted(topic_of(channel)):
+            yield from self._messages.encode(batch)
+        if channel == "CONTROLLER_STATUS" and any(map(self._wanted, POSES)):
+            last = Batch(channel, type_name, batch.stamps_us[-1:], rows[-1:])
             for stream in self._messages.poses(last):
                 yield from stream
-        if channel == "JOINT_STATE":
+        if channel == "JOINT_STATE" and self._wanted(JOINT_STATES):
             yield self._joint_states(stamps[-1], rows[-1])
+
+    def _wanted(self, topic: str) -> bool:
+        """A viewer has subscribed to it, or has still to be told that it is there."""
+        channel = self._channels.get(topic)
+        return channel is None or channel.has_sinks()
 
     def _joint_states(self, stamp_us: int, state: np.void) -> Message:
         values = zip(self._joints, *(state[k].tolist() for k in ("q", "v", "tau")), strict=False)
@@ -120,14 +126,14 @@ class Outlet:
 
     def _log(self, message: Message) -> None:
         stamp_us, topic, data = message
-        if topic not in self._channels:
+        if topic.name not in self._channels:
             schema = foxglove.Schema(
                 name=topic.schema, encoding=topic.schema_encoding, data=topic.described
             )
-            self._channels[topic] = foxglove.Channel(
+            self._channels[topic.name] = foxglove.Channel(
                 topic.name, schema=schema, message_encoding=topic.encoding, context=self._context
             )
-        self._channels[topic].log(data, log_time=stamp_us * 1000)
+        self._channels[topic.name].log(data, log_time=stamp_us * 1000)
 
 
 def _arm_times_ns(rows: np.ndarray | list[Any]) -> list[int]:
