@@ -1,5 +1,7 @@
 """What became of requests, and gains that wait for ACTIVE."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -101,7 +103,7 @@ def test_several_numbers_in_one_line():
 @pytest.fixture
 def fields(served):
     told, sent = [], []
-    link = PageLink()
+    link = PageLink(threading.RLock())
     typed = TypedFields(link, lambda *words: told.append(words))
     slider = served.gui.add_slider("K", 0.0, 100.0, 0.5, 50.0)
     slider.precision = 3

@@ -4,6 +4,7 @@ others send there.
 
 import asyncio
 import json
+import threading
 import time
 
 import pytest
@@ -30,7 +31,7 @@ def say(kind, value=True, viewer=3) -> dict:
 
 @pytest.fixture
 def link():
-    return PageLink()
+    return PageLink(threading.RLock())
 
 
 def test_a_viewer_lives_until_its_page_closes(link):

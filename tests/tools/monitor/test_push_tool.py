@@ -58,7 +58,12 @@ def scene(served):
 @pytest.fixture
 def tool(served, scene, clock):
     made = PushTool(
-        served.gui, scene, Feed(), Asked(), link := PageLink(), TypedFields(link, lambda *_: None)
+        served.gui,
+        scene,
+        Feed(),
+        Asked(),
+        link := PageLink(served.turn),
+        TypedFields(link, lambda *_: None),
     )
     made.asked, made.link, made.feed = made._requests, link, made._feed
     return made

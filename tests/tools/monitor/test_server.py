@@ -1,15 +1,19 @@
-"""Who may talk to the page's server."""
+"""Who may talk to the page's server, and when what they did is taken."""
 
 import asyncio
+import json
+import time
 import urllib.request
 
 import pytest
 import viser
+from viser._messages import GuiUpdateMessage
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
 from limber.errors import RunError
 from limber.monitor import server
+from limber.monitor.page_link import PROTOCOL
 
 
 def handshake(served: server.Server, origin: str | None) -> str:
@@ -66,3 +70,35 @@ def test_a_taken_port_gives_the_next_one(served):
 def test_ports_that_do_not_exist():
     with pytest.raises(RunError, match="65536"):
         server.start(65536)
+
+
+def typed_by_a_page(served, slider) -> None:
+    async def send() -> None:
+        address = f"ws://127.0.0.1:{served.get_port()}"
+        async with connect(address, subprotocols=[PROTOCOL]) as socket:
+            await socket.send(json.dumps({"viewer": 0, "kind": "typed", "value": 7}))
+
+    asyncio.run(send())
+
+
+def moved_on_a_page(served, slider) -> None:
+    interface = served.gui._websock_interface
+    update = interface._handle_incoming_message(
+        0, GuiUpdateMessage(slider._impl.uuid, {"value": 7.0})
+    )
+    asyncio.run_coroutine_threadsafe(update, interface._broadcast_buffer.event_loop)
+
+
+@pytest.mark.parametrize("act", [typed_by_a_page, moved_on_a_page])
+def test_what_a_viewer_does_waits_for_the_drawing_of_what_it_changes(served, act):
+    slider = served.gui.add_slider("K", 0.0, 10.0, 1.0, 3.0)
+    served.link.on("typed", lambda _viewer, value: setattr(slider, "value", value))
+    with served.turn:
+        act(served, slider)
+        time.sleep(0.2)
+        assert slider.value == 3.0, "it is not changed while it is drawn"
+    for _ in range(200):
+        if slider.value == 7.0:
+            return
+        time.sleep(0.05)
+    raise AssertionError("what was done is lost")

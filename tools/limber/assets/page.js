@@ -127,8 +127,12 @@
     let over = false;
     const end = send => {
       if (over) return;
+      if (send && own.value.trim() !== field.value && !tell("typed", {slider, text: own.value.slice(0, 100)})) {
+        own.setCustomValidity("not sent: no connection to limber monitor");
+        own.reportValidity();
+        return;
+      }
       over = true;
-      if (send && own.value.trim() !== field.value) tell("typed", {slider, text: own.value.slice(0, 100)});
       own.remove();
     };
     own.onkeydown = event => {

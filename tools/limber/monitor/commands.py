@@ -97,10 +97,11 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
         outcomes = requests.collect(batch)
         page.tell(outcomes)
         page.tell_stop(requests.stops, requests.stop_state)
-        for part in parts:
-            page.guard(part)
-        if goal is not None:
-            page.guard(goal.draw, outcomes)
+        with served.turn:
+            for part in parts:
+                page.guard(part)
+            if goal is not None:
+                page.guard(goal.draw, outcomes)
         running.note(batch)
         page.other_arm = running.name if running.name not in ("", robot.name) else ""
         return not (follow and page.other_arm)
@@ -140,10 +141,11 @@ def play(path: Path, robot_name: str | None, port: int, console: Console) -> Non
     def draw() -> bool:
         nonlocal last
         now = time.monotonic()
-        feed.advance(now - last)
+        with served.turn:
+            feed.advance(now - last)
+            page.guard(panel.draw)
         last = now
         page.draw()
-        page.guard(panel.draw)
         return True
 
     _loop(draw, served)

@@ -2,7 +2,6 @@
 buttons stand in the status card.
 """
 
-import threading
 import time
 from html import escape
 from typing import Any
@@ -38,6 +37,8 @@ def refused_law(law: Law) -> str:
 
 
 class ControlPanel:
+    """`draw` is called in the server's turn, as its callbacks are (Server.turn)."""
+
     def __init__(
         self,
         gui: viser.GuiApi,
@@ -52,7 +53,6 @@ class ControlPanel:
         self._requests, self._feed = requests, feed
         self._typed, self._pending = typed, pending
         self._standard = robot.resolved["gains"]
-        self._lock = threading.Lock()  # callbacks come from the server's thread
         self._waiting: dict[str, Any] = {}
         self._sent_s = 0.0
         self.shown_law = ""
@@ -85,12 +85,11 @@ class ControlPanel:
     def draw(self) -> None:
         """Sends what waits, and shows what the controller has."""
         now = time.monotonic()
-        with self._lock:
-            if self._waiting and now - self._sent_s > GAINS_S:
-                values, self._waiting = self._waiting, {}
-                self._sent_s = now
-                self._requests.gains(values, RAMP_S)
-            settled = not self._waiting and now - self._sent_s > SETTLED_S
+        if self._waiting and now - self._sent_s > GAINS_S:
+            values, self._waiting = self._waiting, {}
+            self._sent_s = now
+            self._requests.gains(values, RAMP_S)
+        settled = not self._waiting and now - self._sent_s > SETTLED_S
         status = self._feed.newest.get("CONTROLLER_STATUS")
         if status is None or not settled:
             return
@@ -135,8 +134,7 @@ class ControlPanel:
         )
 
     def _request(self, key: str, value: Any) -> None:
-        with self._lock:
-            self._waiting[key] = value
+        self._waiting[key] = value
 
     def _follow(self, status: np.void) -> None:
         """What CONTROLLER_STATUS carries of the gains; where another value waits for ACTIVE, that

@@ -1,6 +1,5 @@
 """The hand's goal: width and greatest force, sent while a slider moves."""
 
-import threading
 import time
 
 import viser
@@ -19,6 +18,8 @@ WORDS = {"width": "goal between the fingers; below 0 presses thin things", "forc
 
 
 class HandPanel:
+    """`draw` is called in the server's turn, as its callbacks are (Server.turn)."""
+
     def __init__(
         self,
         gui: viser.GuiApi,
@@ -28,7 +29,6 @@ class HandPanel:
         typed: TypedFields,
     ) -> None:
         self._requests, self._feed = requests, feed
-        self._lock = threading.Lock()  # callbacks come from the server's thread
         self._goal = {"width": 1e3 * float(hand.width_m.max()), "force": hand.hold_force_N}
         self._waits, self._sent_s = False, 0.0
         ends = {
@@ -48,20 +48,15 @@ class HandPanel:
         }
 
     def _asked(self, key: str, value: float) -> None:
-        with self._lock:
-            self._goal[key], self._waits = value, True
+        self._goal[key], self._waits = value, True
 
     def draw(self) -> None:
         """Sends what waits, and shows the goal that the controller follows."""
         now = time.monotonic()
-        with self._lock:
-            goal = dict(self._goal)
-            due = self._waits and now - self._sent_s > SEND_S
-            if due:
-                self._waits, self._sent_s = False, now
-            settled = not self._waits and now - self._sent_s > SETTLED_S
-        if due:
-            self._requests.hand(1e-3 * goal["width"], goal["force"])
+        if self._waits and now - self._sent_s > SEND_S:
+            self._waits, self._sent_s = False, now
+            self._requests.hand(1e-3 * self._goal["width"], self._goal["force"])
+        settled = not self._waits and now - self._sent_s > SETTLED_S
         state = self._feed.newest.get("HAND_STATE")
         if state is None or not settled or not state["engaged"]:
             return

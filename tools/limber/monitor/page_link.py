@@ -6,6 +6,7 @@ message is short, checked, and dropped where it is none.
 """
 
 import json
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
@@ -19,11 +20,12 @@ Handler = Callable[[int, Any], None]
 
 
 class PageLink:
-    """Handlers are called in the server's thread with the number of the viewer (viser's client id)
-    and the value of the message.
+    """Handlers are called in the server's thread, while it holds `turn`, with the number of the
+    viewer (viser's client id) and the value of the message.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, turn: threading.RLock) -> None:
+        self._turn = turn
         self._handlers: dict[str, Handler] = {}
         self._heard_s: dict[int, float] = {}
         self._slow: set[int] = set()
@@ -82,7 +84,8 @@ class PageLink:
                 self._slow.add(viewer)
             return True
         try:
-            self._handlers[kind](viewer, value)
+            with self._turn:
+                self._handlers[kind](viewer, value)
         except (KeyError, TypeError, ValueError):  # of another kind, or with another content
             return False
         return True

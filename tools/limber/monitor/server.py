@@ -7,6 +7,7 @@ server on the internet. Both would let strangers move the arm, so both are close
 import gzip
 import io
 import logging
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
@@ -30,15 +31,28 @@ LAST_PORT = 65535
 class Server(viser.ViserServer):
     """viser's server without its way to the internet, and without its own words on the console.
 
-    `link`: what limber's own part of the page tells.
+    `link`: what limber's own part of the page tells. `turn`: held while what a viewer did is taken,
+    and by whoever draws what viewers can change, so that neither undoes the other half way.
     """
 
     def __init__(self, port: int) -> None:
-        self.link = PageLink()
+        self.turn = threading.RLock()
+        self.link = PageLink(self.turn)
         use_own_buffer()
         with _closed(self.link), redirect_stdout(io.StringIO()):
             super().__init__(host=HOST, port=port, label="limber", verbose=False)
         keep_possible(self.gui)
+        self._take_in_turn()
+
+    def _take_in_turn(self) -> None:
+        interface: Any = self.gui._websock_interface  # one of its methods is replaced
+        take = interface._handle_incoming_message
+
+        async def in_turn(viewer: Any, message: Any) -> None:
+            with self.turn:
+                await take(viewer, message)
+
+        interface._handle_incoming_message = in_turn
 
     def close(self) -> None:
         with redirect_stdout(io.StringIO()):
