@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "common/types.h"
-#include "controller/elastic/joint_springs.h"
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 #include "controller/output/torque_limiter.h"
@@ -52,13 +51,6 @@ namespace limber::controller {
 /// softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end
 /// is not pushed.
 ///
-/// The link behind such a spring overtakes a motor that sets off, and is up to twice as fast. So
-/// that motor's own speed keeps to a bound w first: 0.8 velocity limit, and half of that while it
-/// bends the spring further than the weight does. With the spring's torque tau_J and the rotor's
-/// inertia B:
-///
-///   -B s(w + theta'; 20/s, j)  <=  tau - tau_J  <=  B s(w - theta'; 20/s, j)
-///
 /// Judged by the velocities that the drives report; of motor and link, where a spring is between
 /// them, the one that is faster that way.
 class Stopping {
@@ -88,15 +80,11 @@ class Stopping {
                      const ArmTerms& terms) const noexcept;
   /// Whether motor and link move as one within kMemory_s.
   bool firm(Eigen::Index joint, const ArmTerms& terms) const noexcept;
-  /// Of motors behind soft springs; returns LIMIT_VELOCITY if it acted.
-  std::int32_t bound_motors(const ArmState& state, const ArmTerms& terms, const Reach& reach,
-                            VectorJ* tau) const noexcept;
   void bound_energy(const ArmState& state, const ArmTerms& terms, Rows* rows) const noexcept;
   void let_others_help(const Rows& rows, const MatrixJ& W, const ArmState& state,
                        const ArmTerms& terms, const Reach& reach, VectorJ* a,
                        VectorJ* tau) const noexcept;
 
-  JointSprings springs_;
   std::vector<bool> turns_rigidly_;
   VectorJ position_min_;
   VectorJ position_max_;

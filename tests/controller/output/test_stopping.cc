@@ -75,35 +75,6 @@ TEST_F(OneJoint, NearItsVelocityLimitItsAccelerationFades) {
   EXPECT_EQ(shaped(-0.9, 8.4, -15.0), -15.0) << "what brakes harder is left alone";
 }
 
-// A rotor of 0.1 kg m^2 behind a spring of 100 N m/rad, 50 mrad bent: tau_J = 5 N m. While it bends
-// the spring further it keeps to w = 0.4 of 10 rad/s, by 20 / s (w - theta'), else to 0.8.
-TEST_F(OneJoint, AMotorThatBendsItsSoftSpringKeepsToHalfOfTheSpeed) {
-  robot.joints[0].position_max = -(robot.joints[0].position_min = -100.0);
-  TransmissionConfig& transmission = robot.joints[0].transmission;
-  transmission.kind = TransmissionKind::kElastic;
-  transmission.spring.stiffness_Nm_per_rad = 100.0;
-  terms.M << 0.5;
-  terms.M_total << 0.6;
-  state.q << 0.0;
-  const VectorJ most = VectorJ::Constant(1, 20.0);
-  const auto left_of = [&](double theta, double theta_dot, double demand) {
-    state.theta << theta;
-    state.theta_dot_reported << theta_dot;
-    VectorJ tau = VectorJ::Constant(1, demand);
-    acted = Stopping(robot, most).shape(state, terms, {-most, most}, &tau);
-    return tau[0];
-  };
-  EXPECT_EQ(left_of(0.05, 3.5, 5.9), 5.9);
-  EXPECT_EQ(acted, 0);
-  EXPECT_NEAR(left_of(0.05, 3.5, 15.0), 5.0 + 0.1 * 20.0 * 0.5, 1e-9);
-  EXPECT_EQ(acted, +Status::LIMIT_VELOCITY);
-  EXPECT_NEAR(left_of(0.05, 4.5, 15.0), 5.0 - 0.1 * 20.0 * 0.5, 1e-9) << "beyond it, it brakes";
-  EXPECT_NEAR(left_of(-0.05, -3.5, -15.0), -5.0 - 0.1 * 20.0 * 0.5, 1e-9) << "the other way";
-  EXPECT_NEAR(left_of(0.05, -3.5, -15.0), 5.0 - 0.1 * 20.0 * 4.5, 1e-9) << "it eases the spring";
-  transmission.spring.stiffness_Nm_per_rad = 1000.0;
-  EXPECT_EQ(left_of(0.005, 3.5, 15.0), 15.0) << "motor and link move as one";
-}
-
 // Half of 20 N m on 0.5 kg m^2 brakes with a = 20 rad/s^2. With kappa = 8 / s that is linear up to
 // 20 / 64 rad: 0.25 rad before the end 2 rad/s can be stopped.
 TEST_F(OneJoint, TowardsItsEndItIsBraked) {
