@@ -24,10 +24,14 @@ ArmView::ArmView(const LoadedRobot& robot)
       gravity_gradient_(MatrixJ::Zero(model_.size(), model_.size())),
       link_inertia_(gravity_gradient_),
       deflection_(VectorJ::Zero(model_.size())),
+      torque_limit_(deflection_),
       qbar_(&model_, elastic_.K_J, kInTheCycle) {
-  VectorJ home = VectorJ::Zero(model_.size());
-  for (Eigen::Index i = 0; i < home.size(); ++i)
-    home[i] = robot.robot.joints[static_cast<std::size_t>(i)].home;
+  VectorJ home = deflection_;
+  for (Eigen::Index i = 0; i < home.size(); ++i) {
+    const JointConfig& joint = robot.robot.joints[static_cast<std::size_t>(i)];
+    home[i] = joint.home;
+    torque_limit_[i] = joint.torque_limit_Nm;
+  }
   model_.evaluate(home, VectorJ::Zero(home.size()), &terms_);
   if (springs_.any()) gravity_gradient_ = model_.gravity_gradient(home);
 }
@@ -51,7 +55,7 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
       unsolved_cycles_ =
           solve(state.theta, statics) ? std::max(unsolved_cycles_ - 1, 0) : kUnsolvedCycles;
       solved_ = unsolved_cycles_ == 0;
-      point_.q = solved_ ? qbar_.q_bar() : state.theta;
+      if (solved_) point_.q = reachable(qbar_.q_bar(), state.theta);
     } else {
       unsolved_cycles_ = 0;
     }
@@ -60,6 +64,11 @@ void ArmView::evaluate(PositionFeedback resolved, const ArmState& state, const S
     gravity_gradient_ = model_.gravity_gradient(point_.q);
   }
   model_.evaluate(point_.q, point_.v, due, &terms_);
+}
+
+VectorJ ArmView::reachable(const VectorJ& q, const VectorJ& theta) const noexcept {
+  const VectorJ bend = torque_limit_.cwiseQuotient(elastic_.K_J);
+  return q.cwiseMax(theta - bend).cwiseMin(theta + bend);
 }
 
 bool ArmView::solve(const VectorJ& theta, const Statics& statics) noexcept {

@@ -23,8 +23,9 @@ struct Statics {
 };
 
 /// Owns the model. On elastic joints the control point is the measured link, the motor, or the
-/// link's static equilibrium q_bar; on rigid joints it is the joint. After construction all members
-/// may be called in the cycle.
+/// link's static equilibrium q_bar, no farther from the motor than the torque limit bends the
+/// spring; on rigid joints it is the joint. After construction all members may be called in the
+/// cycle.
 class ArmView {
  public:
   explicit ArmView(const LoadedRobot& robot);
@@ -74,6 +75,8 @@ class ArmView {
   static constexpr int kUnsolvedCycles = 50;
 
   bool solve(const VectorJ& theta, const Statics& statics) noexcept;
+  /// q, or the nearest to it that the motors' torque limits hold the links at.
+  VectorJ reachable(const VectorJ& q, const VectorJ& theta) const noexcept;
 
   ArmModel model_;
   ControlPoint point_;
@@ -84,6 +87,7 @@ class ArmView {
   MatrixJ gravity_gradient_;
   MatrixJ link_inertia_;
   VectorJ deflection_;
+  VectorJ torque_limit_;
   QbarSolver qbar_;
   int unsolved_cycles_ = 0;  ///< to come
   bool solved_ = true;

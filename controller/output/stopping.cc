@@ -25,6 +25,9 @@ constexpr double kAccelerationGain_per_s = 20.0;  // gamma
 // The same of arms with springs in the joints, which faster ones would swing up.
 constexpr double kSpringSpeedGain_per_s = 4.0;
 constexpr double kSpringAccelerationGain_per_s = 10.0;
+// Of the bound on speed: a link on soft springs is up to twice as fast as the motors that bend
+// them.
+constexpr double kShareOfMotor = 0.5;
 // Of the speed that can be stopped, and of the torque that may be: joints below both are far off.
 constexpr double kJudgedFrom = 0.2;
 constexpr double kKnown_s = 3.0 * Stopping::kMemory_s;
@@ -77,7 +80,8 @@ struct Stopping::Rows {
 };
 
 Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
-    : position_min_(torque_Nm.size()),
+    : springs_(robot),
+      position_min_(torque_Nm.size()),
       position_max_(torque_Nm.size()),
       velocity_(torque_Nm.size()),
       speed_gain_per_s_(kSpeedGain_per_s),
@@ -87,16 +91,17 @@ Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
       K_J_(VectorJ::Constant(torque_Nm.size(), std::numeric_limits<double>::infinity())),
       v_(VectorJ::Zero(torque_Nm.size())),
       theta_dot_(v_),
-      r_(v_) {
-  const JointSprings springs(robot);
-  if (springs.any()) {
+      r_(v_),
+      spring_error_(v_) {
+  if (springs_.any()) {
     speed_gain_per_s_ = kSpringSpeedGain_per_s;
     acceleration_gain_per_s_ = kSpringAccelerationGain_per_s;
   }
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
+    pairs_.push_back(joint.transmission.kind == TransmissionKind::kAntagonistic);
     turns_rigidly_.push_back(joint.rigid() && joint.type != JointType::kPrismatic);
-    if (!joint.rigid()) K_J_[i] = springs.at_rest()[i];
+    if (!joint.rigid()) K_J_[i] = springs_.at_rest()[i];
     position_min_[i] = joint.position_min;
     position_max_[i] = joint.position_max;
     velocity_[i] = kShareOfVelocity * joint.velocity_limit;
@@ -115,6 +120,7 @@ void Stopping::observe(const ArmState& state, const ArmTerms& terms) noexcept {
   theta_dot_ = state.theta_dot_reported;
   if (!follows) {
     r_.setZero();
+    spring_error_.setZero();
     observed_s_ = 0.0;
     return;
   }
@@ -122,6 +128,10 @@ void Stopping::observe(const ArmState& state, const ArmTerms& terms) noexcept {
   const VectorJ force = state.tau_applied - terms.g - terms.Cv + r_;
   const VectorJ gained = terms.M * dv + (terms.M_total - terms.M) * dtheta_dot;
   r_ += (gained - dt * force) / kMemory_s;
+  if (!springs_.any()) return;
+  const VectorJ springs_Nm = springs_.torque(state.theta - state.q, state.preload) + spring_error_;
+  const VectorJ rotors = (terms.M_total - terms.M) * dtheta_dot;
+  spring_error_ += (dt * (state.tau_applied - springs_Nm) - rotors) / kMemory_s;
 }
 
 bool Stopping::firm(Eigen::Index i, const ArmTerms& terms) const noexcept {
@@ -211,8 +221,38 @@ void Stopping::let_others_help(const Rows& rows, const MatrixJ& W, const ArmStat
   }
 }
 
+// The spring's torque is the rotor's only load, so its acceleration is known without the link's.
+std::int32_t Stopping::bound_motors(const ArmState& state, const ArmTerms& terms,
+                                    const Reach& reach, VectorJ* tau) const noexcept {
+  if (observed_s_ < kKnown_s) return 0;
+  const VectorJ share = state.theta_dot_reported.cwiseAbs().cwiseQuotient(velocity_) / kJudgedFrom;
+  const VectorJ spring_Nm =
+      springs_.torque(state.theta - state.q, state.preload) +
+      (1.0 - share.array()).cwiseMax(0.0).matrix().cwiseProduct(spring_error_);
+  std::int32_t acted = 0;
+  for (Eigen::Index i = 0; i < tau->size(); ++i) {
+    if (!pairs_[static_cast<std::size_t>(i)] || firm(i, terms)) continue;
+    const double B = terms.M_total(i, i) - terms.M(i, i);
+    const bool bends = (spring_Nm[i] - terms.g[i]) * state.theta_dot_reported[i] > 0.0;
+    const double most = bends ? kShareOfMotor * velocity_[i] : velocity_[i];
+    const double jerk = kShareOfRate * torque_rate_[i] / B;
+    const auto spare_Nm = [&](double u) {
+      return B * stoppable(most - u, kAccelerationGain_per_s, jerk).value;
+    };
+    const double u = state.theta_dot_reported[i];
+    const double low = std::clamp(spring_Nm[i] - spare_Nm(-u), reach.low[i], reach.high[i]);
+    const double high = std::clamp(spring_Nm[i] + spare_Nm(u), reach.low[i], reach.high[i]);
+    const double kept = std::clamp((*tau)[i], low, high);
+    if (kept == (*tau)[i]) continue;
+    (*tau)[i] = kept;
+    acted |= controller_status_t::LIMIT_VELOCITY;
+  }
+  return acted;
+}
+
 std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const Reach& reach,
                              VectorJ* tau) const noexcept {
+  std::int32_t acted = springs_.any() ? bound_motors(state, terms, reach, tau) : 0;
   VectorJ load = terms.Cv + terms.g;
   const VectorJ pushing = *tau - load;
   const VectorJ against = r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));
@@ -225,12 +265,12 @@ std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const
     for (const double sign : {-1.0, 1.0}) bound_joint(i, sign, state, terms, load, *tau, &rows);
   }
   bound_energy(state, terms, &rows);
-  if (rows.count == 0) return 0;
+  if (rows.count == 0) return acted;
   const auto n = tau->size();
   const MatrixJ W = terms.M_total.llt().solve(MatrixJ::Identity(n, n));
   VectorJ a = W * (*tau - load);
   const auto kept = [&a](const Row& row) { return row.excess(a) <= 0.0; };
-  if (std::ranges::all_of(rows.span(), kept)) return 0;
+  if (std::ranges::all_of(rows.span(), kept)) return acted;
 
   for (Row& row : rows.span()) {
     row.W_n = W * row.n;
@@ -245,7 +285,6 @@ std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const
       a += step * row.W_n;
     }
   }
-  std::int32_t acted = 0;
   for (const Row& row : rows.span()) {
     if (row.lambda > 0.0) acted |= row.limit;
   }

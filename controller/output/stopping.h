@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/types.h"
+#include "controller/elastic/joint_springs.h"
 #include "controller/model/arm_state.h"
 #include "controller/model/arm_terms.h"
 #include "controller/output/torque_limiter.h"
@@ -51,6 +52,18 @@ namespace limber::controller {
 /// softer than 0.4 M / kMemory_s^2: their link does not follow in time. A joint that leaves its end
 /// is not pushed.
 ///
+/// A link between two motors, on such springs that nothing damps, overtakes them when they set off,
+/// and is up to twice as fast. So their own speed theta' keeps to a bound w first: 0.8 velocity
+/// limit, and half of that while they bend the springs further than the weight does. With the
+/// springs' torque tau_J and the rotors' inertia B:
+///
+///   -B s(w + theta'; 20/s, j)  <=  tau - tau_J - e  <=  B s(w - theta'; 20/s, j)
+///   kMemory_s e' = tau_applied - tau_J - B theta'' - e
+///
+/// e is what the springs pull with beyond what robot.yaml makes of them. It counts in full at rest,
+/// where motors must not be moved by what is only believed, and not from 0.2 w on, where it would
+/// come too late.
+///
 /// Judged by the velocities that the drives report; of motor and link, where a spring is between
 /// them, the one that is faster that way.
 class Stopping {
@@ -80,11 +93,16 @@ class Stopping {
                      const ArmTerms& terms) const noexcept;
   /// Whether motor and link move as one within kMemory_s.
   bool firm(Eigen::Index joint, const ArmTerms& terms) const noexcept;
+  /// Two motors behind soft springs; returns LIMIT_VELOCITY if it acted.
+  std::int32_t bound_motors(const ArmState& state, const ArmTerms& terms, const Reach& reach,
+                            VectorJ* tau) const noexcept;
   void bound_energy(const ArmState& state, const ArmTerms& terms, Rows* rows) const noexcept;
   void let_others_help(const Rows& rows, const MatrixJ& W, const ArmState& state,
                        const ArmTerms& terms, const Reach& reach, VectorJ* a,
                        VectorJ* tau) const noexcept;
 
+  JointSprings springs_;
+  std::vector<bool> pairs_;  // antagonistic
   std::vector<bool> turns_rigidly_;
   VectorJ position_min_;
   VectorJ position_max_;
@@ -99,6 +117,7 @@ class Stopping {
   VectorJ v_;                  // likewise
   VectorJ theta_dot_;          // likewise
   VectorJ r_;
+  VectorJ spring_error_;  // e
 };
 
 }  // namespace limber::controller

@@ -102,7 +102,7 @@ def copy_licences(wheel: Path, out: Path) -> None:
     shutil.copy(ROOT / "LICENSE", out / "limber.txt")
     with zipfile.ZipFile(wheel) as archive:
         for name in archive.namelist():
-            if "/share/limber/licences/" in name:
+            if "/share/limber/licences/" in name and not name.endswith("/"):
                 (out / Path(name).name).write_bytes(archive.read(name))
 
 

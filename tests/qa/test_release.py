@@ -39,6 +39,7 @@ def test_licences_come_out_of_the_wheel(tmp_path):
     wheel, out = tmp_path / "a.whl", tmp_path / "licences"
     out.mkdir()
     with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("limber/share/limber/licences/", "")  # pip's have folders, too
         archive.writestr("limber/share/limber/licences/orocos-kdl.txt", "LGPL")
         archive.writestr("limber/share/limber/robots/README.md", "no licence")
     release.copy_licences(wheel, out)

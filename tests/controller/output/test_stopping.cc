@@ -75,6 +75,62 @@ TEST_F(OneJoint, NearItsVelocityLimitItsAccelerationFades) {
   EXPECT_EQ(shaped(-0.9, 8.4, -15.0), -15.0) << "what brakes harder is left alone";
 }
 
+/// Two motors with rotors of 0.1 kg m^2 behind springs of 2 k2 c = 100 N m/rad, that bend by `bend`
+/// at a preload of 0.25 rad, on a link of 0.5 kg m^2.
+class TwoMotors : public OneJoint {
+ protected:
+  TwoMotors() {
+    robot.joints[0].position_max = -(robot.joints[0].position_min = -100.0);
+    TransmissionConfig& transmission = robot.joints[0].transmission;
+    transmission.kind = TransmissionKind::kAntagonistic;
+    transmission.spring = {.law = SpringLaw::kQuadratic, .k2_Nm_per_rad2 = 200.0};
+    transmission.preload_rad = 0.25;
+    state.preload << 0.25;
+    state.q << 0.0;
+    terms.M << 0.5;
+    terms.M_total << 0.6;
+  }
+  /// The torque left of `demand` when the motors have turned at theta_dot under `applied` for 0.2
+  /// s.
+  double shaped(double bend, double theta_dot, double demand, double applied) {
+    Stopping stopping(robot, most);
+    state.theta << bend;
+    state.theta_dot_reported << theta_dot;
+    state.v_reported << 0.0;
+    state.tau_applied << applied;
+    for (int i = 0; i < 200; ++i) {
+      state.time_ns += 1'000'000;
+      stopping.observe(state, terms);
+    }
+    VectorJ tau = VectorJ::Constant(1, demand);
+    acted = stopping.shape(state, terms, {-most, most}, &tau);
+    return tau[0];
+  }
+  const VectorJ most = VectorJ::Constant(1, 20.0);
+};
+
+// 50 mrad bent: tau_J = 5 N m. Motors that bend the springs further keep to w = 0.4 of 10 rad/s, by
+// 20 / s (w - theta'), else to 0.8.
+TEST_F(TwoMotors, ThatBendTheirSoftSpringsKeepToHalfOfTheSpeed) {
+  EXPECT_EQ(shaped(0.05, 3.5, 5.9, 5.0), 5.9);
+  EXPECT_EQ(acted, 0);
+  EXPECT_NEAR(shaped(0.05, 3.5, 15.0, 5.0), 5.0 + 0.1 * 20.0 * 0.5, 1e-9);
+  EXPECT_EQ(acted, +Status::LIMIT_VELOCITY);
+  EXPECT_NEAR(shaped(0.05, 4.5, 15.0, 5.0), 5.0 - 0.1 * 20.0 * 0.5, 1e-9) << "beyond it, brake";
+  EXPECT_NEAR(shaped(-0.05, -3.5, -15.0, -5.0), -5.0 - 0.1 * 20.0 * 0.5, 1e-9) << "the other way";
+  EXPECT_NEAR(shaped(0.05, -3.5, -15.0, 5.0), 5.0 - 0.1 * 20.0 * 4.5, 1e-9) << "ease the springs";
+  robot.joints[0].transmission.spring.k2_Nm_per_rad2 = 2000.0;
+  EXPECT_EQ(shaped(0.005, 3.5, 15.0, 5.0), 15.0) << "motors and link move as one";
+}
+
+// Springs that are thought to pull with 5 N m, while what holds the motors at rest are 2 N m.
+TEST_F(TwoMotors, AtRestAreHeldByWhatTheirSpringsReallyPullWith) {
+  EXPECT_NEAR(shaped(0.05, 0.0, 19.5, 2.0), 2.0 + 0.1 * 20.0 * 8.0, 1e-3);
+  EXPECT_NEAR(shaped(0.05, 0.8, 15.0, 2.0), 5.0 - 0.5 * 3.0 + 0.1 * 20.0 * 3.2, 1e-3)
+      << "halfway between";
+  EXPECT_NEAR(shaped(0.05, 3.5, 15.0, 2.0), 5.0 + 0.1 * 20.0 * 0.5, 1e-9) << "moving fast";
+}
+
 // Half of 20 N m on 0.5 kg m^2 brakes with a = 20 rad/s^2. With kappa = 8 / s that is linear up to
 // 20 / 64 rad: 0.25 rad before the end 2 rad/s can be stopped.
 TEST_F(OneJoint, TowardsItsEndItIsBraked) {

@@ -24,6 +24,7 @@ class TorqueOutputTest : public ::testing::Test {
   TorqueOutputTest() : robot_(made()), output_(robot_), state_(1), terms_(1) {
     state_.period_s = kT;
     terms_.g.setZero();
+    terms_.M.setConstant(0.5);
     terms_.M_total.setOnes();
   }
   static Robot made() {
