@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from limber.cli.options import become
+from limber.model.can_address import full_address
 
 app = typer.Typer(
     help="Find the motors on a bus; show, keep and set what is stored in them.",
@@ -78,7 +79,7 @@ def dump(
 ) -> None:
     """Print the settings of all motors on these buses as YAML, for version control."""
     file = [] if out is None else ["--out", str(out)]
-    become("limber-motors", "dump", *map(_address, buses), *file, *(["--fd"] if fd else []))
+    become("limber-motors", "dump", *map(full_address, buses), *file, *(["--fd"] if fd else []))
 
 
 @app.command(epilog="Example: limber motors restore motors.yaml")
@@ -87,9 +88,5 @@ def restore(file: Annotated[Path, typer.Argument(help="As dump wrote it.")]) -> 
     become("limber-motors", "restore", str(file))
 
 
-def _address(bus: str) -> str:
-    return bus if ":" in bus else f"socketcan:{bus}"
-
-
 def _become(command: str, bus: str, fd: bool, *words: str) -> None:
-    become("limber-motors", command, _address(bus), *words, *(["--fd"] if fd else []))
+    become("limber-motors", command, full_address(bus), *words, *(["--fd"] if fd else []))

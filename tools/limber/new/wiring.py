@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import yaml
 
 from limber.errors import InputError, RunError
+from limber.model.can_address import full_address
 from limber.model.protocols import Protocol, protocol, protocols
 from limber.paths import program
 
@@ -71,8 +72,8 @@ def found(addresses: list[str], fd: bool, only: str | None) -> list[Motor]:
 
 
 def _scan(address: str, fd: bool) -> list[dict]:
-    full = address if ":" in address else f"socketcan:{address}"
-    command = [str(program("limber-motors")), "scan", full, "--yaml", *["--fd"] * fd]
+    words = ["scan", full_address(address), "--yaml", *["--fd"] * fd]
+    command = [str(program("limber-motors")), *words]
     done = subprocess.run(command, capture_output=True, text=True, timeout=SCAN_S, check=False)
     if done.returncode != 0 and "no motor answers" not in done.stderr:
         raise RunError(f"{address}: {done.stderr.strip().splitlines()[-1]}")

@@ -3,9 +3,8 @@
 from rich.console import Console
 
 from limber.errors import InputError
+from limber.model.can_address import KINDS
 from limber.model.robot import Robot
-
-KINDS = ("socketcan:", "virtual:", "slcan:", "dmserial:")  # common/can_address.h
 
 
 def addresses(robot: Robot, overrides: tuple[str, ...]) -> dict[str, str]:
