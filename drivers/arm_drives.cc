@@ -22,13 +22,16 @@ std::string line_about(const Drive& motor, const std::string& words) {
 std::string out_of_range_line(const ArmJoint& joint) {
   const JointLink& link = joint.motors().front().link();
   const JointConfig& config = link.joint();
-  if (!link.turns().known)
+  if (!link.turns().known) {
+    const auto [first, second] = link.turns().candidates;
     return fmt::format(
-        "{}: reads {:.4g}, and a whole turn from there is within its limits {:g} to {:g}, too: the "
+        "{}: reads {:.4g}, and may be at {:.4g} or {:.4g}, both within its limits {:g} to {:g}: "
+        "the "
         "drives cannot be enabled; its drive keeps a single turn: turn it to where only one angle "
         "fits and start again, tighten its limits, or write keeps_turns: true for its motor if the "
         "drive counts turns without power",
-        config.name, link.theta(), config.position_min, config.position_max);
+        config.name, link.theta(), first, second, config.position_min, config.position_max);
+  }
   return fmt::format(
       "{}: at {:.4g}, outside its limits {:g} to {:g}: the drives cannot be enabled; "
       "move it by hand, or correct its offset_rad and sign",

@@ -2,6 +2,7 @@
 // parked more than half a turn from the drive's zero then reads a whole turn off.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +14,9 @@ namespace limber {
 inline constexpr double kBeyondTravel = 0.02;
 
 struct WholeTurns {
-  int turns = 0;      ///< to be added to what the drive reads: -1, 0 or 1
-  bool known = true;  ///< false: several are within the travel
+  int turns = 0;                       ///< to be added to what the drive reads: -1, 0 or 1
+  bool known = true;                   ///< false: several are within the travel
+  std::array<double, 2> candidates{};  ///< the first two of them, rad
 };
 
 /// The one of theta, theta + 2 pi and theta - 2 pi that lies in the joint's travel; theta itself if
@@ -30,6 +32,7 @@ inline WholeTurns whole_turns(double theta, const JointConfig& joint) noexcept {
     if (!(angle >= joint.position_min - kBeyondTravel &&
           angle <= joint.position_max + kBeyondTravel))
       continue;
+    if (fitting < 2) found.candidates[static_cast<std::size_t>(fitting)] = angle;
     if (fitting++ == 0) found.turns = turns;
   }
   found.known = fitting <= 1;

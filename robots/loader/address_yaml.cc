@@ -23,6 +23,28 @@ void check_protocol(const YamlMap& yaml, const DriveProtocol& protocol, const Bu
   refuse_foreign_keys(yaml, protocol);
 }
 
+// Drives of one family may share identifiers, such as CANopen's SYNC. Longer ones than of 11 bits
+// carry their family.
+bool families_share_id(const DriveConfig& one, const DriveConfig& other) {
+  if (one.protocol == other.protocol) return false;
+  for (std::uint32_t id = 0; id <= 0x7FF; ++id) {
+    if (uses_id(one, id) && uses_id(other, id)) return true;
+  }
+  return false;
+}
+
+// Frames that one drive is sent, and the other takes for its own.
+void refuse_orders(const YamlMap& yaml, const DriveConfig& sent, const DriveConfig& taking,
+                   const std::string& owner) {
+  if (sent.protocol == nullptr || sent.protocol->setting == nullptr) return;
+  const std::uint32_t id = sent.protocol->setting(sent).request_id;
+  if (!accepts_id(taking, id)) return;
+  yaml.refuse("bus",
+              fmt::format("frames {:X}h, by which settings of {} drives are read, are orders "
+                          "to every {} drive on the same bus ({}): a bus for each",
+                          id, sent.protocol->title, taking.protocol->title, owner));
+}
+
 void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig& other,
                  const std::string& owner) {
   if (other.bus != mine.bus) return;
@@ -34,8 +56,11 @@ void refuse_same(const YamlMap& yaml, const DriveConfig& mine, const DriveConfig
   const bool reply_taken = !shared && uses_id(other, mine.reply_id);
   if (reply_taken && yaml.has("reply_id"))
     yaml.refuse("reply_id", fmt::format("{} {}", mine.reply_id, taken));
-  if (reply_taken || uses_id(mine, other.command_id) || (!shared && uses_id(mine, other.reply_id)))
+  if (reply_taken || families_share_id(mine, other) || uses_id(mine, other.command_id) ||
+      (!shared && uses_id(mine, other.reply_id)))
     yaml.refuse("id", fmt::format("{}: one of its identifiers {}", id, taken));
+  refuse_orders(yaml, mine, other, owner);
+  refuse_orders(yaml, other, mine, owner);
 }
 
 void check_free(const YamlMap& yaml, const Robot& robot, std::size_t index,

@@ -248,5 +248,21 @@ TEST(StartPose, OutsideTheLimitsIsToldWithTheCure) {
             "hand, or correct its offset_rad and sign");
 }
 
+TEST(StartPose, TheAnglesThatASingleTurnMayStandForAreTold) {
+  Robot robot = test_robot(2);
+  JointConfig& joint = robot.joints[1];
+  joint.position_max = -(joint.position_min = -4.0);
+  joint.drive.single_turn = true;
+  FakeArm arm(robot);
+  arm.set_angle(1, 3.0);
+  ASSERT_TRUE(arm.run_until(joint_state_t::DRIVE_OFF, kKeep));
+  const std::vector<std::string> lines = arm.driver->configuration_warnings();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].find("joint2: reads 3, and may be at 3 or -3.283, both within its limits -4 "
+                          "to 4: the drives cannot be enabled"),
+            0U)
+      << lines[0];
+}
+
 }  // namespace
 }  // namespace limber::test_drive_causes

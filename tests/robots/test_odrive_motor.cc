@@ -46,6 +46,49 @@ TEST(OdriveMotor, ANodeHasTheNextThirtyTwoIdentifiers) {
   EXPECT_NE(refusal("id: 2", "id: 0").find("1 to 62"), std::string::npos);
 }
 
+// The shoulder's motor of another family, which `keys` are.
+LoadedRobot mixed(const std::string& keys, const std::string& ids, int node) {
+  std::string yaml = testing::read_text(kArm + "robot.yaml");
+  const auto put = [&yaml](const std::string& from, const std::string& to) {
+    const auto at = yaml.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    yaml.replace(at, from.size(), to);
+  };
+  const std::string shoulder = "joints:\n  shoulder:\n    motor: d5065\n    bus: arm\n    id: 1\n";
+  put(shoulder,
+      "  other:\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n    peak_torque_Nm: 7\n"
+      "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n" +
+          keys + "joints:\n  shoulder:\n    motor: other\n    bus: arm\n" + ids);
+  put("id: 2\n", "id: " + std::to_string(node) + "\n");
+  const testing::TemporaryFolder folder;
+  folder.write("robot.urdf", testing::read_text(kArm + "robot.urdf"));
+  folder.write("robot.yaml", yaml);
+  return load_robot(folder.path());
+}
+
+// Identifiers from 7E0h on are orders to every axis, and 7FFh puts it into its boot loader.
+TEST(OdriveMotor, ABusIsNotSharedWithFramesThatAreOrdersToEveryAxis) {
+  const std::string keys =
+      "    protocol: damiao_mit\n    encoder_bits: 14\n    mit_range: {position_rad: 12.5, "
+      "velocity_rad_per_s: 30, torque_Nm: 10, kp_Nm_per_rad: 500, kd_Nms_per_rad: 5}\n";
+  const std::string text =
+      testing::complaint_of([&] { mixed(keys, "    id: 1\n    reply_id: 17\n", 2); });
+  EXPECT_NE(text.find("frames 7FFh, by which settings of Damiao drives are read, are orders to "
+                      "every ODrive drive on the same bus (shoulder): a bus for each"),
+            std::string::npos)
+      << text;
+}
+
+// SYNC is 80h, which is node 4's first identifier.
+TEST(OdriveMotor, ANodeWhoseIdentifiersAnotherFamilySendsIsRefused) {
+  const std::string keys = "    protocol: cia402\n    rated_torque_Nm: 2\n    encoder_bits: 14\n";
+  const std::string text = testing::complaint_of([&] { mixed(keys, "    id: 1\n", 4); });
+  EXPECT_NE(text.find("4: one of its identifiers is taken by shoulder on the same bus"),
+            std::string::npos)
+      << text;
+  EXPECT_NO_THROW(mixed(keys, "    id: 1\n", 2));
+}
+
 TEST(OdriveMotor, AnotherFirmwareNeedsItsEndpoints) {
   EXPECT_NE(refusal("0.6.11", "0.6.10")
                 .find("'endpoints' is missing: the numbers of firmware "
