@@ -1,13 +1,15 @@
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <new>
-#include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "common/tell.h"
 #include "drivers/processes/state_reporter.h"
@@ -15,21 +17,37 @@
 namespace limber::test_state_reporter {
 namespace {
 
-/// What is logged while it lives.
+/// What is logged while it lives; a test may read it while the reporter's thread writes.
 class Captured {
  public:
   Captured() {
-    auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-    auto logger = std::make_shared<spdlog::logger>("", sink);
+    auto logger = std::make_shared<spdlog::logger>("", sink_);
     logger->set_pattern("%v");
     spdlog::set_default_logger(logger);
   }
   ~Captured() { spdlog::set_default_logger(before_); }
-  std::string text() const { return text_.str(); }
+  std::string text() const { return sink_->text(); }
 
  private:
+  class Sink : public spdlog::sinks::base_sink<std::mutex> {
+   public:
+    std::string text() {
+      const std::scoped_lock lock(mutex_);
+      return text_;
+    }
+
+   private:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+      spdlog::memory_buf_t line;
+      formatter_->format(message, line);
+      text_.append(line.data(), line.size());
+    }
+    void flush_() override {}
+    std::string text_;
+  };
+
   std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
-  std::ostringstream text_;
+  std::shared_ptr<Sink> sink_ = std::make_shared<Sink>();
 };
 
 joint_state_t state(std::int8_t drives, std::int8_t fault = joint_state_t::FAULT_NONE) {
