@@ -92,7 +92,8 @@ Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
       v_(VectorJ::Zero(torque_Nm.size())),
       theta_dot_(v_),
       r_(v_),
-      spring_error_(v_) {
+      spring_error_(v_),
+      spring_Nm_(v_) {
   if (springs_.any()) {
     speed_gain_per_s_ = kSpringSpeedGain_per_s;
     acceleration_gain_per_s_ = kSpringAccelerationGain_per_s;
@@ -100,6 +101,7 @@ Stopping::Stopping(const Robot& robot, const VectorJ& torque_Nm)
   Eigen::Index i = 0;
   for (const JointConfig& joint : robot.joints) {
     pairs_.push_back(joint.transmission.kind == TransmissionKind::kAntagonistic);
+    any_pair_ |= pairs_.back();
     turns_rigidly_.push_back(joint.rigid() && joint.type != JointType::kPrismatic);
     if (!joint.rigid()) K_J_[i] = springs_.at_rest()[i];
     position_min_[i] = joint.position_min;
@@ -126,12 +128,16 @@ void Stopping::observe(const ArmState& state, const ArmTerms& terms) noexcept {
   }
   observed_s_ += dt;
   const VectorJ force = state.tau_applied - terms.g - terms.Cv + r_;
-  const VectorJ gained = terms.M * dv + (terms.M_total - terms.M) * dtheta_dot;
-  r_ += (gained - dt * force) / kMemory_s;
-  if (!springs_.any()) return;
-  const VectorJ springs_Nm = springs_.torque(state.theta - state.q, state.preload) + spring_error_;
   const VectorJ rotors = (terms.M_total - terms.M) * dtheta_dot;
-  spring_error_ += (dt * (state.tau_applied - springs_Nm) - rotors) / kMemory_s;
+  const VectorJ gained = terms.M * dv + rotors;
+  r_ += (gained - dt * force) / kMemory_s;
+  if (!any_pair_) return;
+  const VectorJ believed_Nm = springs_.torque(state.theta - state.q, state.preload);
+  const VectorJ left_Nm = state.tau_applied - (believed_Nm + spring_error_);
+  spring_error_ += (dt * left_Nm - rotors) / kMemory_s;
+  const VectorJ share = theta_dot_.cwiseAbs().cwiseQuotient(velocity_) / kJudgedFrom;
+  const VectorJ slow = (1.0 - share.array()).cwiseMax(0.0);
+  spring_Nm_ = believed_Nm + slow.cwiseProduct(spring_error_);
 }
 
 bool Stopping::firm(Eigen::Index i, const ArmTerms& terms) const noexcept {
@@ -224,24 +230,20 @@ void Stopping::let_others_help(const Rows& rows, const MatrixJ& W, const ArmStat
 // The spring's torque is the rotor's only load, so its acceleration is known without the link's.
 std::int32_t Stopping::bound_motors(const ArmState& state, const ArmTerms& terms,
                                     const Reach& reach, VectorJ* tau) const noexcept {
-  if (observed_s_ < kKnown_s) return 0;
-  const VectorJ share = state.theta_dot_reported.cwiseAbs().cwiseQuotient(velocity_) / kJudgedFrom;
-  const VectorJ spring_Nm =
-      springs_.torque(state.theta - state.q, state.preload) +
-      (1.0 - share.array()).cwiseMax(0.0).matrix().cwiseProduct(spring_error_);
+  if (!any_pair_ || observed_s_ < kKnown_s) return 0;
   std::int32_t acted = 0;
   for (Eigen::Index i = 0; i < tau->size(); ++i) {
     if (!pairs_[static_cast<std::size_t>(i)] || firm(i, terms)) continue;
     const double B = terms.M_total(i, i) - terms.M(i, i);
-    const bool bends = (spring_Nm[i] - terms.g[i]) * state.theta_dot_reported[i] > 0.0;
+    const double u = state.theta_dot_reported[i];
+    const bool bends = (spring_Nm_[i] - terms.g[i]) * u > 0.0;
     const double most = bends ? kShareOfMotor * velocity_[i] : velocity_[i];
     const double jerk = kShareOfRate * torque_rate_[i] / B;
-    const auto spare_Nm = [&](double u) {
-      return B * stoppable(most - u, kAccelerationGain_per_s, jerk).value;
+    const auto spare_Nm = [&](double speed) {
+      return B * stoppable(most - speed, kAccelerationGain_per_s, jerk).value;
     };
-    const double u = state.theta_dot_reported[i];
-    const double low = std::clamp(spring_Nm[i] - spare_Nm(-u), reach.low[i], reach.high[i]);
-    const double high = std::clamp(spring_Nm[i] + spare_Nm(u), reach.low[i], reach.high[i]);
+    const double low = std::clamp(spring_Nm_[i] - spare_Nm(-u), reach.low[i], reach.high[i]);
+    const double high = std::clamp(spring_Nm_[i] + spare_Nm(u), reach.low[i], reach.high[i]);
     const double kept = std::clamp((*tau)[i], low, high);
     if (kept == (*tau)[i]) continue;
     (*tau)[i] = kept;
@@ -252,7 +254,7 @@ std::int32_t Stopping::bound_motors(const ArmState& state, const ArmTerms& terms
 
 std::int32_t Stopping::shape(const ArmState& state, const ArmTerms& terms, const Reach& reach,
                              VectorJ* tau) const noexcept {
-  std::int32_t acted = springs_.any() ? bound_motors(state, terms, reach, tau) : 0;
+  std::int32_t acted = bound_motors(state, terms, reach, tau);
   VectorJ load = terms.Cv + terms.g;
   const VectorJ pushing = *tau - load;
   const VectorJ against = r_.cwiseMax(-pushing.cwiseMax(0.0)).cwiseMin(-pushing.cwiseMin(0.0));

@@ -103,6 +103,7 @@ class Stopping {
 
   JointSprings springs_;
   std::vector<bool> pairs_;  // antagonistic
+  bool any_pair_ = false;
   std::vector<bool> turns_rigidly_;
   VectorJ position_min_;
   VectorJ position_max_;
@@ -118,6 +119,7 @@ class Stopping {
   VectorJ theta_dot_;          // likewise
   VectorJ r_;
   VectorJ spring_error_;  // e
+  VectorJ spring_Nm_;     // tau_J, and e as far as it counts, of pairs
 };
 
 }  // namespace limber::controller

@@ -1,6 +1,10 @@
 // An ODrive motor in robot.yaml: its firmware gives the numbers of its endpoints.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "robots/loader/load_robot.h"
 #include "robots/loader/protocols/drive_protocol.h"
 #include "tests/support/mutation.h"
@@ -11,11 +15,15 @@ namespace {
 
 const std::string kArm = source_path("robots/desktop2r_odrive/");
 
-LoadedRobot load(const std::string& from = "", const std::string& to = "") {
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+LoadedRobot load(const Changes& changes = {}) {
   std::string yaml = testing::read_text(kArm + "robot.yaml");
-  const auto at = yaml.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  yaml.replace(at, from.size(), to);
+  for (const auto& [from, to] : changes) {
+    const auto at = yaml.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    yaml.replace(at, from.size(), to);
+  }
   const testing::TemporaryFolder folder;
   folder.write("robot.urdf", testing::read_text(kArm + "robot.urdf"));
   folder.write("robot.yaml", yaml);
@@ -23,7 +31,7 @@ LoadedRobot load(const std::string& from = "", const std::string& to = "") {
 }
 
 std::string refusal(const std::string& from, const std::string& to) {
-  return testing::complaint_of([&] { load(from, to); });
+  return testing::complaint_of([&] { load({{from, to}}); });
 }
 
 TEST(OdriveMotor, ANodeHasTheNextThirtyTwoIdentifiers) {
@@ -48,22 +56,12 @@ TEST(OdriveMotor, ANodeHasTheNextThirtyTwoIdentifiers) {
 
 // The shoulder's motor of another family, which `keys` are.
 LoadedRobot mixed(const std::string& keys, const std::string& ids, int node) {
-  std::string yaml = testing::read_text(kArm + "robot.yaml");
-  const auto put = [&yaml](const std::string& from, const std::string& to) {
-    const auto at = yaml.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    yaml.replace(at, from.size(), to);
-  };
-  const std::string shoulder = "joints:\n  shoulder:\n    motor: d5065\n    bus: arm\n    id: 1\n";
-  put(shoulder,
-      "  other:\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n    peak_torque_Nm: 7\n"
-      "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n" +
-          keys + "joints:\n  shoulder:\n    motor: other\n    bus: arm\n" + ids);
-  put("id: 2\n", "id: " + std::to_string(node) + "\n");
-  const testing::TemporaryFolder folder;
-  folder.write("robot.urdf", testing::read_text(kArm + "robot.urdf"));
-  folder.write("robot.yaml", yaml);
-  return load_robot(folder.path());
+  return load(
+      {{"joints:\n  shoulder:\n    motor: d5065\n    bus: arm\n    id: 1\n",
+        "  other:\n    gear_ratio: 10\n    rotor_inertia_kgm2: 1.8e-5\n    peak_torque_Nm: 7\n"
+        "    rotor_torque_constant_Nm_per_A: 0.0945\n    phase_resistance_ohm: 0.85\n" +
+            keys + "joints:\n  shoulder:\n    motor: other\n    bus: arm\n" + ids},
+       {"id: 2\n", "id: " + std::to_string(node) + "\n"}});
 }
 
 // Identifiers from 7E0h on are orders to every axis, and 7FFh puts it into its boot loader.
@@ -97,7 +95,7 @@ TEST(OdriveMotor, AnotherFirmwareNeedsItsEndpoints) {
   const std::string own =
       "0.6.10\n    endpoints: {current_state: 1, watchdog_timeout: 2, enable_watchdog: 3, "
       "encoder_msg_rate_ms: 4, control_mode: 5, input_mode: 6, vel_limit: 7}\n    #";
-  const LoadedRobot robot = load("0.6.11", own);
+  const LoadedRobot robot = load({{"0.6.11", own}});
   const DriveConfig& drive = robot.robot.joints[0].drive;
   EXPECT_EQ(drive.firmware, 0x00060AU);
   EXPECT_EQ(drive.endpoints, (std::array<std::uint16_t, 7>{1, 2, 3, 4, 5, 6, 7}));
