@@ -218,10 +218,14 @@ def settled(where, also=lambda _place: True) -> tuple[float, float]:
         time.sleep(1.0)
 
 
-def grab(page, where, way: tuple[float, float], let_go: bool = True) -> None:
-    """Drags something of the scene, once it is drawn: before, the camera would be dragged."""
-    start = settled(where, lambda place: drawn(page, place))
-    drag(page, start, (start[0] + way[0], start[1] + way[1]), let_go=let_go)
+def held(page, place: tuple) -> bool:
+    """The pointer's shape shows that what is under it can be dragged: before, the camera would
+    be.
+    """
+    page.mouse.move(place[0] + 2, place[1])
+    page.mouse.move(*place)
+    there = "place => getComputedStyle(document.elementFromPoint(...place)).cursor"
+    return page.evaluate(there, list(map(float, place))) == "pointer"
 
 
 def upper_arm(page, stack) -> tuple[float, float]:
@@ -237,6 +241,18 @@ def upper_arm(page, stack) -> tuple[float, float]:
     return screen(page, 0.5 * (places[2] + places[3]))
 
 
+def push_arm(page, stack) -> None:
+    """By its upper arm, which the pointer holds on to."""
+    x, y = settled(lambda: upper_arm(page, stack), lambda place: held(page, place))
+    drag(page, (x, y), (x + 60, y - 30), let_go=False)
+    stack.until(lambda: force(stack) > 2.0, "a push")
+
+
+def force(stack) -> float:
+    """N, on the simulated arm."""
+    return float(np.linalg.norm(stack.newest("SIM_TRUTH")["F_push"][:3]))
+
+
 def drag_goal(page, stack, let_go: bool = True) -> np.ndarray:
     """By the gizmo's first arrow, 8 cm; returns the arrow's direction in the base frame."""
     status = stack.status
@@ -245,5 +261,6 @@ def drag_goal(page, stack, let_go: bool = True) -> np.ndarray:
     p = status["p_BD"].copy()
     begin, end = screen(page, p + grip * axis), screen(page, p + (grip + 0.08) * axis)
     way = end[0] - begin[0], end[1] - begin[1]
-    grab(page, lambda: screen(page, p + grip * axis), way, let_go=let_go)
+    start = settled(lambda: screen(page, p + grip * axis), lambda place: drawn(page, place))
+    drag(page, start, (start[0] + way[0], start[1] + way[1]), let_go=let_go)
     return axis

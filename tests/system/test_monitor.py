@@ -17,12 +17,12 @@ from browser_page import (
     activate,
     drag,
     drag_goal,
-    grab,
+    force,
     launched,
     monitor,
     opened,
+    push_arm,
     settled,
-    upper_arm,
 )
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from stack import BIN, ROOT
@@ -89,17 +89,13 @@ def test_the_gizmo_moves_the_goal(page, stack, active):
 
 
 def test_a_dragged_link_is_pushed_until_it_is_let_go(page, stack, active):
-    def force() -> float:
-        return float(np.linalg.norm(stack.newest("SIM_TRUTH")["F_push"][:3]))
-
-    grab(page, lambda: upper_arm(page, stack), (60, -30), let_go=False)
-    stack.until(lambda: force() > 2.0, "a push")
+    push_arm(page, stack)
     time.sleep(1.5)
-    stack.until(lambda: force() > 2.0, "the push, refreshed while the pointer rests")
-    assert force() <= 30.1, "bounded by the slider on the page"
+    stack.until(lambda: force(stack) > 2.0, "the push, refreshed while the pointer rests")
+    assert force(stack) <= 30.1, "bounded by the slider on the page"
     page.mouse.up()
     time.sleep(0.5)
-    stack.until(lambda: force() == 0.0, "the end of the push")
+    stack.until(lambda: force(stack) == 0.0, "the end of the push")
 
 
 @pytest.mark.parametrize("how", ["button", "floating", "space"])

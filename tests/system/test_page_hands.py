@@ -17,13 +17,13 @@ from browser_page import (
     Arm,
     activate,
     drag_goal,
+    force,
     free_port,
-    grab,
     launched,
     monitor,
     opened,
     press,
-    upper_arm,
+    push_arm,
 )
 from limber.lcmtypes.controller_status_t import controller_status_t as Status
 from limber.lcmtypes.mode_request_t import mode_request_t as Mode
@@ -301,15 +301,6 @@ def pushes_after(stack, begin_s: float) -> list:
     ]
 
 
-def force(stack) -> float:
-    return float(np.linalg.norm(stack.newest("SIM_TRUTH")["F_push"][:3]))
-
-
-def push_by_hand(page, stack) -> None:
-    grab(page, lambda: upper_arm(page, stack), (60, -30), let_go=False)
-    stack.until(lambda: force(stack) > 2.0, "a push")
-
-
 def assert_over(stack, begin_s: float) -> None:
     """Nothing refreshes the push once its browser is silent, and none outlives it."""
     time.sleep(2.5)
@@ -321,7 +312,7 @@ def assert_over(stack, begin_s: float) -> None:
 @pytest.mark.parametrize("kind", ["browser", "renderer", "all"])
 def test_a_push_ends_when_its_browser_stops(stack, page, at_home, kind):
     """Of the processes of a browser each is needed for a hand to be a hand."""
-    push_by_hand(page, stack)
+    push_arm(page, stack)
     try:
         with stopped(kind):
             assert_over(stack, time.monotonic())
@@ -334,7 +325,7 @@ def test_a_push_ends_with_its_page(stack, url, page, browser, at_home, how):
     """The other viewer's signs of life do not keep it."""
     with opened(browser, url, window("small")) as other:
         button(other, "hold").wait_for()
-        push_by_hand(other, stack)
+        push_arm(other, stack)
         begin_s = time.monotonic()
         if how == "close":
             other.close()
@@ -352,7 +343,7 @@ def test_a_push_ends_with_the_monitor(stack, browser, at_home):
         address = next(line for line in process.stdout if "http://" in line).split()[0]
         with opened(browser, address, window("small")) as page:
             button(page, "hold").or_(button(page, "active")).first.wait_for()
-            push_by_hand(page, stack)
+            push_arm(page, stack)
             process.send_signal(signal.SIGKILL)
             begin_s = time.monotonic()
             time.sleep(0.05)
