@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/problem_text.h"
 #include "drivers/bus_load.h"
@@ -260,9 +261,12 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
 std::string ArmDriver::lost_text(int joint, int cycles) const {
   const std::string who = drives_.address_text(joint);
   const std::string often = "ten replies within a second missing or impossible";
-  std::string text = cycles < 2 ? fmt::format("{}: {}", who, often)
-                                : fmt::format("{}{}: no reply for {} cycles",
-                                              joint < 0 ? "all drives, " : "", who, cycles);
+  constexpr int kNever = std::numeric_limits<std::uint16_t>::max();
+  const std::string silent =
+      cycles == kNever ? "no reply since the start" : fmt::format("no reply for {} cycles", cycles);
+  std::string text = cycles < 2
+                         ? fmt::format("{}: {}", who, often)
+                         : fmt::format("{}{}: {}", joint < 0 ? "all drives, " : "", who, silent);
   if (simulated_)
     text += "; these drives are simulated: see whether limber-sim ended or stood still";
   return text;

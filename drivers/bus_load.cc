@@ -169,4 +169,17 @@ double checked_bus_load(const Robot& robot, int bus) {
                   classic ? "CAN-FD, " : ""));
 }
 
+void check_wire_delay(const Robot& robot, double delay_s, const std::string& file) {
+  for (int bus = 0; bus < static_cast<int>(robot.buses.size()); ++bus) {
+    const double spare_s = kLatestReply / robot.rate_hz - predicted_end_s(robot, bus);
+    if (2.0 * delay_s <= std::max(spare_s, 0.0)) continue;
+    throw ConfigError::at(
+        file, 0, "wire.delay_s",
+        fmt::format("is {:g}; on bus {} at {:g} Hz a cycle has room for {:.2g} each way: choose a "
+                    "lower rate_hz for the robot",
+                    delay_s, robot.buses[static_cast<std::size_t>(bus)].name, robot.rate_hz,
+                    0.5 * std::max(spare_s, 0.0)));
+  }
+}
+
 }  // namespace limber

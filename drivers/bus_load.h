@@ -37,4 +37,8 @@ double highest_rate_hz(const Robot& robot, int bus);
 /// bus's reply_window_s is longer than kLatestReply.
 double checked_bus_load(const Robot& robot, int bus);
 
+/// Throws ConfigError if a cycle has no room for frames that take `delay_s` longer each way than
+/// predicted, as `wire.delay_s` of the scenario in `file` wants.
+void check_wire_delay(const Robot& robot, double delay_s, const std::string& file);
+
 }  // namespace limber

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/run_id.h"
+#include "drivers/bus_load.h"
 #include "drivers/can/lockstep_frame.h"
 
 namespace limber {
@@ -12,6 +13,7 @@ Lab::Lab(const LoadedRobot& robot, const Scenario& scenario, const LabOptions& o
       first_cycle_(options.first_cycle),
       cycle_(first_cycle_),
       before_gate_(options.before_gate) {
+  check_wire_delay(robot.robot, scenario.wire.delay_s, scenario.path);
   std::vector<CanBus*> driver_ends;
   std::vector<CanBus*> arm_ends;
   for (std::size_t i = 0; i < robot.robot.buses.size(); ++i) {

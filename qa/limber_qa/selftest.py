@@ -156,6 +156,7 @@ class Verdict:
     name: str
     passed: bool
     seconds: float
+    processor_s: float  # of all its processes
     output: str
 
 
@@ -178,9 +179,13 @@ def _run_part(name: str, command: list[str]) -> Verdict:
         except FileNotFoundError as error:
             raise RunError(f"{command[0]} is missing: start with ./limber test") from error
         with open(kept.name, encoding="utf-8", errors="replace") as reader, process:
-            output = ""
+            output, processor_s = "", 0.0
             while True:
-                ended = process.poll() is not None
+                pid, status, used = os.wait4(process.pid, os.WNOHANG)
+                ended = pid != 0
+                if ended:
+                    process.returncode = os.waitstatus_to_exitcode(status)
+                    processor_s = used.ru_utime + used.ru_stime
                 new = reader.read()
                 output += new
                 if at_once:
@@ -191,7 +196,8 @@ def _run_part(name: str, command: list[str]) -> Verdict:
                     process.kill()
                     output += f"{name}: stopped after {LONGEST_PART_S} s\n"
                 time.sleep(0.2)
-        return Verdict(name, process.returncode == 0, time.monotonic() - start, output)
+        passed = process.returncode == 0
+        return Verdict(name, passed, time.monotonic() - start, processor_s, output)
 
 
 def _end_of(output: str) -> list[str]:
@@ -200,6 +206,10 @@ def _end_of(output: str) -> list[str]:
     end = lines[-FAILED_LINES:]
     named = [line[:200] for line in lines[:-FAILED_LINES] if line.startswith(("FAILED ", "ERROR "))]
     return [*named, *end]
+
+
+def _line(name: str, verdict: str, seconds: float, processor_s: float) -> str:
+    return f"{name:10} {verdict} {seconds:6.1f} s, {processor_s:6.1f} s of a processor"
 
 
 def run(names: list[str], console: Console) -> bool:
@@ -229,8 +239,9 @@ def run(names: list[str], console: Console) -> bool:
     console.rule("summary")
     for verdict in sorted(verdicts, key=lambda verdict: names.index(verdict.name)):
         text = "[green]passed[/]" if verdict.passed else "[bold red]FAILED[/]"
-        console.print(f"{verdict.name:10} {text} {verdict.seconds:6.1f} s")
-    console.print(f"{'all':10} {'':6} {time.monotonic() - begun:6.1f} s")
+        console.print(_line(verdict.name, text, verdict.seconds, verdict.processor_s))
+    processor_s = sum(verdict.processor_s for verdict in verdicts)
+    console.print(_line("all", f"{'':6}", time.monotonic() - begun, processor_s))
     for verdict in (verdict for verdict in verdicts if not verdict.passed):
         console.rule(f"{verdict.name} failed")
         print("\n".join(_end_of(verdict.output)), flush=True)

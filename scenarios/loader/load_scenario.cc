@@ -76,6 +76,7 @@ WireOptions read_wire(const YamlMap& yaml, std::uint64_t seed) {
   const YamlMap given = yaml.map("wire");
   wire.loss = given.number_or("loss", {0.0, 1.0}, 0.0);
   wire.corruption = given.number_or("corruption", {0.0, 1.0}, 0.0);
+  wire.delay_s = given.number_or("delay_s", {0.0, 0.5}, 0.0);
   given.finish();
   return wire;
 }

@@ -36,6 +36,7 @@ struct WireOptions {
   bool on = false;          ///< frames take time; without, they arrive at once
   double loss = 0.0;        ///< arrives, but its receiver drops it; the sender does not know
   double corruption = 0.0;  ///< ends in an error frame and is sent again
+  double delay_s = 0.0;     ///< each way, beyond what the adapter's class takes
   std::uint64_t seed = 1;
 };
 

@@ -20,6 +20,8 @@ BusSide::BusSide(CanBus* bus, const BusConfig& config, const WireOptions& option
       adapter_(timing_of(config.adapter)),
       seed_(options.seed * 999'983U + stream),
       random_(seed_) {
+  adapter_.send_s += options.delay_s;
+  adapter_.receive_s += options.delay_s;
   if (options.on) wire_.emplace(config, options, nodes + 1, stream);
 }
 

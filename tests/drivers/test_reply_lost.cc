@@ -94,6 +94,9 @@ TEST(ReplyLostTest, TheJointIsNamedUnlessAllAreSilentForAsLong) {
   ASSERT_EQ(arm.state->fault, joint_state_t::FAULT_REPLY_LOST + 0);
   EXPECT_EQ(arm.state->fault_joint, 0);
   EXPECT_EQ(text_of_fault(arm), "joint1 (id 0x1): no reply for 3 cycles");
+  EXPECT_EQ(arm.driver->fault_text(joint_state_t::FAULT_REPLY_LOST, 0, 0xFFFF),
+            "joint1 (id 0x1): no reply since the start")
+      << "as many cycles as the detail has room for";
 }
 
 TEST(ReplyLostTest, AllOfThemAreNamedAndManySingleOnesAreToldAsSuch) {

@@ -10,6 +10,7 @@
 #include "common/config_error.h"
 #include "controller/laws/registry.h"
 #include "lab/lab.h"
+#include "tests/support/mutation.h"
 #include "tests/support/source_path.h"
 #include "tools/allocations/allocations.h"
 
@@ -123,6 +124,30 @@ TEST(Lab, ANoisyWireIsBridged) {
   EXPECT_GT(lab.driver_status().error_frames[0], 50);
   EXPECT_GT(lab.simulator().wire(0)->count().lost, 0);
   EXPECT_EQ(lab.controller_status().mode, +controller_status_t::MODE_ACTIVE);
+}
+
+// Each way, which an adapter or a hub takes: held as long as a cycle has room, else refused with
+// what it has room for.
+TEST(Lab, ALateWireIsHeldWithinItsCycle) {
+  const Stage stage("push.yaml");
+  Scenario scenario = stage.scenario;
+  scenario.step_s = 20e-6;  // what arrives within a step acts from the next one on
+  Lab prompt(stage.robot, scenario);
+  scenario.wire.delay_s = 20e-6;
+  Lab late(stage.robot, scenario);
+  while (late.time_ns() < 2'500'000'000) {
+    late.step();
+    prompt.step();
+  }
+  EXPECT_EQ(late.controller_status().mode, +controller_status_t::MODE_ACTIVE);
+  EXPECT_EQ(late.driver_status().replies_late[0], 0);
+  EXPECT_NE(late.state().q[1], prompt.state().q[1]) << "the torque reaches the motor later";
+  EXPECT_NEAR(late.state().q[1], prompt.state().q[1], 1e-3);
+  scenario.wire.delay_s = 1e-3;
+  const std::string refused =
+      testing::complaint_of([&] { const Lab too_late(stage.robot, scenario); });
+  EXPECT_NE(refused.find("wire.delay_s: is 0.001; on bus"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("at 1000 Hz a cycle has room for"), std::string::npos) << refused;
 }
 
 TEST(Lab, EveryStateIsAnsweredAndObeyed) {

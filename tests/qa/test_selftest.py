@@ -92,6 +92,18 @@ def test_all_good_is_good(parts):
     assert selftest.run(list("abc"), Console(width=100))
 
 
+def test_a_part_is_told_with_the_processors_time_of_all_its_processes(parts, capfd):
+    """Its wall time depends on what runs beside it, and tells little."""
+    busy = "import time\nwhile time.process_time() < 0.6: pass"
+    child = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {busy!r}])"
+    parts(busy=part(child), idle=part("import time; time.sleep(0.5)", Lane.BUILDS))
+    assert selftest.run(["busy", "idle"], Console(width=100))
+    lines = capfd.readouterr().out.splitlines()
+    taken = {line.split()[0]: float(line.split()[-5]) for line in lines if "processor" in line}
+    assert taken["busy"] >= 0.6 > 0.4 >= taken["idle"]
+    assert taken["all"] == pytest.approx(taken["busy"] + taken["idle"], abs=0.2)
+
+
 def test_every_part_is_a_command_that_exists():
     for name, made in selftest.PARTS.items():
         command = made.command()

@@ -11,6 +11,7 @@
 #include "common/parse_number.h"
 #include "common/program.h"
 #include "controller/laws/registry.h"
+#include "drivers/bus_load.h"
 #include "robots/loader/required_keys.h"
 #include "tools/check/law_check.h"
 #include "tools/check/print.h"
@@ -100,6 +101,7 @@ std::string check(const Arguments& given) {
       load_robot(given.robot.empty() ? scenario_robot(given.scenario, &note) : given.robot);
   if (!note.empty()) robot.notes.insert(robot.notes.begin(), note);
   const Scenario scenario = load_scenario(given.scenario, robot, &controller::law_catalog());
+  check_wire_delay(robot.robot, scenario.wire.delay_s, scenario.path);
   return given.as_json ? scenario_json(scenario, robot) : scenario_text(scenario, robot);
 }
 

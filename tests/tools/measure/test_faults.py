@@ -106,6 +106,18 @@ def test_motion_counts_from_the_first_reading_on(tmp_path, run):
     assert "no joint moved by more than 0.02 rad or m" in fault.then
 
 
+def test_a_drive_that_never_replied_is_told_as_such(tmp_path, run):
+    never = np.iinfo(np.int32).max
+    for age, said in ((3, "no reply for 3 cycles"), (never, "no reply since the start")):
+        state = state_of()
+        state["fault"][:], state["fault_joint"][:] = State.FAULT_REPLY_LOST, 1
+        state["drive_state"][:] = State.DRIVE_FAULT
+        state["age_cycles"][:, 1] = age
+        log = log_of(tmp_path / f"{age}", JOINT_STATE=state, CONTROLLER_STATUS=status_of())
+        (fault, *_) = find_faults(log, run.robot, end_s=SECONDS)
+        assert fault.title.endswith(f"elbow: {said}")
+
+
 def test_a_hot_drive_is_told_with_its_limit(tmp_path, run):
     state = state_of()
     state["temperature_degC"][:, 1] = 66

@@ -57,6 +57,7 @@ def test_places_of_keys():
 WRONG = [
     ("sead=1..5", "did you mean 'seed'"),
     ("seed=1..5.5", "found '5.5'; expected a whole number"),
+    ("bus_delay=0..0.01", "wire.delay_s: is 0.01; on bus arm at 1000 Hz a cycle has room for"),
     ("wire.loss=0..2", "'2.0' is out of range; expected a number from 0 to 1"),
     ("gains.K_q=1..2", "did you mean 'K_q_Nm_per_rad'"),
     ("gains.law=cartesian_impedance,soft", "found 'soft'; expected one of"),

@@ -33,6 +33,7 @@ def test_ranges_lists_and_short_names():
     assert found.text == "gains.K_x_translation_N_per_m=100..2000"
     found = parse("loss=1e-4..1e-2:log")
     assert (found.key, found.low, found.high, found.how) == ("wire.loss", 1e-4, 1e-2, "log")
+    assert parse("bus_delay=0..0.001").key == "wire.delay_s"
     assert parse("a=0,0.5,1e3").values == (0, 0.5, 1000)
     assert parse("a=true,false").values == (True, False)
     assert parse("a=x").values == ("x",)

@@ -237,6 +237,8 @@ def _reply(_evidence: Evidence, rows: Rows, onset: _Onset) -> str:
     n = int(rows["num_joints"][-1])
     ages = rows["age_cycles"][-1][:n]
     age = int(ages[onset.joint] if onset.joint >= 0 else ages.min(initial=0))
+    if age == NEVER:
+        return "no reply since the start"
     return f"no reply for {age} cycles" if age else ""
 
 

@@ -13,6 +13,7 @@ ALIASES = {  # shorter than what the scenario calls it
     "payload_kg": "payload.mass_kg",
     "plant.payload_kg": "payload.mass_kg",
     "loss": "wire.loss",
+    "bus_delay": "wire.delay_s",
     "delay": "plant_overrides.joints.*.link_encoder.delay_s",
 }
 UNITS = {"Nm": "N m", "Ns": "N s", "Nms": "N m s", "kgm2": "kg m²", "per": "/", "s2": "s²"}
