@@ -1,4 +1,6 @@
 // limber-sim: the simulated arm on its CAN buses, as the real one would be.
+#include <spdlog/spdlog.h>
+
 #include <string>
 #include <vector>
 
@@ -71,7 +73,13 @@ int run(const Arguments& given) {
   choose_buses(given.buses, &robot.robot);
   require_simulated_buses(given.buses, robot.robot);
   if (given.rate_hz > 0.0) robot.robot.rate_hz = given.rate_hz;
-  run_sim(robot, scenario.timeline, options_from(given, scenario), stop_on_signals());
+  const SimProcessOptions options = options_from(given, scenario);
+  const WireOptions& wire = scenario.wire;
+  if (!options.simulator.lockstep && (wire.loss > 0 || wire.corruption > 0 || wire.delay_s > 0))
+    spdlog::warn(
+        "warning: {}: wire: acts in lock step; in real time frames arrive at once, and all",
+        scenario.path);
+  run_sim(robot, scenario.timeline, options, stop_on_signals());
   return kExitDone;
 }
 

@@ -10,7 +10,7 @@ import time
 import can
 import pytest
 
-from stack import BIN
+from stack import BIN, ROOT
 
 DISABLE = bytes.fromhex("FFFFFFFFFFFFFFFD")
 SHOULDER = {"arbitration_id": 1, "is_extended_id": False, "data": DISABLE}
@@ -130,3 +130,15 @@ def test_a_driver_does_not_start_beside_another_master(start):
         master.join()
     assert driver.returncode == 2
     assert "another program commands shoulder (id 0x1 on virtual:desktop2r)" in driver.stderr
+
+
+@pytest.mark.parametrize("wire", ["{loss: 0.001}", "{delay_s: 1.0e-5}", "true"])
+def test_a_wire_that_real_time_has_not_is_told(tmp_path, wire):
+    """Frames of a virtual bus arrive at once there, and all of them."""
+    text = (ROOT / "scenarios" / "desktop2r_push.yaml").read_text()
+    scenario = tmp_path / "push.yaml"
+    scenario.write_text(f"{text}\nwire: {wire}\n")
+    command = [BIN / "limber-sim", "--scenario", scenario, "--realtime", "--duration", "0.1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    told = f"warning: {scenario}: wire: acts in lock step" in done.stdout + done.stderr
+    assert told == (wire != "true")
