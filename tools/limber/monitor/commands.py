@@ -1,6 +1,5 @@
 """`limber monitor`: serves the page of a running stack, or of a log, until Ctrl-C."""
 
-import os
 import signal
 import time
 from collections.abc import Callable
@@ -12,7 +11,7 @@ from rich.console import Console
 from limber.errors import InputError
 from limber.log.reader import Log, log_file
 from limber.messages import MONITOR_CLIENT
-from limber.model.robot import load_robot, robot_beside
+from limber.model.robot import Robot, load_robot, robot_beside
 from limber.model.scenario import load_scenario, scenario_beside
 from limber.monitor import server
 from limber.monitor.control import ControlPanel
@@ -27,14 +26,13 @@ from limber.monitor.page import DRAW_S, HISTORY_S, Page
 from limber.monitor.playback import PlaybackPanel
 from limber.monitor.push_tool import PushTool
 from limber.monitor.requests import Requests
-from limber.monitor.running_arm import RunningArm, choose_robot
+from limber.monitor.running_arm import RunningArm, follow_arms
 from limber.monitor.stop import StopButtons
 from limber.monitor.typed import TypedFields
 from limber.monitor.view_options import add_view_options
 from limber.monitor.walls import wall_changes
 
 PORT = 8080
-NICENESS = 5  # the control loop goes first
 
 
 def live(
@@ -43,23 +41,17 @@ def live(
     """`named`: the arm, else the one that runs. `control`: the page may move it; else it shows,
     and can stop.
     """
-    os.nice(NICENESS)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     walls = wall_changes(load_scenario(scenario)) if scenario else []
-    running = RunningArm()
-    with closing(LiveFeed()) as feed:
-        if named is None:
-            running.wait(feed)
-        while True:
-            robot = choose_robot(named, running, console)
-            served = _serve(port, console)
-            console.print(f"{served.url}  [dim]{_kind(control)}; Ctrl-C ends it[/]", soft_wrap=True)
-            page = Page(served, robot, list_laws(robot.folder), feed, walls, Guard(console))
-            if not _show(page, feed, running, control, follow=named is None):
-                console.print(feed.received())
-                return
-            console.print(f"another arm is running: {running.name}", style="yellow")
-            port = served.get_port()  # the browser connects again by itself
+
+    def show(robot: Robot, feed: LiveFeed, running: RunningArm) -> bool:
+        nonlocal port
+        served = _serve(port, console)
+        port = served.get_port()  # where the browser connects again by itself
+        console.print(f"{served.url}  [dim]{_kind(control)}; Ctrl-C ends it[/]", soft_wrap=True)
+        page = Page(served, robot, list_laws(robot.folder), feed, walls, Guard(console))
+        return _show(page, feed, running, control, follow=named is None)
+
+    follow_arms(named, console, show)
 
 
 def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow: bool) -> bool:
@@ -103,7 +95,7 @@ def _show(page: Page, feed: LiveFeed, running: RunningArm, control: bool, follow
             if goal is not None:
                 page.guard(goal.draw, outcomes)
         running.note(batch)
-        page.other_arm = running.name if running.name not in ("", robot.name) else ""
+        page.other_arm = running.other_than(robot)
         return not (follow and page.other_arm)
 
     with closing(requests):

@@ -5,8 +5,6 @@ beside them moves a URDF in the 3D panel. Every message of the user plane goes o
 that a viewer has subscribed to; poses and joint states once a turn.
 """
 
-import os
-import signal
 import time
 from collections.abc import Iterator
 from contextlib import closing, suppress
@@ -22,10 +20,9 @@ from limber.live.stamps import Stamps
 from limber.log.convert.foxglove_messages import POSES, Message, Messages, time_of, topic_of
 from limber.log.convert.windows import Batch, identifiers
 from limber.model.robot import Robot
-from limber.monitor.commands import NICENESS
 from limber.monitor.feed import Batch as FeedBatch
 from limber.monitor.live_feed import LiveFeed
-from limber.monitor.running_arm import RunningArm, choose_robot
+from limber.monitor.running_arm import RunningArm, follow_arms
 from limber.monitor.server import HOST
 
 PORT = 8765  # what the app proposes
@@ -36,26 +33,21 @@ JOINT_STATES = "/joint_states"
 
 def live(named: str | None, port: int, console: Console) -> None:
     """Until Ctrl-C or SIGTERM. `named`: the arm, else the one that runs, and the next one."""
-    os.nice(NICENESS)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    running = RunningArm()
-    with closing(LiveFeed()) as feed, suppress(KeyboardInterrupt):
-        if named is None:
-            running.wait(feed)
-        while True:
-            robot = choose_robot(named, running, console)
-            with closing(Outlet(robot, port)) as outlet:
-                url = f"ws://{HOST}:{port}"
-                console.print(
-                    f"{robot.name}: Foxglove, Open connection, {url}  [dim]read only; the arm's "
-                    f"shape: add {robot.urdf} as URDF to the 3D panel; Ctrl-C ends it[/]",
-                    soft_wrap=True,
-                )
-                while running.name in ("", robot.name) or named is not None:
-                    running.note(outlet.send(feed))
-                    time.sleep(TURN_S)
-            console.print(f"another arm is running: {running.name}", style="yellow")
-    console.print(feed.received())
+
+    def show(robot: Robot, feed: LiveFeed, running: RunningArm) -> bool:
+        with closing(Outlet(robot, port)) as outlet, suppress(KeyboardInterrupt):
+            console.print(
+                f"{robot.name}: Foxglove, Open connection, ws://{HOST}:{port}  [dim]read only; the "
+                f"arm's shape: add {robot.urdf} as URDF to the 3D panel; Ctrl-C ends it[/]",
+                soft_wrap=True,
+            )
+            while named is not None or not running.other_than(robot):
+                running.note(outlet.send(feed))
+                time.sleep(TURN_S)
+            return True
+        return False
+
+    follow_arms(named, console, show)
 
 
 class Outlet:
