@@ -52,6 +52,28 @@ def test_every_link_leads_somewhere():
     assert not broken, "\n".join(broken)
 
 
+def long_lines(page: Path) -> list[str]:
+    """Of what is written by hand and can be broken: no tables, pictures, blocks and signatures."""
+    found, block = [], False
+    for number, line in enumerate(page.read_text(encoding="utf-8").split("\n"), 1):
+        block ^= line.lstrip().startswith("```")
+        if len(line) > 120 and not block and not line.startswith(("|", "![", "**`")):
+            found.append(f"{page.relative_to(ROOT)}:{number}: {len(line)} characters")
+    return found
+
+
+def test_no_line_is_longer_than_120_characters():
+    found = [line for page in pages() for line in long_lines(page)]
+    assert not found, "\n".join(found)
+
+
+def test_a_long_line_is_found(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
+    page = tmp_path / "a.md"
+    page.write_text("a" * 120 + "\n```\n" + "b" * 121 + "\n```\n" + "c" * 121 + "\n| " + "d" * 121)
+    assert long_lines(page) == ["a.md:5: 121 characters"]
+
+
 def test_a_broken_link_is_found(tmp_path, monkeypatch):
     monkeypatch.setattr(sys.modules[__name__], "ROOT", tmp_path)
     page = tmp_path / "a.md"
