@@ -187,7 +187,7 @@ class Quantities:
 
     @property
     def targets(self) -> Targets:
-        """Of the targets with times that have come, see Targets."""
+        """Targets with times that have come; see Targets."""
         return targets_of(self._records()[1])
 
     @property
