@@ -27,8 +27,10 @@ std::vector<BusEnd> bus_ends(const Robot& robot, const std::vector<CanBus*>& bus
   return ends;
 }
 
+constexpr int kMostDetail = std::numeric_limits<std::uint16_t>::max();
+
 std::uint16_t short_of(std::int64_t number) noexcept {
-  return static_cast<std::uint16_t>(std::clamp<std::int64_t>(number, 0, 0xFFFF));
+  return static_cast<std::uint16_t>(std::clamp<std::int64_t>(number, 0, kMostDetail));
 }
 
 const char* text_of(Contradiction contradiction) noexcept {
@@ -261,9 +263,8 @@ std::string ArmDriver::fault_text(int fault, int joint, std::uint16_t detail) co
 std::string ArmDriver::lost_text(int joint, int cycles) const {
   const std::string who = drives_.address_text(joint);
   const std::string often = "ten replies within a second missing or impossible";
-  constexpr int kNever = std::numeric_limits<std::uint16_t>::max();
-  const std::string silent =
-      cycles == kNever ? "no reply since the start" : fmt::format("no reply for {} cycles", cycles);
+  const std::string silent = cycles == kMostDetail ? "no reply since the start"
+                                                   : fmt::format("no reply for {} cycles", cycles);
   std::string text = cycles < 2
                          ? fmt::format("{}: {}", who, often)
                          : fmt::format("{}{}: {}", joint < 0 ? "all drives, " : "", who, silent);

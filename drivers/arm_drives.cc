@@ -27,9 +27,8 @@ std::string out_of_range_line(const ArmJoint& joint) {
     return fmt::format(
         "{}: reads {:.4g}, and may be at {:.4g} or {:.4g}, both within its limits {:g} to {:g}: "
         "the drives cannot be enabled; its drive keeps a single turn: turn it to where only "
-        "one angle "
-        "fits and start again, tighten its limits, or write keeps_turns: true for its motor if the "
-        "drive counts turns without power",
+        "one angle fits and start again, tighten its limits, or write keeps_turns: true for its "
+        "motor if the drive counts turns without power",
         config.name, link.theta(), first, second, config.position_min, config.position_max);
   }
   return fmt::format(

@@ -169,9 +169,8 @@ def _complaint(sweep: Sweep, key: str, value: Any) -> str:
         try:
             load_scenario(write_files(sweep.files_of({key: value}), Path(folder)))
         except InputError as error:
-            return re.sub(rf"{re.escape(folder)}/{SCENARIO}(:\d+)?: ", "", str(error)).splitlines()[
-                0
-            ]
+            place = rf"{re.escape(folder)}/{SCENARIO}(:\d+)?: "
+            return re.sub(place, "", str(error)).splitlines()[0]
     return ""
 
 
