@@ -33,7 +33,6 @@ if(LIMBER_SANITIZE MATCHES address)
   list(APPEND LIMBER_ROW_OPTIONS -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
 endif()
 option(LIMBER_SANITIZE_ALL "Sanitizers also for the tests that are full of Eigen" OFF)
-option(LIMBER_FUZZER "Link the fuzz targets with libFuzzer (clang)" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)

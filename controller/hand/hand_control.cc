@@ -39,9 +39,9 @@ Refusal HandControl::check(const hand_goal_t& goal) const noexcept {
 }
 
 double HandControl::within_travel(double width_m) const noexcept {
-  constexpr double kRounding_m = 1e-3;
+  constexpr double kWidthRounding_m = 1e-3;
   const double nearest = std::clamp(width_m, -HandLaw::kPress_m, hand_.travel.open_m());
-  return std::abs(nearest - width_m) <= kRounding_m ? nearest : width_m;
+  return std::abs(nearest - width_m) <= kWidthRounding_m ? nearest : width_m;
 }
 
 void HandControl::set_goal(const hand_goal_t& goal) noexcept {

@@ -1,14 +1,13 @@
 """`limber dev fuzz`: bytes of unknown origin for everything that reads some (tests/fuzz).
 
-Two ways to run the same targets: `replay` tries the kept inputs and seeded mutations of them,
-`search` lets libFuzzer look for new ones. How many inputs each has tried is kept in TRIED.
+libFuzzer tries the kept inputs, and new ones that it makes of them. How many a long search has
+tried is kept in TRIED.
 """
 
 import json
 import os
 import re
 import subprocess
-from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import takewhile
@@ -25,11 +24,14 @@ FOLDER = ROOT / "tests" / "fuzz"
 CORPUS = FOLDER / "corpus"
 TRIED = FOLDER / "tried.json"
 OUT = ROOT / "out" / "fuzz"
-# Mutations that `limber test` tries; files go through a folder and a whole loader.
-MUTATIONS = 20_000
-FILE_MUTATIONS = 2_000
+# Inputs that `limber test` tries; files go through a folder and a whole loader, and a controller
+# gets to ACTIVE for each input.
+TRIES = 20_000
+FILE_TRIES = 2_000
+CONTROLLER_TRIES = 300
 TEXTS = ("robot_yaml", "scenario", "urdf")
-SLOW = ("joint_command", "joint_state", "streams", *TEXTS)
+FILES = ("joint_command", *TEXTS)
+CONTROLLERS = ("joint_state", "streams")
 # libFuzzer lengthens inputs up to 4096 bytes, which costs time and finds no other lines of code.
 SHORT = ("black_box", "joint_command", "joint_state", "lcm_fragments", "shared_memory", "streams")
 LONGEST = dict.fromkeys(SHORT, 256) | dict.fromkeys(TEXTS, 1024)
@@ -67,74 +69,54 @@ def targets(names: list[str]) -> list[str]:
     return names or list(WHAT)
 
 
-def mutations_of(target: str) -> int:
-    return FILE_MUTATIONS if target in SLOW else MUTATIONS
+def tries_of(target: str) -> int:
+    if target in CONTROLLERS:
+        return CONTROLLER_TRIES
+    return FILE_TRIES if target in FILES else TRIES
 
 
-def _build(preset: str, names: list[str]) -> Path:
+def run(names: list[str], console: Console, inputs: int, minutes: float, seed: int = 1) -> bool:
+    """Kept inputs and what libFuzzer makes of them, under sanitizers; True if nothing was found.
+
+    So many inputs or minutes a target; without both, what `limber test` tries.
+    """
+    folder = _build(names)
+
+    def one(target: str) -> Outcome:
+        found = OUT / target
+        found.mkdir(parents=True, exist_ok=True)
+        runs = inputs or (0 if minutes else tries_of(target))
+        command = [folder / f"fuzz_{target}", found, CORPUS / target, "-print_final_stats=1"]
+        command += [f"-seed={seed}", "-timeout=60", f"-artifact_prefix={OUT}/{target}-"]
+        command += [f"-runs={runs}"] if runs else []
+        command += [f"-max_total_time={round(60 * minutes)}"] if minutes else []
+        command += [f"-max_len={LONGEST[target]}"] if target in LONGEST else []
+        done = subprocess.run(
+            list(map(str, command)), cwd=ROOT, capture_output=True, text=True, check=False
+        )
+        executed = re.search(r"number_of_executed_units: (\d+)", done.stderr)
+        count = int(executed[1]) if executed else 0
+        return Outcome(target, count, "" if done.returncode == 0 else done.stderr[-4000:])
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        outcomes = list(pool.map(one, names))
+    if inputs or minutes:
+        remember({outcome.target: outcome.inputs for outcome in outcomes if not outcome.failure})
+    return _report(outcomes, console)
+
+
+def _build(names: list[str]) -> Path:
     """Returns the folder of the targets' programs."""
     programs = ["fuzz_targets"] if names == list(WHAT) else [f"fuzz_{name}" for name in names]
     commands = (
-        ["cmake", "--preset", preset],
-        ["cmake", "--build", "--preset", preset, "--target", *programs],
+        ["cmake", "--preset", "asan"],
+        ["cmake", "--build", "--preset", "asan", "--target", *programs],
     )
     for command in commands:
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise RunError(f"{' '.join(command)} failed:\n{done.stdout}{done.stderr}")
-    return ROOT / "build" / preset / "fuzz"
-
-
-def replay(names: list[str], console: Console, mutations: int | None = None, seed: int = 1) -> bool:
-    """Kept inputs and mutations of them, under sanitizers; True if nothing was found."""
-    folder = _build("asan", names)
-    OUT.mkdir(parents=True, exist_ok=True)
-
-    def one(target: str) -> Outcome:
-        count = mutations_of(target) if mutations is None else mutations
-        failure = OUT / f"{target}-failed"
-        command = [folder / f"fuzz_{target}", CORPUS / target, "--mutations", count]
-        command += ["--seed", seed, "--failure", failure]
-        done = _run(command)
-        if done.returncode != 0:
-            return Outcome(target, 0, f"{done.stderr}\nkept as {failure}")
-        tried = json.loads(done.stdout)
-        return Outcome(target, tried["kept"] + tried["mutations"])
-
-    return _report(_several(one, names), console)
-
-
-def search(names: list[str], console: Console, inputs: int, minutes: float) -> bool:
-    """libFuzzer, until so many inputs or minutes a target; 0: no such bound."""
-    folder = _build("fuzz", names)
-
-    def one(target: str) -> Outcome:
-        found = OUT / target
-        found.mkdir(parents=True, exist_ok=True)
-        command = [folder / f"fuzz_{target}", found, CORPUS / target, "-print_final_stats=1"]
-        command += ["-seed=1", "-timeout=10", f"-artifact_prefix={OUT}/{target}-"]
-        command += [f"-runs={inputs}"] if inputs else []
-        command += [f"-max_total_time={round(60 * minutes)}"] if minutes else []
-        command += [f"-max_len={LONGEST[target]}"] if target in LONGEST else []
-        done = _run(command)
-        executed = re.search(r"number_of_executed_units: (\d+)", done.stderr)
-        count = int(executed[1]) if executed else 0
-        return Outcome(target, count, "" if done.returncode == 0 else done.stderr[-4000:])
-
-    outcomes = _several(one, names)
-    remember({outcome.target: outcome.inputs for outcome in outcomes if not outcome.failure})
-    return _report(outcomes, console)
-
-
-def _run(command: Sequence[object]) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [str(word) for word in command], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-
-
-def _several(one: Callable[[str], Outcome], names: list[str]) -> list[Outcome]:
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(one, names))
+    return ROOT / "build" / "asan" / "fuzz"
 
 
 def _report(outcomes: list[Outcome], console: Console) -> bool:
@@ -166,9 +148,7 @@ def _lines() -> list[str]:
     for target, what in WHAT.items():
         kept = len(list((CORPUS / target).iterdir()))
         searched = tried().get(target, 0)
-        lines.append(
-            f"| `{target}` | {what} | {kept} | {kept + mutations_of(target):,} | {searched:,} |"
-        )
+        lines.append(f"| `{target}` | {what} | {kept} | {tries_of(target):,} | {searched:,} |")
     return lines
 
 

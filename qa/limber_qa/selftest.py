@@ -103,10 +103,6 @@ PARTS: dict[str, Part] = {
     ),
     "threads": Part(_threads, Lane.BUILDS),
     "fuzz": Part(lambda: _limber("fuzz"), Lane.BUILDS),
-    # By clang and libFuzzer, in which these two bring most of the C++ code
-    "search": Part(
-        lambda: _limber("fuzz", "joint_state", "joint_command", "--inputs", "2000"), Lane.BUILDS
-    ),
     "messages": Part(lambda: [*PYTEST, "tests/fuzz"], Lane.BUILDS),  # with a program of `fuzz`
     # What decides whether the arm moves; the other areas take longer
     "mutation": Part(

@@ -62,16 +62,16 @@ std::size_t row_of(std::string_view name) noexcept {
 }  // namespace
 
 MoteusSettings::MoteusSettings(const DriveConfig& drive, std::uint8_t id) {
-  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  constexpr double kRevolution_rad = 2.0 * std::numbers::pi;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   constexpr double kDefaultTimeout_s = 0.1;
   constexpr double kFaultTemperature_degC = 75.0;
   const bool damps = drive.watchdog_reaction == NodeWatchdogReaction::kDamp;
   default_ = {static_cast<double>(id),
               1.0 / drive.gear_ratio,
-              drive.range.kp_Nm_per_rad * kTurn_rad,
+              drive.range.kp_Nm_per_rad * kRevolution_rad,
               0.0,
-              drive.range.kd_Nms_per_rad * kTurn_rad,
+              drive.range.kd_Nms_per_rad * kRevolution_rad,
               kDefaultTimeout_s,
               damps ? kZeroVelocity : kStopped,
               drive.timeout_torque_Nm,

@@ -13,7 +13,10 @@ from limber_qa import quick
         ("controller/laws/pd_plus.cc", ["test_controller"]),
         ("tests/controller/laws/test_laws.cc", ["test_controller"]),
         ("drivers/gate/torque_gate.cc", ["test_gate"]),
-        ("drivers/drive/drive.cc", ["test_can", "test_driver", "test_gate", "test_protocols"]),
+        (
+            "drivers/drive/drive.cc",
+            ["test_can", "test_driver", "test_driver_processes", "test_gate", "test_protocols"],
+        ),
         ("qa/soak/soak.cc", ["test_soak"]),
         ("robots/openarm/robot.yaml", ["test_robots"]),
         ("docs/safety.md", []),

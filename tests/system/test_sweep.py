@@ -1,5 +1,6 @@
 """`limber sweep` on a real scheduler and workers, each in a process of its own, that are killed."""
 
+import io
 import json
 import os
 import shutil
@@ -100,9 +101,10 @@ class Bench:
         return self.sweep(str(self.scenario), *VARY, *how)
 
     def done(self, out: str) -> set[int]:
-        """Runs that are on the disk."""
+        """Runs that are on the disk. A piece may be replaced meanwhile, so each is opened once."""
         pieces = (self.folder / out / "runs").glob("piece-*.parquet")
-        return {run for piece in pieces for run in parquet.read_table(piece)["run"].to_pylist()}
+        tables = [parquet.ParquetFile(io.BytesIO(piece.read_bytes())).read() for piece in pieces]
+        return {run for table in tables for run in table["run"].to_pylist()}
 
     def whole(self, out: str) -> Path:
         return self.folder / out / "runs.parquet"

@@ -5,8 +5,16 @@
 // Also for what the program loads.
 #pragma GCC visibility push(default)
 
+#ifdef __has_feature  // clang's way to tell
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LIMBER_SANITIZED_HEAP 1
+#endif
+#endif
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIMBER_SANITIZED_HEAP 1
+#endif
+
+#ifdef LIMBER_SANITIZED_HEAP
 // From compiler-rt's sanitizer/allocator_interface.h, which GCC does not install.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(
     void (*malloc_hook)(const volatile void* pointer, std::size_t size),

@@ -100,19 +100,15 @@ def coverage(
 @app.command(epilog="Example: limber dev fuzz --minutes 10")
 def fuzz(
     target: Annotated[list[str] | None, typer.Argument(help="All if there is none.")] = None,
-    inputs: Annotated[int, typer.Option(min=0, help="libFuzzer: inputs a target.")] = 0,
-    minutes: Annotated[float, typer.Option(min=0, help="libFuzzer: minutes a target.")] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="Of the mutations that are replayed.")] = 1,
+    inputs: Annotated[int, typer.Option(min=0, help="Inputs a target.")] = 0,
+    minutes: Annotated[float, typer.Option(min=0, help="Minutes a target.")] = 0,
+    seed: Annotated[int, typer.Option(min=1, help="Of what libFuzzer makes.")] = 1,
 ) -> None:
-    """Feed garbled bytes to everything that reads some: kept inputs and mutations of them, or, with
-    --inputs or --minutes, whatever libFuzzer (clang) finds."""
+    """Feed garbled bytes to everything that reads some, by libFuzzer: kept inputs, and new ones
+    made of them; without --inputs and --minutes as many as limber test tries."""
     from limber_qa import fuzz as module
 
-    names = module.targets(target or [])
-    if inputs or minutes:
-        passed = module.search(names, console, inputs, minutes)
-    else:
-        passed = module.replay(names, console, seed=seed)
+    passed = module.run(module.targets(target or []), console, inputs, minutes, seed)
     raise typer.Exit(OK if passed else OUT_OF_TOLERANCE)
 
 
