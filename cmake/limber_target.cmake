@@ -39,9 +39,10 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 find_program(LIMBER_CCACHE ccache)
 if(LIMBER_CCACHE)
-  # What ccache asks for with precompiled headers.
+  # What ccache needs with precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${LIMBER_CCACHE})
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  add_compile_options("$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
 endif()
 
 if(LIMBER_UNITY)
