@@ -24,10 +24,6 @@ set(LIMBER_UNITY 16 CACHE STRING "Source files compiled as one; 0: each by itsel
 set(LIMBER_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
 # For sources with rows of joints, which are wider than what other processors pass in a register (psabi) and never leave these files.
 set(LIMBER_ROW_OPTIONS -Wno-psabi)
-if(LIMBER_SANITIZE MATCHES address AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ 12 aligns their frames for AVX-512, but not where it keeps frames to find uses after return (its bug 110027).
-  list(APPEND LIMBER_ROW_OPTIONS --param=asan-use-after-return=0)
-endif()
 if(LIMBER_SANITIZE MATCHES address)
   # Each number that an inlined line passes on would be watched by itself: minutes a file instead of seconds.
   list(APPEND LIMBER_ROW_OPTIONS -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)

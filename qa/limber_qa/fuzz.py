@@ -75,7 +75,7 @@ def tries_of(target: str) -> int:
     return FILE_TRIES if target in FILES else TRIES
 
 
-def run(names: list[str], console: Console, inputs: int, minutes: float, seed: int = 1) -> bool:
+def run(names: list[str], console: Console, inputs: int, minutes: float, seed: int) -> bool:
     """Kept inputs and what libFuzzer makes of them, under sanitizers; True if nothing was found.
 
     So many inputs or minutes a target; without both, what `limber test` tries.
@@ -87,7 +87,7 @@ def run(names: list[str], console: Console, inputs: int, minutes: float, seed: i
         found.mkdir(parents=True, exist_ok=True)
         runs = inputs or (0 if minutes else tries_of(target))
         command = [folder / f"fuzz_{target}", found, CORPUS / target, "-print_final_stats=1"]
-        command += [f"-seed={seed}", "-timeout=60", f"-artifact_prefix={OUT}/{target}-"]
+        command += [f"-seed={seed}", "-timeout=10", f"-artifact_prefix={OUT}/{target}-"]
         command += [f"-runs={runs}"] if runs else []
         command += [f"-max_total_time={round(60 * minutes)}"] if minutes else []
         command += [f"-max_len={LONGEST[target]}"] if target in LONGEST else []
